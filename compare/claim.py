@@ -1,0 +1,152 @@
+"""A claim: a measured number beside the predicted one, with the error that is allowed to lie between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.systems import FloatArray
+
+
+class Verdict(Enum):
+    """What a claim has shown; only AGREES is a pass."""
+
+    AGREES = "agrees"
+    DIFFERS = "differs"
+    INCONCLUSIVE = "inconclusive"
+
+
+@dataclass(frozen=True)
+class ErrorBudget:
+    """The difference that the engine's and the formula's own errors can explain.
+
+    Parameters
+    ----------
+    numerical : float or array
+        Estimated from the run itself (same run at a tighter tolerance, Richardson), in the claim's unit.
+    model : float
+        Zero for an identity; for an approximation the derived size of the first term left out.
+    resolution : float
+        The largest total budget with which agreement still says something.
+
+    """
+
+    numerical: FloatArray
+    model: float
+    resolution: float
+
+    def __init__(self, numerical: ArrayLike, *, resolution: float, model: float = 0.0) -> None:
+        object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
+        object.__setattr__(self, "model", float(model))
+        object.__setattr__(self, "resolution", float(resolution))
+        if not (np.all(self.numerical >= 0.0) and model >= 0.0 and resolution > 0.0):
+            raise ValueError("an error budget takes errors >= 0 and a resolution > 0")
+
+    @property
+    def total(self) -> FloatArray:
+        """Numerical plus model error."""
+        return self.numerical + self.model
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """One statement about one engine (or about the theory alone).
+
+    Parameters
+    ----------
+    sentence : str
+        What is claimed, the same for every engine; it names the row of the matrix.
+    equation : str
+        Of the paper, as "(3)", or "" where the statement is ours.
+    engine : str
+        Name of the engine, or "theory" where no simulation takes part.
+    predicted, measured : float or array of the same shape
+        In ``unit``.
+    budget : ErrorBudget
+        Errors in the same unit.
+    parameters : dict
+        All that is needed to repeat the measurement.
+    source : str
+        Where the parameters come from: a figure, or an assumption in words.
+    unit : str
+        "" for a dimensionless number.
+    note : str
+        How the measurement or its error estimate was made, where that is not obvious.
+
+    """
+
+    sentence: str
+    equation: str
+    engine: str
+    predicted: FloatArray
+    measured: FloatArray
+    budget: ErrorBudget
+    parameters: dict[str, float]
+    source: str
+    unit: str = ""
+    note: str = ""
+
+    def __init__(
+        self,
+        sentence: str,
+        *,
+        equation: str,
+        engine: str,
+        predicted: ArrayLike,
+        measured: ArrayLike,
+        budget: ErrorBudget,
+        parameters: dict[str, float],
+        source: str,
+        unit: str = "",
+        note: str = "",
+    ) -> None:
+        values = {
+            "sentence": sentence,
+            "equation": equation,
+            "engine": engine,
+            "predicted": np.asarray(predicted, dtype=float),
+            "measured": np.asarray(measured, dtype=float),
+            "budget": budget,
+            "parameters": parameters,
+            "source": source,
+            "unit": unit,
+            "note": note,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if self.predicted.shape != self.measured.shape:
+            raise ValueError(
+                f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
+                f"measured {self.measured.shape}"
+            )
+        if self.predicted.size == 0:
+            raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+        if np.broadcast_shapes(budget.numerical.shape, self.predicted.shape) != self.predicted.shape:
+            raise ValueError(
+                f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
+                f"predicted {self.predicted.shape}"
+            )
+
+    @property
+    def difference(self) -> FloatArray:
+        """|measured − predicted|, elementwise."""
+        return np.abs(self.measured - self.predicted)
+
+    @property
+    def worst(self) -> int:
+        """Flat index of the element that exceeds its budget the most (or comes nearest to it)."""
+        excess = np.atleast_1d(self.difference - self.budget.total)
+        return int(np.argmax(np.where(np.isfinite(excess), excess, np.inf)))
+
+    @property
+    def verdict(self) -> Verdict:
+        """Agrees, differs (also when a number is missing), or inconclusive, as ``design.md`` defines them."""
+        within = self.difference <= self.budget.total  # False for NaN
+        if not np.all(np.isfinite(self.measured)) or not np.all(within):
+            return Verdict.DIFFERS
+        if np.any(self.budget.total > self.budget.resolution):
+            return Verdict.INCONCLUSIVE
+        return Verdict.AGREES

@@ -1,0 +1,121 @@
+"""Stick phases of the pin (eq. 6 to 9): what friction must hold, when it lets go, and how slip starts.
+
+Stuck means w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and the friction that holds it balances
+the pull a(z, 0). All functions take the equations of motion and complex positions.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference_model.pin import SlipMotion
+from reference_model.systems import FloatArray
+
+GRAZING = 1e-8
+"""Relative excess of the holding force that is passed over.
+
+An excess δ at the peak of the holding force lasts for √(8δ)/ω and moves the pin by some g·δ²/ω², far less
+than rounding of the position.
+"""
+
+ROUNDING = 1e-12
+"""Angle in rad within which a pin counts as being at the limit of what friction can hold."""
+
+
+def can_hold(motion: SlipMotion, z: complex) -> bool:
+    """Tell whether friction can hold a pin at rest on the disc at ``z`` (eq. 6)."""
+    return abs(motion.pull(z, 0.0)) <= motion.friction
+
+
+def release_delay(motion: SlipMotion, z: complex) -> float:
+    """Return how long a pin held at ``z`` stays stuck, in s; inf if friction never lets go.
+
+    Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning
+    pull q of the position: a single harmonic, whose first upward crossing is an arccos.
+    """
+    constant = motion.stiffness * motion.offset
+    turning = motion.pull(z, 0.0) - constant
+    p, q, g = abs(constant), abs(turning), motion.friction
+    if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
+        return math.inf
+    # The angle between the two pulls, counted as it grows; friction holds outside of ± limit. The half-angle
+    # form of the law of cosines keeps its digits where an arccos would lose them.
+    angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
+    limit = 2.0 * math.atan2(
+        math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
+    )
+    turn = (-limit - angle) % (2.0 * math.pi)
+    if 2.0 * math.pi - turn < ROUNDING:
+        turn = 0.0  # at the limit already
+    return turn / abs(motion.disc_speed)
+
+
+@dataclass(frozen=True)
+class SlipStart:
+    """Slip that grows from rest, as a power series in the time since it began.
+
+    Parameters
+    ----------
+    positions, slip : complex arrays of shape (terms,)
+        Coefficients of z and of w.
+    duration : float
+        Time up to which the series holds, in s.
+
+    """
+
+    positions: NDArray[np.complex128]
+    slip: NDArray[np.complex128]
+    duration: float
+
+    def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Return z and w at ``delays`` (shape (n,)) after the start, each of shape (n,)."""
+        powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
+        return powers @ self.positions, powers @ self.slip
+
+
+def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
+    """Return how slip grows from a pin at rest on the disc at ``z`` whose pull is not less than friction.
+
+    In polar slip coordinates w = s·exp(iθ) and with b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b.
+    At rest θ is the direction of the pull. Where the pull exceeds friction, slip grows linearly and the
+    series converges. Where it is just equal (release from a stick phase), slip grows quadratically with its
+    direction slaved to the pull; the point is an irregular singular one and the series asymptotic, with an
+    error like exp(−2g/(κt)), κ = d|a|/dt. Both obey the same recurrence: of order t^k,
+    (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
+
+    ``duration`` is where the last terms of slip and direction reach ``tolerance``.
+    """
+    omega = 1j * motion.disc_speed
+    position = np.zeros(terms + 1, dtype=complex)
+    velocity = np.zeros_like(position)
+    pull = np.zeros_like(position)
+    slip = np.zeros_like(position)
+    direction = np.zeros_like(position)  # exp(iθ)
+    theta = np.zeros(terms + 1)
+    speed = np.zeros(terms + 2)
+
+    position[0], velocity[0], pull[0] = z, omega * z, motion.pull(z, 0.0)
+    strength = abs(pull[0])
+    direction[0] = pull[0] / strength
+    speed[1] = strength - motion.friction
+    order = np.arange(terms + 2)
+    for k in range(1, terms + 1):
+        position[k] = velocity[k - 1] / k
+        slip[k] = np.dot(speed[1 : k + 1], direction[k - 1 :: -1])
+        velocity[k] = slip[k] + omega * position[k]
+        pull[k] = -(motion.damping + omega) * velocity[k] - motion.stiffness * position[k]
+        # Coefficient k of exp(iθ) and of b = a·exp(−iθ) but for the terms with θ_k itself.
+        direction[k] = 1j * np.dot(order[1:k] * theta[1:k], direction[k - 1 : 0 : -1]) / k
+        b = np.dot(pull[: k + 1], direction[k::-1].conj())
+        turning = np.dot(speed[2 : k + 1], (order[k - 1 : 0 : -1] * theta[k - 1 : 0 : -1]))
+        theta[k] = (b.imag - turning) / (strength + k * speed[1])
+        direction[k] += 1j * theta[k] * direction[0]
+        speed[k + 1] = b.real / (k + 1)
+
+    last = max(abs(theta[-1]), abs(theta[-2]), abs(slip[-1]), abs(slip[-2]))
+    return SlipStart(position, slip, (tolerance / last) ** (1.0 / terms) if last > 0.0 else math.inf)

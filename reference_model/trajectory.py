@@ -1,0 +1,112 @@
+"""The result of a simulation, the same for every engine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from reference_model.systems import FloatArray, PinOnDisc
+
+
+class SimulationError(RuntimeError):
+    """An engine gave up or returned numbers that are not finite; the message says when and what to change."""
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A span of time in which the contact slips or sticks.
+
+    ``initial_state`` is the state at ``start``; a phase ends where the next one starts.
+    """
+
+    kind: Literal["slip", "stick"]
+    start: float
+    end: float
+    initial_state: FloatArray
+
+
+@dataclass(frozen=True)
+class Solution:
+    """How a trajectory was computed.
+
+    Parameters
+    ----------
+    method : str
+        The integrator in words.
+    tolerance : float
+        The tolerance that was asked for.
+    evaluations, steps : int
+        Evaluations of the equations of motion, and accepted steps.
+    wall_time : float
+        In s.
+    regularisation : float
+        Slip speed ε in m/s that smooths the friction law v/√(v²+ε²); 0 for exact Coulomb friction.
+
+    """
+
+    method: str
+    tolerance: float
+    evaluations: int
+    steps: int
+    wall_time: float
+    regularisation: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The motion of a system at the times that were asked for.
+
+    Parameters
+    ----------
+    system : PinOnDisc
+        The parameters.
+    times : array of shape (n,)
+        In s.
+    states : array of shape (n, 4)
+        x, y in m and vx, vy in m/s.
+    phases : tuple of Phase
+        From ``times[0]`` to ``times[-1]``, without gaps.
+    solution : Solution
+        How it was computed.
+
+    """
+
+    system: PinOnDisc
+    times: FloatArray
+    states: FloatArray
+    phases: tuple[Phase, ...]
+    solution: Solution
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only: a result does not change."""
+        for array in (self.times, self.states):
+            array.flags.writeable = False
+
+    @property
+    def at_end(self) -> FloatArray:
+        """The last state, shape (4,)."""
+        return np.asarray(self.states[-1])
+
+    @property
+    def radius(self) -> FloatArray:
+        """ρ of eq. 2 in m, shape (n,)."""
+        return np.asarray(np.hypot(self.states[:, 0], self.states[:, 1]))
+
+    @property
+    def slip_velocity(self) -> FloatArray:
+        """Velocity relative to the disc below, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
+        x, y, vx, vy = self.states.T
+        omega = self.system.disc_speed
+        return np.column_stack((vx + omega * y, vy - omega * x))
+
+    @property
+    def slip_speed(self) -> FloatArray:
+        """Magnitude of the slip velocity in m/s, shape (n,)."""
+        return np.asarray(np.hypot(*self.slip_velocity.T))
+
+    @property
+    def stick_phases(self) -> tuple[Phase, ...]:
+        """The phases in which the pin turns with the disc."""
+        return tuple(phase for phase in self.phases if phase.kind == "stick")
