@@ -1,7 +1,7 @@
 """The radial dynamics of friction discs in plain NumPy and SciPy, with exact Coulomb friction."""
 
 from reference_model.integrate import simulate
-from reference_model.orbits import Orbit, last_whirl, whirl_orbit
+from reference_model.orbits import Orbit, last_whirl, whirl_branch, whirl_orbit
 from reference_model.pin_formulas import sticking_radius
 from reference_model.power import PowerBalance, power_balance
 from reference_model.steady_states import SelfCentredEquilibrium, Whirl, self_centred_equilibria, whirls
@@ -23,6 +23,7 @@ __all__ = [
     "self_centred_equilibria",
     "simulate",
     "sticking_radius",
+    "whirl_branch",
     "whirl_orbit",
     "whirls",
 ]

@@ -65,7 +65,7 @@ class Thresholds:
     rest_time: float = 1e-12
     reversal_slip: float = 1e-13
     series: float = 1e-12
-    safety: float = 0.06
+    safety: float = 0.05
 
 
 def simulate(
@@ -124,6 +124,11 @@ def simulate_with(
     velocities = run.slip + 1j * run.motion.disc_speed * run.positions
     states = _states(run.positions * unit.length, velocities * unit.speed)
     states[0] = state
+    if not np.all(np.isfinite(states)):
+        raise SimulationError(
+            f"the states are not finite from t = {times[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
+            "the parameters differ by too many orders of magnitude"
+        )
     solution = Solution(
         method="DOP853 in slip phases with slip-polar coordinates near rest; closed-form stick phases",
         tolerance=tolerance,
@@ -195,22 +200,29 @@ class _Run:
         t, end = 0.0, float(self.times[-1])
         self._record(t, lambda _: (np.array([z]), np.array([w])))
         sticky = self.motion.friction > 0.0
-        if not (sticky and w == 0.0 and can_hold(self.motion, z)):
+        if not (sticky and w == 0.0 and self._holds_for(z) > 0.0):
             self.phases.append(("slip", t, z, w))
+        elif t == end:
+            self.phases.append(("stick", t, z, w))
         while t < end:
             if not sticky or abs(w) > 0.0:
                 slowly = sticky and abs(w) < self._slow
                 t, z, w = self._slip_slowly(t, z, w) if slowly else self._slip(t, z, w)
                 continue
-            if can_hold(self.motion, z):
+            held = self._holds_for(z)
+            if held > 0.0:
                 self.phases.append(("stick", t, z, 0j))
-                t, z = self._stick(t, z)
+                t, z = self._stick(t, z, held)
                 if t >= end:
                     break
                 self.phases.append(("slip", t, z, 0j))
             t, z, w = self._start_slip(t, z)
-            if t < end:
+            if t < end and abs(w) > 0.0:
                 t, z, w = self._slip(t, z, w)
+
+    def _holds_for(self, z: complex) -> float:
+        """Return how long friction holds a pin at rest on the disc at ``z``."""
+        return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
 
     def _slip(self, t: float, z: complex, w: complex) -> tuple[float, complex, complex]:
         """Integrate in z and w until slip is slow and becomes slower, or to the end."""
@@ -288,12 +300,12 @@ class _Run:
             if limit > 0.0:
                 left = s / limit
                 error = left * (slowing - limit) / slowing + left**2 * (abs(motion.disc_speed) + 1.0)
-                if error < self.thresholds.rest_time or s < self.thresholds.reversal_slip:
+                if error < self.thresholds.rest_time:
                     z, w = self._come_to_rest(t, left, z, s * e), 0j
                     t += left
                     break
-            elif s < self.thresholds.reversal_slip:
-                w = 0j  # head-on: slip has turned and starts anew along the pull
+            if s < self.thresholds.reversal_slip:
+                w = 0j  # head-on, or at the limit of what friction holds: over within rounding
                 break
         self.evaluations += solver.nfev
         return t, z, w
@@ -311,21 +323,23 @@ class _Run:
         self._record(t + left, sample)
         return complex(sample(np.array([t + left]))[0][0])
 
-    def _stick(self, t: float, z: complex) -> tuple[float, complex]:
-        """Turn with the disc until friction lets go; return when and where."""
+    def _stick(self, t: float, z: complex, held: float) -> tuple[float, complex]:
+        """Turn with the disc for ``held``, until friction lets go; return when and where."""
         omega = 1j * self.motion.disc_speed
-        release = min(t + release_delay(self.motion, z), float(self.times[-1]))
+        release = min(t + held, float(self.times[-1]))
         self._record(release, lambda times: (z * np.exp(omega * (times - t)), np.zeros(len(times), complex)))
         return release, z * cmath.exp(omega * (release - t))
 
     def _start_slip(self, t: float, z: complex) -> tuple[float, complex, complex]:
-        """Follow the series by which slip grows from rest, as far as it holds."""
+        """Follow the series by which slip grows from rest, as far as it holds or until slip ends again."""
         start = slip_from_rest(self.motion, z, tolerance=self.thresholds.series)
         self.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
-        end = min(t + start.duration, float(self.times[-1]))
+        stop = t + min(start.duration, start.rest)
+        end = min(stop, float(self.times[-1]))
         self._record(end, lambda times: start.at(times - t))
         positions, slip = start.at(np.array([end - t]))
-        return end, complex(positions[0]), complex(slip[0])
+        rests = start.rest <= start.duration and end == stop
+        return end, complex(positions[0]), 0j if rests else complex(slip[0])
 
     def _solver(
         self,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,8 +17,8 @@ from reference_model.trajectory import Trajectory
 
 Simulate = Callable[..., Trajectory]
 
-DIFFERENCE = 1e-5
-"""Relative step of the differences from which the linearised return map is built."""
+CENTRAL = 1e-5
+"""Relative step of the central differences that give multipliers."""
 
 BRANCH_STEP = 0.08
 """Relative step in x along the branch of whirls."""
@@ -46,16 +46,30 @@ class Flow:
         times = [0.0, float(unknowns[4])]
         return self.simulate(system, unknowns[:4], times, tolerance=self.tolerance).at_end - unknowns[:4]
 
-    def derivatives(self, unknowns: FloatArray) -> FloatArray:
-        """Return the derivatives of the miss, shape (4, 6), by central differences."""
+    def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
+        """Return the derivatives of ``miss`` by the ``sought`` unknowns, shape (4, 4), by forward differences."""
+        step = math.sqrt(self.tolerance)  # balances the curvature of the map against its noise
+        columns = []
+        for i in sought:
+            shifted = unknowns.copy()
+            shifted[i] += step * self._size(unknowns)[i]
+            columns.append((self.miss(shifted) - miss) / (shifted[i] - unknowns[i]))
+        return np.column_stack(columns)
+
+    def monodromy(self, unknowns: FloatArray) -> FloatArray:
+        """Return the linearised return map, shape (4, 4), by central differences."""
+        columns = []
+        for i in range(4):
+            shift = np.zeros(6)
+            shift[i] = CENTRAL * self._size(unknowns)[i]
+            columns.append((self.miss(unknowns + shift) - self.miss(unknowns - shift)) / (2.0 * shift[i]))
+        return np.column_stack(columns) + np.eye(4)
+
+    @staticmethod
+    def _size(unknowns: FloatArray) -> FloatArray:
         size = np.abs(unknowns)
         size[:4] = np.max(size[:4])
-        columns = []
-        for i, step in enumerate(DIFFERENCE * size):
-            shift = np.zeros(6)
-            shift[i] = step
-            columns.append((self.miss(unknowns + shift) - self.miss(unknowns - shift)) / (2.0 * step))
-        return np.column_stack(columns)
+        return size
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +114,7 @@ class Orbit:
     def multipliers(self) -> tuple[complex, ...]:
         """Eigenvalues of the linearised return map (Floquet multipliers), largest first; one of them is 1."""
         unknowns = np.array([*self.state, self.period, self.system.friction_force])
-        multipliers = np.linalg.eigvals(self.flow.derivatives(unknowns)[:, :4] + np.eye(4))
+        multipliers = np.linalg.eigvals(self.flow.monodromy(unknowns))
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
 
     @property
@@ -122,7 +136,7 @@ def whirl_orbit(
     """Return the whirl of a pin with an offset, a periodic orbit near to the circle of eq. 11, by shooting.
 
     Newton's method on x, vx, vy and the period T for Φ_T(x, 0, vx, vy) = (x, 0, vx, vy), with the derivatives
-    of the flow Φ from central differences. Orbits with stick phases are found as well: nothing but
+    of the flow Φ from differences. Orbits with stick phases are found as well: nothing but
     ``simulate`` is asked for.
 
     Parameters
@@ -164,7 +178,7 @@ def whirl_orbit(
 
     scale = float(np.max(np.abs(state)))
     best, smallest = unknowns, math.inf
-    derivatives = None
+    slopes = None
     for _ in range(MOST_ITERATIONS):
         if not (unknowns[4] > 0.0 and unknowns[5] > 0.0 and np.all(np.isfinite(unknowns))):
             break
@@ -174,10 +188,10 @@ def whirl_orbit(
             break  # rounding is reached
         if size < smallest:
             best, smallest = unknowns, size
-        if derivatives is None or size > FRESH:
-            derivatives = flow.derivatives(unknowns)
+        if slopes is None or size > FRESH:
+            slopes = flow.slopes(unknowns, miss, sought)
         unknowns = unknowns.copy()
-        unknowns[sought] -= np.linalg.solve(derivatives[:, sought], miss)
+        unknowns[sought] -= np.linalg.solve(slopes, miss)
     if not smallest < CONVERGED:
         raise RuntimeError(
             f"no whirl near the guess for friction_force = {unknowns[5]:g} N, disc_speed = "
@@ -197,36 +211,102 @@ def whirl_orbit(
     )
 
 
-def last_whirl(
-    system: PinOnDisc, *, simulate: Simulate = reference_simulate, tolerance: float = 1e-12
-) -> Orbit:
-    """Return the whirl at the smallest load for which there is one: the fold of the branch.
+def whirl_branch(
+    orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
+) -> Iterator[Orbit]:
+    """Yield ``orbit`` and the whirls of other loads that continue it, by decreasing crossing x.
 
-    There the whirl meets the unstable one that separates it from the other motions, and below it neither
-    exists. The paper does not give this load. The branch is followed from the load of ``system`` downwards;
-    its fold is the minimum of the load over the crossing x.
+    Each is sought from the line through the two before it, for a fall in x by the fraction ``step``; where
+    Newton's method fails, half of that is tried. The load rises or falls along the branch as it will, and
+    stick phases may come in.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where to start; its engine and tolerance are used for all.
+    until : float
+        Smallest crossing x in m to go to, > 0.
+    step : float
+        Largest fraction of x between neighbours.
+    samples : int
+        Intervals of each trajectory.
 
     Raises
     ------
     RuntimeError
-        If the branch has no fold between the load of ``system`` and zero slip.
+        If the branch breaks off: if not even a step of ``step``/64 finds an orbit.
 
     """
-    orbit = whirl_orbit(system, simulate=simulate, tolerance=tolerance, samples=2)
+    before, last = None, orbit
+    yield last
+    fraction = step
+    while last.state[0] > until:
+        x = max(until, last.state[0] * (1.0 - fraction))
+        try:
+            found = whirl_orbit(
+                last.system,
+                simulate=last.flow.simulate,
+                guess=last if before is None else _extrapolated(before, last, x),
+                at_crossing=x,
+                tolerance=last.flow.tolerance,
+                samples=samples,
+            )
+        except RuntimeError:
+            if fraction < step / 64.0:
+                raise
+            fraction /= 2.0
+            continue
+        before, last, fraction = last, found, min(step, 2.0 * fraction)
+        yield last
 
-    def at(x: float) -> Orbit:
+
+def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
+    """Return a guess for the orbit at the crossing ``x`` on the line through two others."""
+    ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
+    load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
+    return replace(
+        last,
+        system=replace(last.system, friction_force=float(load)),
+        state=last.state + ahead * (last.state - before.state),
+        period=last.period + ahead * (last.period - before.period),
+    )
+
+
+def last_whirl(
+    system: PinOnDisc,
+    *,
+    simulate: Simulate = reference_simulate,
+    guess: Orbit | None = None,
+    tolerance: float = 1e-12,
+) -> Orbit:
+    """Return the whirl at the smallest load for which there is one: the fold of the branch.
+
+    There the whirl meets the unstable one that separates it from the other motions, and below it neither
+    exists. The paper does not give this load. The branch is followed from the load of ``system``, or from
+    ``guess``, towards the axis; the fold is the minimum of the load over the crossing x.
+
+    Raises
+    ------
+    ValueError, RuntimeError
+        As ``whirl_orbit``: if there is no whirl to start from, or if the branch ends before it folds.
+
+    """
+    orbit = guess or whirl_orbit(system, simulate=simulate, tolerance=tolerance, samples=2)
+
+    def load(x: float) -> float:
         nonlocal orbit
         orbit = whirl_orbit(
             system, simulate=simulate, guess=orbit, at_crossing=x, tolerance=tolerance, samples=2
         )
-        return orbit
+        return orbit.system.friction_force
 
-    x = [float(orbit.state[0])]
-    loads = [orbit.system.friction_force]
-    while len(loads) < 2 or loads[-1] < loads[-2]:
-        x.append(x[-1] * (1.0 - BRANCH_STEP))
-        loads.append(at(x[-1]).system.friction_force)
-    # Where the branch folds at once, in its first step, the bracket is the step itself.
-    bracket = tuple(x[-3:]) if len(x) > 2 else (2.0 * x[0] - x[1], x[0], x[1])
-    best = minimize_scalar(lambda crossing: at(crossing).system.friction_force, bracket=bracket, tol=1e-5)
+    first = float(orbit.state[0])
+    x, loads = [first * (1.0 + BRANCH_STEP)], [math.inf]
+    for follower in whirl_branch(orbit, 0.0, samples=2):
+        orbit = follower
+        x.append(float(orbit.state[0]))
+        loads.append(orbit.system.friction_force)
+        if loads[-1] > loads[-2]:
+            break
+    best = minimize_scalar(load, bracket=tuple(x[-3:]), tol=1e-5)
     return whirl_orbit(system, simulate=simulate, guess=orbit, at_crossing=float(best.x), tolerance=tolerance)

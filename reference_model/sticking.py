@@ -65,12 +65,16 @@ class SlipStart:
         Coefficients of z and of w.
     duration : float
         Time up to which the series holds, in s.
+    rest : float
+        Time at which the series ends in rest again, in s; inf if it does not. It counts if it lies within
+        ``duration``: after a release at which the pull exceeds friction only just and only for a while.
 
     """
 
     positions: NDArray[np.complex128]
     slip: NDArray[np.complex128]
     duration: float
+    rest: float
 
     def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Return z and w at ``delays`` (shape (n,)) after the start, each of shape (n,)."""
@@ -118,4 +122,20 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
         speed[k + 1] = b.real / (k + 1)
 
     last = max(abs(theta[-1]), abs(theta[-2]), abs(slip[-1]), abs(slip[-2]))
-    return SlipStart(position, slip, (tolerance / last) ** (1.0 / terms) if last > 0.0 else math.inf)
+    duration = (tolerance / last) ** (1.0 / terms) if last > 0.0 else math.inf
+    return SlipStart(position, slip, duration, _first_rest(speed[1:], duration))
+
+
+def _first_rest(speed: FloatArray, duration: float) -> float:
+    """Return the first time up to ``duration`` at which slip falls to zero, or inf.
+
+    ``speed`` are the coefficients of slip speed over time. Its rounding at a release, where the first of them
+    should vanish, adds a root next to zero; there slip rises.
+    """
+    if not math.isfinite(duration):
+        return math.inf
+    scaled = np.polynomial.Polynomial(speed * duration ** np.arange(len(speed)))
+    roots = scaled.roots()
+    times = roots.real[(abs(roots.imag) < 1e-9 * abs(roots)) & (roots.real > 0.0) & (roots.real <= 1.0)]
+    falling = times[scaled.deriv()(times) < 0.0]
+    return float(falling.min()) * duration if falling.size else math.inf

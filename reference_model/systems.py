@@ -70,6 +70,8 @@ def finite_number(name: str, value: Any) -> float:
         number = float(value)
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {value!r}: it must be a number") from None
+    except OverflowError:  # an integer beyond all floats
+        number = math.inf
     if not math.isfinite(number):
         raise ValueError(f"{name} = {number}: it must be finite")
     return number
@@ -113,6 +115,8 @@ def _float_array(name: str, values: ArrayLike) -> FloatArray:
         return np.array(values, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {values!r}: it must be a list of numbers") from None
+    except OverflowError:
+        raise ValueError(f"{name} holds an integer too large for a float: it must be finite") from None
 
 
 def _require_finite(name: str, values: FloatArray) -> None:

@@ -1,0 +1,30 @@
+# `make report` and `make test` each do all that a fresh machine needs: Python >= 3.10 with venv, and make.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: report test lint benchmarks clean
+
+report: $(VENV)/installed
+	$(BIN)/friction-discs report
+
+test: $(VENV)/installed
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+
+lint: $(VENV)/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+benchmarks: $(VENV)/installed
+	$(BIN)/python benchmarks/exudyn_contact.py
+	$(BIN)/python benchmarks/reference_evaluations.py
+
+clean:
+	rm -rf $(VENV) report build *.egg-info
+
+$(VENV)/installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
+	touch $@

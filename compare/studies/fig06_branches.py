@@ -1,0 +1,325 @@
+"""Fig. 6: equilibrium, sticking and whirl under increasing load, and where each of them ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+
+from compare.accuracy import refined
+from compare.claim import Claim, ErrorBudget
+from compare.engines import Engine
+from compare.report.style import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
+from compare.studies.common import at_each, parameters_of
+from compare.studies.paper import FIG4
+from compare.study import Data, Findings, Study
+from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
+from reference_model.pin_formulas import (
+    equilibrium_position,
+    equilibrium_radius,
+    largest_load_with_equilibrium,
+)
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FIG6 = replace(FIG4, disc_speed=1.2)
+
+LIMIT = largest_load_with_equilibrium(FIG6)
+
+WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
+EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
+"""μN in N. The paper does not print the range of its axis; 2·C·X0 shows all that happens."""
+
+CYCLE_LOAD = 0.102
+"""Between C·X0 and the load at which the stick–slip cycle ends."""
+
+INNERMOST = 0.02
+"""Crossing of the x axis in m down to which the branch is followed towards the axis."""
+
+SHOOTING = 1e-12
+
+SOURCE = "Fig. 6: Fig. 4 with ω = 1.2; the loads are our choice, the paper prints no range"
+
+
+def measure(engine: Engine) -> Findings:
+    """Find the motions at several loads, and the load below which there is no whirl."""
+    whirls = {load: _whirl(engine, load, SHOOTING) for load in WHIRL_LOADS}
+    extents = np.array([_extent(orbit) for orbit in whirls.values()])
+    rest = np.array([_rest(engine, load, 1e-9) for load in EQUILIBRIUM_LOADS])
+    claims = (
+        _claim_equilibria(engine),
+        _claim_whirls(engine, whirls),
+        _claim_last_whirl(engine),
+        _claim_coexistence(engine),
+        _claim_cycle(engine),
+    )
+    return Findings(
+        claims,
+        {
+            "whirl loads": np.array(WHIRL_LOADS),
+            "whirl extents": extents,
+            "equilibrium loads": np.array(EQUILIBRIUM_LOADS),
+            "equilibrium radius": np.hypot(rest[:, -1, 0], rest[:, -1, 1]),
+        },
+    )
+
+
+def theory() -> Findings:
+    """Follow the branch of whirls through its folds with the reference, and evaluate (3) and (9)."""
+    outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]))
+    branch = list(whirl_branch(outermost, INNERMOST, step=0.12))
+    loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep
+    sticking = np.linspace(LIMIT, WHIRL_LOADS[-1], 101)[1:]
+    return Findings(
+        data={
+            "branch load": np.array([orbit.system.friction_force for orbit in branch]),
+            "branch extent": np.array([_extent(orbit) for orbit in branch]),
+            "branch stable": np.array([float(orbit.stable) for orbit in branch]),
+            "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
+            "equilibrium load": loads,
+            "equilibrium radius": np.array([_at(load, equilibrium_radius) for load in loads]),
+            "sticking load": sticking,
+            "sticking radius": np.array([_at(load, sticking_radius) for load in sticking]),
+        }
+    )
+
+
+def _at(load: float, formula: Callable[[PinOnDisc], float]) -> float:
+    return float(formula(replace(FIG6, friction_force=float(load))))
+
+
+def _whirl(engine: Engine, load: float, tolerance: float, guess: Orbit | None = None) -> Orbit:
+    pin = replace(FIG6, friction_force=load)
+    return whirl_orbit(pin, simulate=engine.simulate, tolerance=tolerance, guess=guess, samples=64)
+
+
+def _extent(orbit: Orbit) -> FloatArray:
+    """Return the least and the greatest distance from the axis in m."""
+    radius = orbit.trajectory.radius
+    return np.array([np.min(radius), np.max(radius)])
+
+
+def _rest(engine: Engine, load: float, tolerance: float) -> FloatArray:
+    """Return where a pin is at several late times that starts 5 mm beside the equilibrium."""
+    pin = replace(FIG6, friction_force=load)
+    x, y = equilibrium_position(pin)
+    times = np.concatenate(([0.0], np.linspace(590.0, 600.0, 11)))  # one state alone may be right by chance
+    return engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), times, tolerance=tolerance).states[1:, :2]
+
+
+def _claim_equilibria(engine: Engine) -> Claim:
+    measured, error = refined(
+        lambda tolerance: [_rest(engine, load, tolerance) for load in EQUILIBRIUM_LOADS]
+    )
+    positions = [equilibrium_position(replace(FIG6, friction_force=load)) for load in EQUILIBRIUM_LOADS]
+    predicted = np.repeat(np.array(positions)[:, np.newaxis], measured.shape[1], axis=1)
+    # The slowest deviation decays like exp(−βt/2m); it was 5 mm.
+    left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * 590.0)
+    return Claim(
+        "a pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
+        equation="(3), (5)",
+        engine=engine.name,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(float(np.max(error)) + left, resolution=1e-6 * FIG6.offset),
+        parameters=parameters_of(FIG6, friction_force=EQUILIBRIUM_LOADS[-1]),
+        source=SOURCE,
+        unit="m",
+        note=at_each("μN", EQUILIBRIUM_LOADS) + " N; x and y of each, at eleven times from 590 to 600 s.",
+    )
+
+
+def _claim_whirls(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
+    def period_and_extent(tolerance: float) -> FloatArray:
+        orbits = [_whirl(engine, load, tolerance, guess) for load, guess in whirls.items()]
+        return np.array([[orbit.period, *_extent(orbit)] for orbit in orbits])
+
+    measured, error = refined(period_and_extent, SHOOTING)
+    reference = Engine("reference", simulate)
+    others = [_whirl(reference, load, 3e-13, guess) for load, guess in whirls.items()]
+    predicted = np.array([[orbit.period, *_extent(orbit)] for orbit in others])
+    miss = max(orbit.residual for orbit in (*whirls.values(), *others))
+    # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
+    sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
+    return Claim(
+        "the whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
+        equation="(17)",
+        engine=engine.name,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(float(np.max(error)) + miss * sharpness, resolution=1e-6),
+        parameters=parameters_of(FIG6, friction_force=WHIRL_LOADS[-1]),
+        source=SOURCE,
+        unit="s, m",
+        note=f"Period, least and greatest radius for {at_each('μN', WHIRL_LOADS)} N. "
+        "Predicted: shooting with the reference at tolerance 3e-13.",
+    )
+
+
+def _claim_last_whirl(engine: Engine) -> Claim:
+    predicted = _load_of_unit_multiplier()
+    fold = last_whirl(replace(FIG6, friction_force=0.08), simulate=engine.simulate, tolerance=SHOOTING)
+    measured, error = refined(
+        lambda tolerance: (
+            last_whirl(FIG6, simulate=engine.simulate, guess=fold, tolerance=tolerance).system.friction_force
+        ),
+        SHOOTING,
+    )
+    return Claim(
+        "the whirl ends at the load below which the branch of periodic orbits has none",
+        equation="",
+        engine=engine.name,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(error + UNIT_MULTIPLIER_ERROR**2, resolution=1e-8),
+        parameters=parameters_of(FIG6, friction_force=float(measured)),
+        source=SOURCE,
+        unit="N",
+        note="Not in the paper. Measured: the smallest load on the branch. Predicted: the load at which a second "
+        "multiplier of the reference's whirl passes 1 (the load is flat there, so an error δ in where it does "
+        "changes the load by δ²).",
+    )
+
+
+UNIT_MULTIPLIER_ERROR = 1e-5
+"""Error of a multiplier from central differences with the relative step ``orbits.CENTRAL``, near a fold."""
+
+
+def _load_of_unit_multiplier() -> float:
+    orbit = whirl_orbit(replace(FIG6, friction_force=0.08))
+
+    def excess(x: float) -> float:
+        nonlocal orbit
+        orbit = whirl_orbit(FIG6, guess=orbit, at_crossing=x, samples=2)
+        real = sorted(orbit.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
+        return float(real[1].real) - 1.0
+
+    x = float(orbit.state[0])
+    brentq(excess, 0.85 * x, x, xtol=1e-7 * x)
+    return orbit.system.friction_force
+
+
+def _claim_coexistence(engine: Engine) -> Claim:
+    stuck = 0.5 * sticking_radius(FIG6)
+    whirl = whirl_orbit(FIG6)
+    starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*whirl.state[:3], 0.9 * whirl.state[3]))
+    trajectories = [engine.simulate(FIG6, start, [0.0, 5.0, 10.0]) for start in starts]
+    sticks = [
+        float(len(trajectory.phases) == 1 and bool(trajectory.stick_phases)) for trajectory in trajectories
+    ]
+    slides = [float(not trajectory.stick_phases) for trajectory in trajectories]
+    return Claim(
+        "sticking and the whirl exist for the same parameters",
+        equation="(9), (17)",
+        engine=engine.name,
+        predicted=(1.0, 0.0, 0.0, 1.0),
+        measured=[value for pair in zip(sticks, slides, strict=True) for value in pair],
+        budget=ErrorBudget(0.0, resolution=0.5),
+        parameters=parameters_of(FIG6),
+        source=SOURCE,
+        note="For a start stuck at half the radius (9), and one 10 % slower than the whirl: whether it sticks "
+        "for 10 s, whether it slides for 10 s (1: yes).",
+    )
+
+
+def _cycle() -> Orbit:
+    """Return the stable stick–slip cycle at ``CYCLE_LOAD``, reached along the branch of whirls."""
+    *_, orbit = whirl_branch(whirl_orbit(replace(FIG6, friction_force=0.08)), 0.06, step=0.2, samples=2)
+    return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
+
+
+def _claim_cycle(engine: Engine) -> Claim:
+    orbit = _cycle()
+    times = np.linspace(0.0, orbit.period, 9)
+    predicted = simulate(orbit.system, orbit.state, times, tolerance=1e-13).states
+    measured, error = refined(
+        lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
+    )
+    return Claim(
+        "between C·X0 and the load where it ends, a small stick–slip cycle is one more stable motion",
+        equation="",
+        engine=engine.name,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(float(np.max(error)) + orbit.residual, resolution=1e-4),
+        parameters=parameters_of(orbit.system),
+        source=SOURCE,
+        unit="m, m/s",
+        note="Not in the paper, which shows only equilibrium, sticking and whirl. State at nine times of one "
+        f"period. Multiplier of the cycle: {abs(orbit.multipliers[1]):.4f}.",
+    )
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw the branches over the load, and those near the limit (5) enlarged."""
+    figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
+    for panel in (whole, near):
+        if "theory" in data:
+            _draw_theory(panel, data["theory"])
+        for engine in engines_in(data):
+            found = data[engine]
+            panel.plot(found["equilibrium loads"], found["equilibrium radius"], **points(engine))
+            panel.plot(found["whirl loads"], found["whirl extents"], **points(engine, ""))
+        panel.set(xlabel=axis(r"\mu N", "N"))
+    whole.set(ylabel=axis(r"\rho", "m"), xlim=(0.0, WHIRL_LOADS[-1]), ylim=(0.0, None))
+    near.set(xlim=(0.07, 0.115), ylim=(0.0, 0.4))
+    handles, labels = whole.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return {"fig06-branches": figure}
+
+
+def _draw_theory(panel: Axes, found: Data) -> None:
+    panel.plot(
+        found["equilibrium load"], found["equilibrium radius"], **curve("theory", "equilibrium, eq. (3)")
+    )
+    panel.fill_between(
+        found["sticking load"],
+        found["sticking radius"],
+        color=GREY,
+        alpha=0.4,
+        linewidth=0.0,
+        label="sticks, (9)",
+    )
+    stable, sticks = found["branch stable"] > 0.5, found["branch sticks"] > 0.5
+    # A smooth curve through the orbits, coloured by the kind of the nearest one.
+    number = np.arange(len(stable))
+    fine = np.linspace(0.0, number[-1], 20 * number[-1] + 1)
+    nearest = np.rint(fine).astype(int)
+    load = PchipInterpolator(number, found["branch load"])(fine)
+    extent = PchipInterpolator(number, found["branch extent"])(fine)
+    kinds = (
+        ("whirl, stable", stable & ~sticks, GREEN, "-"),
+        ("unstable", ~stable, GREY, (0.0, (3.0, 1.5))),
+        ("stick–slip cycle, stable", stable & sticks, ORANGE, "-"),
+    )
+    for label, mask, colour, dashes in kinds:
+        shown = np.where(mask[nearest][:, np.newaxis], extent, np.nan)
+        panel.plot(load, shown[:, 0], color=colour, linestyle=dashes, linewidth=1.6, label=label)
+        panel.plot(load, shown[:, 1], color=colour, linestyle=dashes, linewidth=1.6)
+
+
+STUDY = Study(
+    name="fig06",
+    title="Branches under increasing load",
+    paper="Fig. 6 shows the steady motions at ω = 1.2 over the load: the equilibrium (3) up to μN = C·X0, "
+    "sticking above it within the radius (9), and the whirl; sticking and whirl exist for the same parameters. "
+    "The paper does not say where the whirl ends: it meets an unstable whirl in a fold. That one goes on to "
+    "higher loads as a stick–slip orbit, and turns there into a small stable stick–slip cycle, a fourth motion "
+    "that bridges the equilibrium's end.",
+    measure=measure,
+    draw=draw,
+    theory=theory,
+    figures={
+        "fig06-branches": "Fig. 6 redrawn: distance from the axis over the load, for orbits the least and the "
+        "greatest one; right: the surroundings of the limit (5), enlarged. Lines: (3), (9), and the branch of "
+        "periodic orbits followed by the reference through its folds; marks: what the engines found."
+    },
+    seconds=15.0,
+)

@@ -1,0 +1,170 @@
+"""Energy: what the drive puts in is heat and stored energy, on every kind of trajectory and without a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compare.accuracy import refined
+from compare.claim import Claim, ErrorBudget
+from compare.engines import Engine
+from compare.report.style import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
+from compare.studies.common import parameters_of
+from compare.studies.paper import FIG4, FIG5, FIG5_STARTS
+from compare.study import Data, Findings, Study
+from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
+from reference_model.pin_formulas import whirl_radius
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SAMPLE_DISTANCE = 0.02
+"""In s: close enough that the balance's quadrature through stick phases is good to 1e-9."""
+
+RESOLUTION = 1e-8
+"""Of the energy that is turned over."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A kind of motion: parameters, start, length in s, and where they come from."""
+
+    pin: PinOnDisc
+    start: tuple[float, ...]
+    until: float
+    source: str
+
+
+def _motions() -> dict[str, Motion]:
+    centred = replace(FIG4, offset=0.0)
+    radius = whirl_radius(centred)
+    sticky = FIG4
+    stuck = 0.98 * sticking_radius(sticky)
+    turning = sticky.disc_speed
+    return {
+        "the way to the equilibrium, with stick phases": Motion(
+            FIG5, FIG5_STARTS["equilibrium"], 400.0, "Fig. 5"
+        ),
+        "the way to the whirl, with stick phases": Motion(FIG5, FIG5_STARTS["whirl"], 400.0, "Fig. 5"),
+        "a whirl that settles": Motion(
+            centred,
+            (0.8 * radius, 0.0, 0.0, radius),
+            100.0,
+            "Fig. 4 with X0 = 0, started 20 % inside the whirl",
+        ),
+        "a pin that sticks all the time": Motion(
+            sticky, (stuck, 0.0, 0.0, turning * stuck), 20.0, "Fig. 4, at 0.98 of the radius (9)"
+        ),
+        "a pin on a resting disc": Motion(
+            replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, start by choice"
+        ),
+        "a disc that turns the other way": Motion(
+            replace(FIG4, disc_speed=-FIG4.disc_speed),
+            (0.5, 0.2, 0.0, -0.3),
+            100.0,
+            "Fig. 4 with −ω, start by choice",
+        ),
+    }
+
+
+def measure(engine: Engine) -> Findings:
+    """Check the balance of every motion; keep that of Fig. 5's second start for the figure."""
+    motions = _motions()
+    claims = tuple(_claim(engine, name, motion) for name, motion in motions.items())
+    balance = power_balance(_run(engine, motions["the way to the whirl, with stick phases"], 1e-9))
+    return Findings(
+        claims,
+        {
+            "times": balance.times,
+            "drive work": balance.drive_work,
+            "friction heat": balance.friction_heat,
+            "damper heat": balance.damper_heat,
+            "stored energy": balance.stored_energy,
+            "residual": balance.residual / balance.turned_over,
+        },
+    )
+
+
+def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+    times = np.linspace(0.0, motion.until, round(motion.until / SAMPLE_DISTANCE) + 1)
+    return engine.simulate(motion.pin, motion.start, times, tolerance=tolerance)
+
+
+def _relative_residual(balance: PowerBalance) -> float:
+    return float(np.max(np.abs(balance.residual)) / balance.turned_over)
+
+
+def _claim(engine: Engine, name: str, motion: Motion) -> Claim:
+    quadrature: dict[float, float] = {}
+
+    def residual_at_ends(tolerance: float) -> FloatArray:
+        trajectory = _run(engine, motion, tolerance)
+        balance, coarser = power_balance(trajectory), power_balance(_every_second(trajectory))
+        quadrature[tolerance] = abs(_relative_residual(balance) - _relative_residual(coarser))
+        return np.array([_relative_residual(balance), balance.residual[-1] / balance.turned_over])
+
+    (largest, _), errors = refined(residual_at_ends)
+    return Claim(
+        f"what the drive puts in is heat and stored energy: {name}",
+        equation="(1)",
+        engine=engine.name,
+        predicted=0.0,
+        measured=largest,
+        budget=ErrorBudget(float(np.max(errors)) + min(quadrature.values()), resolution=RESOLUTION),
+        parameters=parameters_of(motion.pin),
+        source=motion.source,
+        note="Largest residual at any time, as a fraction of the energy turned over (heat, and the most that was "
+        "stored). Error: change with the engine's tolerance, and with every second sample left out of the "
+        "balance's quadrature.",
+    )
+
+
+def _every_second(trajectory: Trajectory) -> Trajectory:
+    """Return the trajectory with every second sample left out."""
+    return replace(trajectory, times=trajectory.times[::2], states=trajectory.states[::2])
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Where the energy goes on the way to the whirl, and what is left over."""
+    figure, (energies, residuals) = new_figure(ncols=2)
+    looks: dict[str, dict[str, Any]] = {
+        "drive work": {"color": BLACK, "linestyle": "-"},
+        "friction heat": {"color": ORANGE, "linestyle": (0.0, (5.0, 1.5))},
+        "damper heat": {"color": GREEN, "linestyle": (0.0, (1.0, 1.0))},
+        "stored energy": {"color": GREY, "linestyle": "-"},
+    }
+    for rank, engine in enumerate(engines_in(data)):
+        found = data[engine]
+        sparse = slice(None, None, 5)
+        if rank == 0:
+            for name, look in looks.items():
+                energies.plot(found["times"][sparse], found[name][sparse], label=name, linewidth=1.3, **look)
+        size = np.maximum(np.abs(found["residual"]), 1e-16)
+        residuals.semilogy(found["times"][sparse], size[sparse], **curve(engine, linewidth=1.0))
+    residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)), label="resolution")
+    energies.set(xlabel=axis("t", "s"), ylabel="energy in J")
+    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-14, 1e-7))
+    energies.legend()
+    residuals.legend(loc="lower right")
+    return {"power-balance": figure}
+
+
+STUDY = Study(
+    name="power-balance",
+    title="Power balance of every kind of motion",
+    paper="Not in the paper, but implied by (1): what the drive of the disc puts in is friction heat, heat of the "
+    "dampers and stored energy. The drive's work is taken from the angular momentum of the pin's motion and "
+    "the heat from the slip, so the balance checks friction, damping, springs and integrator of an engine "
+    "without any reference solution.",
+    measure=measure,
+    draw=draw,
+    figures={
+        "power-balance": "Left: energies on Fig. 5's way to the whirl (reference). Right: what the balance of each "
+        "engine leaves over, as a fraction of the energy turned over."
+    },
+    seconds=10.0,
+)
