@@ -383,7 +383,7 @@ def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> Float
     """
     first, last = dense.t_min, dense.t_max
     t_first, t_last = dense(first)[4], dense(last)[4]
-    tau = first + (last - first) * (delays - t_first) / (t_last - t_first)
+    tau: FloatArray = first + (last - first) * (delays - t_first) / (t_last - t_first)
     for _ in range(50):
         y = dense(tau)
         s = np.exp(y[2])

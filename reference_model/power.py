@@ -59,30 +59,46 @@ class PowerBalance:
 def power_balance(trajectory: Trajectory) -> PowerBalance:
     """Return the energy balance of ``trajectory``.
 
-    The friction heat is μN·∫|w|dt (of the smoothed law, where the engine used one). The drive's work is ω
-    times the moment impulse on the pin, and that is taken from the pin's motion, not from a friction law: by
-    its angular momentum about the axis, ∫M dt = [m·r×v] + β∫r×v dt + C·X0∫y dt. So the residual vanishes only
-    if force and motion belong together: friction against the slip and of the magnitude μN, the damping β, the
-    springs, energy neither made nor lost by the integrator.
+    The friction heat is μN·∫|w|dt in slip phases (with the smoothing that the engine declared). In stick
+    phases it is the work of the force that holds the pin by eq. 6 on whatever creep the engine shows, which
+    is none for exact friction. The drive's work is ω times the moment impulse on the pin, and that is taken
+    from the pin's motion, not from a friction law: by its angular momentum about the axis,
+    ∫M dt = [m·r×v] + β∫r×v dt + C·X0∫y dt. So the residual vanishes only if force and motion belong together:
+    friction against the slip and of the magnitude μN, the damping β, the springs, energy neither made nor
+    lost by the integrator.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the
-    sixth power of the distance of samples within a phase.
+    sixth power of the distance of samples where slip is well away from zero, and more slowly near it.
 
     Parameters
     ----------
     trajectory : Trajectory
         Of a pin, at times close enough to resolve the motion.
 
+    Raises
+    ------
+    ValueError
+        If the trajectory has one time only.
+
     """
+    if len(trajectory.times) < 2:
+        raise ValueError("the trajectory has one time only: a power balance takes at least two")
     pin, regularisation = trajectory.system, trajectory.solution.regularisation
     m, C, beta, omega, X0 = pin.mass, pin.stiffness, pin.damping, pin.disc_speed, pin.offset
     times, states, integrals = [], [], []
     total = np.zeros(4)
-    for t, state in _spans(trajectory):
+    for kind, t, state in _spans(trajectory):
         x, y, vx, vy = state.T
-        slip = np.hypot(vx + omega * y, vy - omega * x)
-        against = np.hypot(slip, regularisation)
-        heating = np.divide(slip**2, against, out=np.zeros_like(slip), where=against > 0.0)
+        wx, wy = vx + omega * y, vy - omega * x
+        if kind == "slip":
+            slip = np.hypot(wx, wy)
+            full = np.maximum(slip, regularisation)
+            share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
+            heating = pin.friction_force * share * slip
+        else:
+            holding_x = -m * omega**2 * x - beta * omega * y + C * (x - X0)
+            holding_y = -m * omega**2 * y + beta * omega * x + C * y
+            heating = -(holding_x * wx + holding_y * wy)
         rates = np.column_stack((heating, vx**2 + vy**2, x * vy - y * vx, y))
         growth = _integral(t, rates)
         times.append(t)
@@ -90,21 +106,21 @@ def power_balance(trajectory: Trajectory) -> PowerBalance:
         integrals.append(total + growth)
         total = total + growth[-1]
     x, y, vx, vy = np.concatenate(states).T
-    slip_distance, squared_speed, areal, deflection = np.concatenate(integrals).T
+    friction_heat, squared_speed, areal, deflection = np.concatenate(integrals).T
     momentum = m * (x * vy - y * vx)
     impulse = momentum - momentum[0] + beta * areal + C * X0 * deflection
     return PowerBalance(
         times=np.concatenate(times),
         drive_work=omega * impulse,
-        friction_heat=pin.friction_force * slip_distance,
+        friction_heat=friction_heat,
         damper_heat=beta * squared_speed,
         stored_energy=0.5 * m * (vx**2 + vy**2) + 0.5 * C * ((x - X0) ** 2 + y**2),
     )
 
 
-def _spans(trajectory: Trajectory) -> list[tuple[FloatArray, FloatArray]]:
-    """Return times and states of each phase, its bounds included."""
-    spans = []
+def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Return kind, times and states of each phase, its bounds included."""
+    spans: list[tuple[str, FloatArray, FloatArray]] = []
     ends = [phase.initial_state for phase in trajectory.phases[1:]] + [trajectory.at_end]
     for phase, end_state in zip(trajectory.phases, ends, strict=True):
         if phase.end <= phase.start:
@@ -112,7 +128,7 @@ def _spans(trajectory: Trajectory) -> list[tuple[FloatArray, FloatArray]]:
         margin = CROWDED * min(float(np.min(np.diff(trajectory.times))), phase.end - phase.start)
         inside = (trajectory.times > phase.start + margin) & (trajectory.times < phase.end - margin)
         t = np.concatenate(([phase.start], trajectory.times[inside], [phase.end]))
-        spans.append((t, np.vstack((phase.initial_state, trajectory.states[inside], end_state))))
+        spans.append((phase.kind, t, np.vstack((phase.initial_state, trajectory.states[inside], end_state))))
     return spans
 
 

@@ -42,7 +42,7 @@ class Solution:
     wall_time : float
         In s.
     regularisation : float
-        Slip speed ε in m/s that smooths the friction law v/√(v²+ε²); 0 for exact Coulomb friction.
+        Slip speed ε in m/s below which friction is not full but μN·|w|/ε; 0 for exact Coulomb friction.
 
     """
 

@@ -30,7 +30,7 @@ CLAIM_SPEEDS = (1.2, 1.5, 3.0)
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m for the orders, far below the whirl's radius of 1.2 m."""
 
-SHOOTING = 1e-12
+SHOOTING = 1e-10
 """Tolerance handed to the engine when an orbit is shot for."""
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
@@ -127,7 +127,7 @@ def _claims_of_orders(
     # The error is a series in odd powers of X0, so the observed order tends to 3 like X0².
     order = orders[1] + (orders[1] - orders[0]) / 3.0
     order_claim = Claim(
-        f"the error of the exact first-order response of the whirl falls like X0³, ω = {speed:g}",
+        f"The error of the exact first-order response of the whirl falls like X0³, ω = {speed:g}",
         equation="(18)",
         engine=engine.name,
         predicted=3.0,
@@ -150,7 +150,7 @@ def _claims_of_orders(
     coarser = relative[1] + (relative[1] - relative[0]) / 3.0
     parts = np.array([extrapolated.real, extrapolated.imag])
     limit_claim = Claim(
-        f"the relative error of (18) tends to its theoretical limit as X0 → 0, ω = {speed:g}",
+        f"The relative error of (18) tends to its theoretical limit as X0 → 0, ω = {speed:g}",
         equation="(18)",
         engine=engine.name,
         predicted=np.array([limit.real, limit.imag]),

@@ -86,7 +86,7 @@ def _claim_slip_trajectory(engine: Engine) -> Claim:
     other = np.abs(simulate_polar_form(FIG5, start, times, tolerance=2e-13) - predicted).ravel()
     worst = float(np.max(error + other))  # a single number may be right by chance
     return Claim(
-        "a sliding pin moves as (10), integrated independently in polar form, says: 100 s",
+        "A sliding pin moves for 100 s as (10) says, integrated independently in polar form",
         equation="(1), (10)",
         engine=engine.name,
         predicted=predicted.ravel(),
@@ -105,7 +105,7 @@ def _claim_equilibrium(engine: Engine, run: functools._lru_cache_wrapper[Traject
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(states[-700:-300, :2], states[-1, :2], rate, 30.0)
     return Claim(
-        "the first start of Fig. 5 ends in the self-centred equilibrium",
+        "The first start of Fig. 5 ends in the self-centred equilibrium",
         equation="(3)",
         engine=engine.name,
         predicted=equilibrium_position(FIG5),
@@ -131,7 +131,7 @@ def _claim_whirl(engine: Engine, run: functools._lru_cache_wrapper[Trajectory]) 
     # What is left of the transient after the run, from the largest deviation that it can have had at its start.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
     return Claim(
-        "the second start of Fig. 5 ends on the whirl, whose mean is that of the periodic orbit",
+        "The second start of Fig. 5 ends on the whirl, whose mean is that of the periodic orbit",
         equation="(17)",
         engine=engine.name,
         predicted=orbit.mean,
@@ -149,7 +149,7 @@ def _claim_first_stick(engine: Engine, run: functools._lru_cache_wrapper[Traject
     predicted, other = refined(lambda tolerance: _first_stick_and_release(name, tolerance), 4e-13)
     measured, error = refined(lambda tolerance: _events(run(name, tolerance))[:2])
     return Claim(
-        f"first stick and release on the way to the {name} are where an event on the slip of (10) and (7) say",
+        f"First stick and release on the way to the {name} are where an event on the slip of (10) and (7) say",
         equation="(7), (10)",
         engine=engine.name,
         predicted=predicted,
@@ -203,7 +203,7 @@ def _claim_all_events(engine: Engine, run: functools._lru_cache_wrapper[Trajecto
     predicted = _reference_events(name)
     measured, error = refined(lambda tolerance: _padded(_events(run(name, tolerance)), len(predicted)))
     return Claim(
-        f"all stick and release times on the way to the {name} are those of exact Coulomb friction",
+        f"All stick and release times on the way to the {name} are those of exact Coulomb friction",
         equation="(6), (7)",
         engine=engine.name,
         predicted=predicted,
@@ -225,10 +225,10 @@ def _padded(events: FloatArray, size: int) -> FloatArray:
 def _claims_critical_velocity(engine: Engine) -> tuple[Claim, Claim]:
     """Find the initial velocity that divides both motions, and see what becomes of its neighbours."""
     predicted = critical_velocity(Engine("reference", simulate), 1e-12)
-    measured, error = refined(functools.partial(critical_velocity, engine), 1e-9)
+    measured, error = refined(functools.partial(critical_velocity, engine), 1e-10)
     parameters = parameters_of(FIG5)
     root = Claim(
-        "the critical initial velocity between the two motions of Fig. 5",
+        "The critical initial velocity between the two motions of Fig. 5",
         equation="",
         engine=engine.name,
         predicted=predicted,
@@ -249,7 +249,7 @@ def _claims_critical_velocity(engine: Engine) -> tuple[Claim, Claim]:
         trajectory = engine.simulate(FIG5, (0.1, 0.0, velocity, 0.0), [0.0, until], tolerance=tolerance)
         ends.append(float(trajectory.radius[-1] > 2.0 * FIG5.offset))
     sides = Claim(
-        "starts 1e-6 m/s below and above the critical velocity end in equilibrium and whirl",
+        "Starts 1e-6 m/s below and above the critical velocity end in equilibrium and whirl",
         equation="",
         engine=engine.name,
         predicted=(0.0, 1.0),

@@ -43,7 +43,7 @@ CYCLE_LOAD = 0.102
 INNERMOST = 0.02
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""
 
-SHOOTING = 1e-12
+SHOOTING = 1e-10
 
 SOURCE = "Fig. 6: Fig. 4 with ω = 1.2; the loads are our choice, the paper prints no range"
 
@@ -123,7 +123,7 @@ def _claim_equilibria(engine: Engine) -> Claim:
     # The slowest deviation decays like exp(−βt/2m); it was 5 mm.
     left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * 590.0)
     return Claim(
-        "a pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
+        "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
         equation="(3), (5)",
         engine=engine.name,
         predicted=predicted,
@@ -149,7 +149,7 @@ def _claim_whirls(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
     # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Claim(
-        "the whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
+        "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
         equation="(17)",
         engine=engine.name,
         predicted=predicted,
@@ -173,7 +173,7 @@ def _claim_last_whirl(engine: Engine) -> Claim:
         SHOOTING,
     )
     return Claim(
-        "the whirl ends at the load below which the branch of periodic orbits has none",
+        "The whirl ends at the load below which the branch of periodic orbits has none",
         equation="",
         engine=engine.name,
         predicted=predicted,
@@ -216,7 +216,7 @@ def _claim_coexistence(engine: Engine) -> Claim:
     ]
     slides = [float(not trajectory.stick_phases) for trajectory in trajectories]
     return Claim(
-        "sticking and the whirl exist for the same parameters",
+        "Sticking and the whirl exist for the same parameters",
         equation="(9), (17)",
         engine=engine.name,
         predicted=(1.0, 0.0, 0.0, 1.0),
@@ -243,7 +243,7 @@ def _claim_cycle(engine: Engine) -> Claim:
         lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
     )
     return Claim(
-        "between C·X0 and the load where it ends, a small stick–slip cycle is one more stable motion",
+        "Between C·X0 and the load where it ends, a small stick–slip cycle is one more stable motion",
         equation="",
         engine=engine.name,
         predicted=predicted,

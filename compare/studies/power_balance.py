@@ -37,6 +37,7 @@ class Motion:
     start: tuple[float, ...]
     until: float
     source: str
+    tolerance: float = 1e-9
 
 
 def _motions() -> dict[str, Motion]:
@@ -57,7 +58,12 @@ def _motions() -> dict[str, Motion]:
             "Fig. 4 with X0 = 0, started 20 % inside the whirl",
         ),
         "a pin that sticks all the time": Motion(
-            sticky, (stuck, 0.0, 0.0, turning * stuck), 20.0, "Fig. 4, at 0.98 of the radius (9)"
+            # It turns over little energy, against which a smoothed law's creep must be small.
+            sticky,
+            (stuck, 0.0, 0.0, turning * stuck),
+            20.0,
+            "Fig. 4, at 0.98 of the radius (9)",
+            tolerance=1e-11,
         ),
         "a pin on a resting disc": Motion(
             replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, start by choice"
@@ -107,9 +113,9 @@ def _claim(engine: Engine, name: str, motion: Motion) -> Claim:
         quadrature[tolerance] = abs(_relative_residual(balance) - _relative_residual(coarser))
         return np.array([_relative_residual(balance), balance.residual[-1] / balance.turned_over])
 
-    (largest, _), errors = refined(residual_at_ends)
+    (largest, _), errors = refined(residual_at_ends, motion.tolerance)
     return Claim(
-        f"what the drive puts in is heat and stored energy: {name}",
+        f"What the drive puts in is heat and stored energy: {name}",
         equation="(1)",
         engine=engine.name,
         predicted=0.0,

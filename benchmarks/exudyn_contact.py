@@ -1,0 +1,141 @@
+"""What friction costs in Exudyn, and what a smaller regularisation costs and brings.
+
+Run as ``python benchmarks/exudyn_contact.py``; prints two tables. Figures of one run compare with each other: the
+least of several repetitions, interleaved so that a busy machine hits all rows alike.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+
+import reference_model
+from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
+from exudyn_models.ring_friction import _force_on_rotor, ring_friction
+from reference_model.systems import PinOnDisc
+
+PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+STEPS = 20_000
+EVALUATIONS_PER_STEP = 5  # four stages of RK44, and the acceleration at the end of the step
+REPETITIONS = 7
+
+AddContact = Callable[[Any, Any, Any], None]
+
+
+def ours(radius: float, points: int) -> AddContact:
+    """Add the connector as it is used."""
+
+    def add(mbs: Any, master: Any, disc: Any) -> None:
+        add_ring_friction(
+            mbs,
+            master,
+            disc,
+            friction_force=PIN.friction_force,
+            regularisation=1e-6,
+            contact_radius=radius,
+            contact_points=points,
+        )
+
+    return add
+
+
+def with_force(force: Callable[..., list[float]]) -> AddContact:
+    """Add the same connector with another force function."""
+
+    def add(mbs: Any, master: Any, disc: Any) -> None:
+        mbs.AddObject(
+            exudyn.itemInterface.ObjectGenericODE2(
+                nodeNumbers=[master, disc], massMatrix=np.zeros((4, 4)), forceUserFunction=force
+            )
+        )
+
+    return add
+
+
+def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
+    """Add the connector with its force evaluated by a given kernel."""
+    contact = (radius, points, PIN.friction_force, 1e-6)
+    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, contact))
+
+
+def constant(*arguments: Any) -> list[float]:
+    """Return no force: what is left is the call itself."""
+    return [0.0, 0.0, 0.0, 0.0]
+
+
+CONTACTS: dict[str, AddContact | None] = {
+    "no friction, native springs only": None,
+    "a user function that returns constants": with_force(constant),
+    "pin, connector as used": ours(0.0, 1),
+    "pin, numba": kernel(ring_friction, 0.0, 1),
+    "six points, connector as used": ours(0.12, 6),
+    "six points, plain Python": kernel(ring_friction.py_func, 0.12, 6),
+    "24 points, connector as used": ours(0.12, 24),
+}
+
+
+def seconds(add_contact: AddContact | None) -> float:
+    """Return the time that ``STEPS`` steps of RK44 take."""
+    without = PinOnDisc(
+        **{name: getattr(PIN, name) for name in PIN.__dataclass_fields__} | {"friction_force": 0}
+    )
+    model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
+    if add_contact is not None:
+        add_contact(model.mbs, exu.NodeIndex(0), exu.NodeIndex(1))
+    model.mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1e9
+    options = settings.timeIntegration
+    options.verboseMode = 0
+    options.numberOfSteps, options.endTime = STEPS, STEPS * 1e-3
+    options.solverType = exu.DynamicSolverType.RK44
+    solver: Any = exu.MainSolverExplicit()
+    began = time.perf_counter()
+    solver.SolveSystem(model.mbs, settings)
+    return time.perf_counter() - began
+
+
+def cost_of_contacts() -> None:
+    """Print the table of costs per step and per evaluation."""
+    best = dict.fromkeys(CONTACTS, math.inf)
+    for _ in range(REPETITIONS):
+        for name, contact in CONTACTS.items():
+            best[name] = min(best[name], seconds(contact))
+    bare = best["no friction, native springs only"]
+    print(f"{'RK44, fixed step':<42}{'us/step':>9}{'ratio':>8}{'ns/evaluation of the contact':>30}")
+    for name, value in best.items():
+        extra = (value - bare) / STEPS / EVALUATIONS_PER_STEP * 1e9
+        print(f"{name:<42}{value / STEPS * 1e6:>9.2f}{value / bare:>8.2f}{extra:>30.0f}")
+
+
+def choice_of_regularisation() -> None:
+    """Print error and cost of Fig. 5's second run over ε, the ground for ε = 100·tolerance."""
+    start, times = [0.1, 0.0, 0.03, 0.0], [0.0, 400.0]
+    exact = reference_model.simulate(PIN, start, times, tolerance=1e-11)
+    events = np.array([(phase.start, phase.end) for phase in exact.stick_phases])
+    print(
+        f"\n{'ε in m/s':>9}{'evaluations':>13}{'s':>7}{'state at 400 s':>16}{'/ε':>7}"
+        f"{'1st stick':>11}{'1st release':>13}{'worst event':>13}{'/ε':>7}"
+    )
+    for epsilon in (1e-5, 1e-6, 1e-7, 1e-8):
+        found = simulate(PIN, start, times, regularisation=epsilon)
+        error = np.abs(found.at_end - exact.at_end).max()
+        late = np.abs(np.array([(phase.start, phase.end) for phase in found.stick_phases]) - events)
+        print(
+            f"{epsilon:>9.0e}{found.solution.evaluations:>13,}{found.solution.wall_time:>7.2f}"
+            f"{error:>16.1e}{error / epsilon:>7.0f}{late[0, 0]:>11.1e}{late[0, 1]:>13.1e}"
+            f"{late.max():>13.1e}{late.max() / epsilon:>7.0f}"
+        )
+
+
+if __name__ == "__main__":
+    exu.config.printToConsole = False
+    cost_of_contacts()
+    choice_of_regularisation()

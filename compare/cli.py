@@ -1,0 +1,419 @@
+"""The command line: ``friction-discs list | report | simulate | errata``.
+
+Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
+Exudyn, matplotlib) happen inside of the commands that need them.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from compare.report.matrix import Matrix
+    from compare.runner import Run
+    from compare.study import Study
+    from compare.workers import Failure
+    from reference_model.systems import PinOnDisc
+
+FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+app = typer.Typer(
+    name="friction-discs",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class BadInputError(Exception):
+    """A sentence that tells the user what is wrong and what would be right."""
+
+
+class EngineFailedError(Exception):
+    """A sentence that tells why an engine has no result."""
+
+
+@contextmanager
+def refused() -> Iterator[None]:
+    """Turn the ``ValueError`` of a check into ``BadInputError``; not around more, lest it hide a mistake."""
+    try:
+        yield
+    except ValueError as error:
+        raise BadInputError(str(error)) from None
+
+
+def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
+    """Run the command line and exit with its status.
+
+    ``studies`` takes the place of the paper's own, for a project that brings its own studies and engines.
+    """
+    sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
+
+
+def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:
+    """Run the command line and return its exit status."""
+    # public names only: typer brings its own copy of click or takes the installed one
+    usage_error: type[Exception] = typer.BadParameter.__mro__[1]
+    try:
+        result = app(list(arguments), standalone_mode=False, obj=studies, prog_name="friction-discs")
+    except (BadInputError, usage_error) as error:
+        message = error.format_message() if hasattr(error, "format_message") else str(error)
+        return _say(" ".join(message.split()), BAD_INPUT)
+    except EngineFailedError as error:
+        return _say(str(error), SOMETHING_DIFFERS)
+    except (KeyboardInterrupt, typer.Abort):
+        return _say("Interrupted.", INTERRUPTED)
+    return result if isinstance(result, int) else FINE
+
+
+def _say(sentence: str, result: int) -> int:
+    print(sentence, file=sys.stderr)
+    return result
+
+
+@app.callback(invoke_without_command=True)
+def friction_discs(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    r"""Compare two simulations of friction discs with each other and with every formula of the paper.
+
+    \b
+    Examples:
+      friction-discs list
+      friction-discs report
+      friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
+      friction-discs errata
+    """
+    if version:
+        from compare.store import version_of
+
+        print(f"friction-discs {version_of('friction-discs')}")
+    elif context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+@app.command("list")
+def list_studies(context: typer.Context) -> None:
+    r"""List the studies and the engines.
+
+    \b
+    Example:
+      friction-discs list
+    """
+    from compare.engines import engines
+
+    studies = _studies(context, [])
+    width = max((len(study.name) for study in studies), default=0)
+    print("Studies:")
+    for study in studies:
+        print(f"  {study.name:{width}}  {study.title}")
+    print(f"Engines: {', '.join(engine.name for engine in engines())}")
+
+
+@app.command()
+def report(
+    context: typer.Context,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="STUDY", help="Studies to run; all without any.", show_default=False),
+    ] = None,
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Engine to measure, several times for several; all without any. "
+            "MODULE:FUNCTION takes a simulate() of your own.",
+            show_default=False,
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option(metavar="DIR", help="Folder for the report.")] = Path("report"),
+    jobs: Annotated[
+        str | None, typer.Option(metavar="N", help="Number of processes.", show_default="one for each core")
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Keep what the same version of everything has already measured there."),
+    ] = False,
+) -> int:
+    r"""Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+
+    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, and
+    130 after Ctrl-C; the report then holds what was finished, and --resume does the rest.
+
+    \b
+    Examples:
+      friction-discs report
+      friction-discs report fig03 fig05 --engine exudyn --output fig
+    """
+    from compare.engines import engines
+
+    studies = _studies(context, names or [])
+    with refused():
+        chosen = engines(dict.fromkeys(engine or []))
+        processes = _cores() if jobs is None else _count("jobs", jobs, least=1)
+        _check_folder(output)
+
+    from compare.errata import ERRATA
+    from compare.report.write import write_report
+    from compare.runner import run
+    from compare.workers import interrupts_ignored
+
+    with _progress() as progress:
+        result = run(
+            studies,
+            chosen,
+            folder=output / "data",
+            jobs=processes,
+            resume=resume,
+            errata=ERRATA if context.obj is None and not names else (),  # part of the whole paper only
+            progress=progress,
+        )
+    with interrupts_ignored():  # a second or so, and then nothing is half written
+        matrix = write_report(result, output)
+    _print_summary(result, matrix, output / "index.html")
+    if result.interrupted:
+        missing = ", ".join(f"{study} {column}" for study, column in result.missing) or "figures"
+        return _say(
+            f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
+        )
+    return SOMETHING_DIFFERS if _wrong(result, matrix) else FINE
+
+
+@app.command()
+def simulate(
+    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="What to simulate: pin.")],
+    engine: Annotated[str, typer.Option(metavar="NAME", help="Engine that simulates.")] = "reference",
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="A parameter in SI units, several times for several.",
+            show_default=False,
+        ),
+    ] = None,
+    start: Annotated[
+        tuple[str, str, str, str],
+        typer.Option(metavar="X Y VX VY", help="Position in m and velocity in m/s at time 0."),
+    ] = ("0.1", "0", "0.03", "0"),
+    until: Annotated[str, typer.Option(metavar="T", help="Last time in s.")] = "400",
+    samples: Annotated[str, typer.Option(metavar="N", help="Number of times from 0 to T, >= 2.")] = "4001",
+    tolerance: Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")] = "1e-9",
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
+        ),
+    ] = None,
+) -> None:
+    r"""Simulate a system and write its motion; what is not set is the second case of Fig. 5.
+
+    \b
+    Parameters of the pin, with their values in Fig. 5:
+      mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
+    \b
+    Examples:
+      friction-discs simulate pin --output whirl.json
+      friction-discs simulate pin --engine exudyn --set disc_speed=1.2 --set friction_force=0.05
+          --start 0.1 0 -0.02 0 --until 100 --samples 1001 --output pin.csv
+    """
+    import numpy as np
+
+    from compare.engines import engines, known
+    from compare.export import write_csv, writer
+    from reference_model.systems import checked_state, checked_tolerance, finite_number
+
+    with refused():
+        known("system", system, ["pin"])
+        (chosen,) = engines([engine])
+        pin = _pin(settings or [])
+        state = checked_state(pin, [finite_number("start", value) for value in start])
+        accuracy = checked_tolerance(finite_number("tolerance", tolerance))
+        times = np.linspace(0.0, _positive("until", until, "s"), _count("samples", samples, least=2))
+        write = write_csv if output is None else writer(output)
+        if output is not None:
+            _check_file(output)
+    try:
+        trajectory = chosen.simulate(pin, state, times, tolerance=accuracy)
+    except (RuntimeError, ArithmeticError) as error:
+        raise EngineFailedError(str(error)) from error
+    if output is None:
+        try:
+            write(trajectory, chosen.name, sys.stdout)
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader, "head" for instance, has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return
+    with open(output, "w", encoding="utf-8", newline="\n") as stream:
+        write(trajectory, chosen.name, stream)
+
+
+@app.command()
+def errata() -> None:
+    r"""Print where the paper's formulas are wrong, their corrections, and the numbers that show it.
+
+    \b
+    Example:
+      friction-discs errata
+    """
+    from compare.errata import ERRATA
+    from compare.report.numbers import error_text, value_text
+
+    for erratum in ERRATA:
+        evidence = erratum.evidence()
+        nearest = abs(evidence.corrected_value - evidence.exact)
+        print(f"Equation {erratum.equation}")
+        print(f"  printed    {erratum.printed}")
+        print(f"  correct    {erratum.correct}")
+        print(f"  {erratum.explanation}")
+        print(f"  {evidence.quantity}: exact {value_text(evidence.exact, nearest)}")
+        for name, value in (("printed", evidence.printed_value), ("corrected", evidence.corrected_value)):
+            print(
+                f"    {name:9}  {value_text(value, nearest)}, error {error_text(abs(value - evidence.exact))}"
+            )
+        print()
+
+
+def _studies(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
+    from compare.studies import STUDIES, studies
+
+    with refused():
+        return studies(names, STUDIES if context.obj is None else context.obj)
+
+
+def _pin(settings: Sequence[str]) -> PinOnDisc:
+    """Return Fig. 5's pin with changes "name=value"; raise ``ValueError`` for what is neither."""
+    from compare.engines import known
+    from reference_model.systems import PinOnDisc
+
+    values: dict[str, Any] = {
+        "mass": 1.0,
+        "stiffness": 1.0,
+        "damping": 0.1,
+        "friction_force": 0.09,
+        "disc_speed": 1.5,
+        "offset": 0.1,
+    }
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
+        values[known("parameter", name.strip(), [field.name for field in fields(PinOnDisc)])] = value
+    return PinOnDisc(**values)
+
+
+def _positive(name: str, text: str, unit: str) -> float:
+    """Return the number > 0 that ``text`` says; raise ``ValueError`` otherwise."""
+    from reference_model.systems import finite_number
+
+    value = finite_number(name, text)
+    if value <= 0.0:
+        raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
+    return value
+
+
+def _count(name: str, text: str, *, least: int) -> int:
+    """Return the whole number >= ``least`` that ``text`` says; raise ``ValueError`` otherwise."""
+    try:
+        value = int(text)
+    except ValueError:
+        raise ValueError(f"{name} = {text!r}: it must be a whole number") from None
+    if value < least:
+        raise ValueError(f"{name} = {value}: it must be at least {least}")
+    return value
+
+
+def _check_folder(folder: Path) -> None:
+    """Raise ``ValueError`` if no file can be made in ``folder``, which is made itself."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ValueError(f"can't write into the folder {str(folder)!r}: {error.strerror}") from None
+
+
+def _check_file(path: Path) -> None:
+    """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
+    existed = path.exists()
+    try:
+        with open(path, "ab"):
+            pass
+    except OSError as error:
+        raise ValueError(f"can't write the file {str(path)!r}: {error.strerror}") from None
+    if not existed:
+        with suppress(OSError):
+            path.unlink()
+
+
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[int, int, str], None]]:
+    """Show a progress bar on a terminal, and nothing at all elsewhere."""
+    if not sys.stderr.isatty():
+        yield lambda done, total, name: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("")
+        yield lambda done, total, name: bar.update(task, completed=done, total=total, description=name)
+
+
+def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
+    """Print a line for all that is no agreement, and the totals."""
+    from compare.report.matrix import State
+    from compare.report.page import summary
+
+    for group in matrix.groups:
+        for row in group.rows:
+            for column, cell in row.cells.items():
+                if cell.state is not State.AGREES:
+                    reason = f": {cell.reason}" if cell.reason else ""
+                    print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
+    for what, failure in _failures(result).items():
+        print(f"{what}: {failure.reason}")
+    print(f"{summary(matrix)} ({index})")
+
+
+def _failures(result: Run) -> dict[str, Failure]:
+    """Return what failed besides the measurements, by a name that can be printed."""
+    from compare.workers import Failure
+
+    work: dict[str, object] = {
+        f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()
+    }
+    work |= {
+        f"errata: no evidence for {result.errata[i].equation}": evidence
+        for i, evidence in result.evidence.items()
+    }
+    return {name: value for name, value in work.items() if isinstance(value, Failure)}
+
+
+def _wrong(result: Run, matrix: Matrix) -> bool:
+    from compare.report.matrix import State
+
+    return bool(matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The report: what it looks like (``style``, ``animation``) and how it is written (``write``)."""

@@ -1,0 +1,74 @@
+"""``junit.xml``: one test case for each claim and engine, for servers that show test results."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+from compare.claim import Claim
+from compare.report.matrix import Matrix, Row, State, state_of
+from compare.report.numbers import error_text
+from compare.report.worst import worst
+from compare.runner import Run
+from compare.workers import Failure
+
+
+def junit(run: Run, matrix: Matrix) -> bytes:
+    """Return the document: "differs" is a failure, inconclusive and missing skipped, failed an error."""
+    root = ET.Element("testsuites", name="friction-discs")
+    for group in matrix.groups:
+        suite = ET.SubElement(root, "testsuite", name=group.study.name)
+        for row in group.rows:
+            for column in row.cells:
+                _cases(suite, run, group.study.name, row, column)
+        drawing = run.drawings.get(group.study.name)
+        if isinstance(drawing, Failure):
+            _error(_case(suite, group.study.name, "figures", "drawn"), drawing.reason, drawing)
+        _count(suite)
+    _count(root)
+    ET.indent(root)
+    document: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return document
+
+
+def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> None:
+    cell = row.cells[column]
+    for claim in cell.claims:
+        case = _case(suite, study, column, row.sentence)
+        if state_of(claim) is State.DIFFERS:
+            ET.SubElement(case, "failure", message=_message(claim))
+        elif state_of(claim) is State.INCONCLUSIVE:
+            ET.SubElement(case, "skipped", message=f"inconclusive: {_message(claim)}")
+    if not cell.claims:
+        case = _case(suite, study, column, row.sentence)
+        if cell.state is State.FAILED:
+            _error(case, cell.reason, run.outcomes.get((study, column)))
+        else:
+            ET.SubElement(case, "skipped", message=cell.reason)
+
+
+def _case(suite: ET.Element, study: str, column: str, sentence: str) -> ET.Element:
+    return ET.SubElement(suite, "testcase", classname=f"{study}.{column}", name=sentence)
+
+
+def _error(case: ET.Element, reason: str, failure: object) -> None:
+    error = ET.SubElement(case, "error", message=reason)
+    if isinstance(failure, Failure):
+        error.text = "\n".join(failure.where)
+
+
+def _message(claim: Claim) -> str:
+    """Return the numbers of the element that decides."""
+    element = worst(claim)
+    unit = f" {claim.unit}" if claim.unit else ""
+    return (
+        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
+        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
+        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}"
+    )
+
+
+def _count(element: ET.Element) -> None:
+    cases = list(element.iter("testcase"))
+    element.set("tests", str(len(cases)))
+    for attribute, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
+        element.set(attribute, str(sum(case.find(tag) is not None for case in cases)))

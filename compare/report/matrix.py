@@ -1,0 +1,151 @@
+"""The matrix of claims and engines: what the first screen, the totals and the exit status are made of."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from enum import Enum
+
+from compare.claim import Claim, Verdict
+from compare.runner import THEORY, Run
+from compare.study import Findings, Study
+from compare.workers import Failure
+
+
+class State(Enum):
+    """What a cell says; the first three are verdicts."""
+
+    AGREES = "agrees"
+    DIFFERS = "differs"
+    INCONCLUSIVE = "inconclusive"
+    FAILED = "failed"
+    MISSING = "missing"
+
+    @property
+    def symbol(self) -> str:
+        """A mark that is told apart without colour."""
+        return {"agrees": "✓", "differs": "✗", "inconclusive": "?", "failed": "!", "missing": "…"}[self.value]
+
+
+WORST_FIRST = (State.FAILED, State.DIFFERS, State.INCONCLUSIVE, State.MISSING, State.AGREES)
+"""A cell with several claims says the first that applies to any."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One engine's answer to one claim.
+
+    Parameters
+    ----------
+    state : State
+        The worst of all.
+    claims : tuple of Claim
+        Usually one; several where a study makes the same claim for several parameters.
+    reason : str
+        Why there is no verdict.
+
+    """
+
+    state: State
+    claims: tuple[Claim, ...] = ()
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One claim of a study, with a cell for each column that has something to say about it."""
+
+    sentence: str
+    equation: str
+    cells: dict[str, Cell]
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """All claims of the row, column by column."""
+        return tuple(claim for cell in self.cells.values() for claim in cell.claims)
+
+
+@dataclass(frozen=True)
+class Group:
+    """The rows of one study."""
+
+    study: Study
+    rows: tuple[Row, ...]
+
+    def count(self, column: str) -> Counter[State]:
+        """Return how many cells of the column are in each state."""
+        return Counter(row.cells[column].state for row in self.rows if column in row.cells)
+
+    def first_with(self, column: str, reason: str) -> Row | None:
+        """Return the first row whose cell gives ``reason``: once is enough for the reader."""
+        return next(
+            (row for row in self.rows if column in row.cells and row.cells[column].reason == reason), None
+        )
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """All groups; ``columns`` are "theory", where any study has claims of it, and the engines."""
+
+    columns: tuple[str, ...]
+    groups: tuple[Group, ...]
+
+    def count(self, column: str) -> Counter[State]:
+        """Return how many cells of the column are in each state."""
+        return sum((group.count(column) for group in self.groups), Counter())
+
+    @property
+    def totals(self) -> Counter[State]:
+        """How many cells are in each state."""
+        return sum((self.count(column) for column in self.columns), Counter())
+
+
+def matrix(run: Run) -> Matrix:
+    """Return the matrix of a run, also of an incomplete one."""
+    groups = tuple(_group(run, study) for study in run.studies)
+    used = {column for group in groups for row in group.rows for column in row.cells}
+    return Matrix(tuple(column for column in (THEORY, *run.engines) if column in used), groups)
+
+
+def _group(run: Run, study: Study) -> Group:
+    columns = run.columns(study)
+    claims: dict[tuple[str, str], dict[str, list[Claim]]] = {}  # in the order in which they are first met
+    for column in columns:
+        outcome = run.outcomes.get((study.name, column))
+        if isinstance(outcome, Findings):
+            for claim in outcome.claims:
+                claims.setdefault((claim.sentence, claim.equation), {}).setdefault(column, []).append(claim)
+    gaps = {column: gap for column in columns if (gap := _gap(run, study, column)) is not None}
+    rows = []
+    for (sentence, equation), found in claims.items():
+        theory_only = set(found) == {THEORY}
+        cells = {}
+        for column in columns:
+            if column in found:
+                cells[column] = _cell(found[column])
+            elif column in gaps and column != THEORY and not theory_only:
+                cells[column] = gaps[column]
+        rows.append(Row(sentence, equation, cells))
+    # a gap that no row shows, because nobody made a claim there, still has to be seen
+    unseen = {column: gap for column, gap in gaps.items() if not any(column in row.cells for row in rows)}
+    if unseen:
+        rows.append(Row("(claims not known)", "", unseen))
+    return Group(study, tuple(rows))
+
+
+def _gap(run: Run, study: Study, column: str) -> Cell | None:
+    outcome = run.outcomes.get((study.name, column))
+    if isinstance(outcome, Failure):
+        return Cell(State.FAILED, reason=outcome.reason)
+    return Cell(State.MISSING, reason="not finished before the interruption") if outcome is None else None
+
+
+def _cell(claims: list[Claim]) -> Cell:
+    states = {state_of(claim) for claim in claims}
+    return Cell(next(state for state in WORST_FIRST if state in states), tuple(claims))
+
+
+def state_of(claim: Claim) -> State:
+    """Return the state that a claim's verdict is."""
+    verdict: Verdict = claim.verdict
+    return State(verdict.value)

@@ -1,0 +1,219 @@
+"""``index.html``: one file with everything in it."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from compare.claim import Claim
+from compare.report.matrix import WORST_FIRST, Matrix, Row, State, state_of
+from compare.report.numbers import error_text, trimmed, value_text
+from compare.report.worst import Worst, worst
+from compare.runner import THEORY, Drawing, Run
+from compare.study import Study
+from compare.workers import Failure
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One line of a study's table: a claim of one engine, or why there is none."""
+
+    engine: str
+    state: State
+    claim: Claim | None = None
+    element: Worst | None = None
+    particular: str = ""
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure or an animation as a data URI."""
+
+    name: str
+    uri: str
+    caption: str
+    moves: bool = False
+
+
+@dataclass(frozen=True)
+class Exceptional:
+    """A line under the totals, with the place in the page where it is explained."""
+
+    state: State
+    text: str
+    target: str
+
+
+def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
+    """Return the HTML of the report."""
+    environment = Environment(
+        loader=PackageLoader("compare.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(number=_number, value=_value, paragraphs=_paragraphs)
+    return environment.get_template("index.html.j2").render(
+        run=run,
+        matrix=matrix,
+        stamp=stamp,
+        State=State,
+        summary=summary(matrix),
+        exceptions=_exceptions(matrix),
+        measurements=_measurements,
+        common=_common,
+        pictures=lambda study: _pictures(run, study),
+        drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
+        commands=lambda study: _commands(run, study),
+        failed=lambda value: isinstance(value, Failure),
+    )
+
+
+def summary(matrix: Matrix) -> str:
+    """Return the totals in words: "41 agree, 1 differs, 0 inconclusive", and what failed or is missing."""
+    totals = matrix.totals
+    words = [
+        f"{totals[State.AGREES]} agree" + "s" * (totals[State.AGREES] == 1),
+        f"{totals[State.DIFFERS]} differ" + "s" * (totals[State.DIFFERS] == 1),
+        f"{totals[State.INCONCLUSIVE]} inconclusive",
+    ]
+    words += [f"{totals[state]} {state.value}" for state in (State.FAILED, State.MISSING) if totals[state]]
+    return ", ".join(words)
+
+
+def _exceptions(matrix: Matrix) -> list[Exceptional]:
+    """Return what a reader must not overlook: claims that differ or show nothing, engines that failed."""
+    found: dict[tuple[State, str, str], list[str]] = {}
+    for group in matrix.groups:
+        for i, row in enumerate(group.rows, 1):
+            for column, cell in row.cells.items():
+                if cell.state is State.FAILED:  # all claims of the study at once
+                    text, target = f"{group.study.title}: {cell.reason}", group.study.name
+                elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
+                    text, target = row.sentence, f"{group.study.name}-{i}"
+                else:
+                    continue
+                columns = found.setdefault((cell.state, text, target), [])
+                columns += [column] if column not in columns else []
+    lines = [
+        Exceptional(state, f"{', '.join(columns)}: {text}", target)
+        for (state, text, target), columns in found.items()
+    ]
+    return sorted(lines, key=lambda line: WORST_FIRST.index(line.state))
+
+
+def _measurements(row: Row) -> list[Measurement]:
+    shared = _shared_parameters(row.claims)
+    lines = []
+    for engine, cell in row.cells.items():
+        for claim in cell.claims:
+            own = {name: value for name, value in claim.parameters.items() if name not in shared}
+            lines.append(Measurement(engine, state_of(claim), claim, worst(claim), _parameters(own)))
+        if not cell.claims:
+            lines.append(Measurement(engine, cell.state, reason=cell.reason))
+    return lines
+
+
+def _common(row: Row) -> dict[str, Any]:
+    """Return what the claims of a row share, ready to print: parameters, and sources and notes by engine."""
+    return {
+        "parameters": _parameters(_shared_parameters(row.claims)),
+        "sources": _by_engine(row, "source"),
+        "notes": _by_engine(row, "note"),
+    }
+
+
+def _shared_parameters(claims: tuple[Claim, ...]) -> dict[str, Any]:
+    first = claims[0].parameters if claims else {}
+    return {
+        name: value
+        for name, value in first.items()
+        if all(name in claim.parameters and _same(claim.parameters[name], value) for claim in claims)
+    }
+
+
+def _same(a: Any, b: Any) -> bool:
+    return repr(a) == repr(b)  # arrays and NaN too
+
+
+def _by_engine(row: Row, attribute: str) -> list[str]:
+    """Return the distinct texts, each with its engines before it unless all say the same."""
+    texts: dict[str, list[str]] = {}
+    for claim in row.claims:
+        text = getattr(claim, attribute)
+        if text and claim.engine not in texts.setdefault(text, []):
+            texts[text].append(claim.engine)
+    if len(texts) <= 1:
+        return list(texts)
+    return [f"{', '.join(engines)}: {text}" for text, engines in texts.items()]
+
+
+def _parameters(parameters: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name} = {_parameter(value)}" for name, value in parameters.items())
+
+
+def _parameter(value: Any) -> str:
+    return trimmed(float(value)) if isinstance(value, (int, float)) else str(value)
+
+
+def _pictures(run: Run, study: Study) -> list[Picture]:
+    drawing = run.drawings.get(study.name)
+    if not isinstance(drawing, Drawing):
+        return []
+    figures = [
+        Picture(name, _data_uri("image/svg+xml", svg), study.figures.get(name, ""))
+        for name, (svg, _) in drawing.figures.items()
+    ]
+    animations = [
+        Picture(name, _data_uri("image/gif", content), study.figures.get(name, ""), moves=True)
+        for name, content in drawing.animations.items()
+    ]
+    # in the order of the captions where there is one
+    order = list(study.figures)
+    return sorted(
+        [replace(picture) for picture in figures + animations],
+        key=lambda picture: order.index(picture.name) if picture.name in order else len(order),
+    )
+
+
+def _data_uri(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+
+
+def _reason(value: object) -> str:
+    return value.reason if isinstance(value, Failure) else ""
+
+
+def _commands(run: Run, study: Study) -> list[str]:
+    engines = [column for column in run.columns(study) if column != THEORY]
+    return [command(study.name, engine) for engine in engines] or [command(study.name, THEORY)]
+
+
+def command(study: str, engine: str) -> str:
+    """Return the command line that measures a study again with one engine."""
+    return f"friction-discs report {study}" + ("" if engine == THEORY else f" --engine {engine}")
+
+
+def _number(value: float) -> Markup:
+    """Return an error with two digits; the exact number goes along."""
+    return _data(value, error_text(value))
+
+
+def _value(value: float, uncertainty: float) -> Markup:
+    """Return a result with the digits that mean something; the exact number goes along."""
+    return _data(value, value_text(value, uncertainty))
+
+
+def _data(value: float, text: str) -> Markup:
+    return Markup('<data value="{}">{}</data>').format(repr(value), text)
+
+
+def _paragraphs(text: str) -> list[str]:
+    return [paragraph.strip() for paragraph in text.split("\n\n") if paragraph.strip()]

@@ -1,0 +1,69 @@
+"""``results.json``: every number of the report for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from compare.errata import Evidence
+from compare.report.matrix import Matrix, State
+from compare.runner import Drawing, Run
+from compare.store import claim_as_json, number_as_json
+from compare.study import Findings
+from compare.workers import Failure
+
+
+def results(run: Run, matrix: Matrix, stamp: dict[str, str]) -> dict[str, Any]:
+    """Return the content of ``results.json``; numbers that JSON doesn't know are "nan", "inf", "-inf"."""
+    return {
+        "stamp": stamp,
+        "engines": list(run.engines),
+        "interrupted": run.interrupted,
+        "totals": {state.value: matrix.totals[state] for state in State},
+        "studies": [_study(run, matrix, i) for i in range(len(run.studies))],
+        "errata": [
+            {
+                "equation": erratum.equation,
+                "printed": erratum.printed,
+                "correct": erratum.correct,
+                "explanation": erratum.explanation,
+                "evidence": _evidence(run.evidence.get(i)),
+            }
+            for i, erratum in enumerate(run.errata)
+        ],
+    }
+
+
+def _study(run: Run, matrix: Matrix, i: int) -> dict[str, Any]:
+    study, group = run.studies[i], matrix.groups[i]
+    drawing = run.drawings.get(study.name)
+    return {
+        "name": study.name,
+        "title": study.title,
+        "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
+        "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
+        "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",
+        "claims": [claim_as_json(claim) for row in group.rows for claim in row.claims],
+    }
+
+
+def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
+    outcome = run.outcomes.get((study, column))
+    state = "finished" if isinstance(outcome, Findings) else "missing" if outcome is None else "failed"
+    return {
+        "state": state,
+        "reason": outcome.reason if isinstance(outcome, Failure) else "",
+        "seconds": run.seconds.get((study, column)),
+    }
+
+
+def _evidence(evidence: Evidence | Failure | None) -> dict[str, Any] | None:
+    if evidence is None:
+        return None
+    if isinstance(evidence, Failure):
+        return {"failed": evidence.reason}
+    return {
+        "quantity": evidence.quantity,
+        "exact": number_as_json(evidence.exact),
+        "printed_value": number_as_json(evidence.printed_value),
+        "corrected_value": number_as_json(evidence.corrected_value),
+    }

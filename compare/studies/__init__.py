@@ -1,0 +1,31 @@
+"""The studies in the order of the report; each is a module of this package that exports ``STUDY``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from compare.engines import known
+from compare.studies.fig03_self_centring import STUDY as FIG03
+from compare.studies.fig04_whirl_shift import STUDY as FIG04
+from compare.studies.fig05_coexistence import STUDY as FIG05
+from compare.studies.fig06_branches import STUDY as FIG06
+from compare.studies.power_balance import STUDY as POWER_BALANCE
+from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
+from compare.studies.whirl_stability import STUDY as WHIRL_STABILITY
+from compare.study import Study
+
+STUDIES: tuple[Study, ...] = (
+    FIG03,
+    FIG04,
+    FIG05,
+    FIG06,
+    STICKING_DOMAIN,
+    WHIRL_STABILITY,
+    POWER_BALANCE,
+)
+
+
+def studies(names: Iterable[str] = (), among: tuple[Study, ...] = STUDIES) -> tuple[Study, ...]:
+    """Return the studies of the given names, or all, in report order; raise ``ValueError`` for others."""
+    wanted = {known("study", name, [study.name for study in among]) for name in names}
+    return tuple(study for study in among if study.name in wanted or not wanted)

@@ -1,0 +1,155 @@
+"""What several studies share: parameters of claims, remaining transients, eigenvalues from simulations."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from compare.accuracy import COARSENING
+from compare.engines import Engine
+from reference_model.systems import FloatArray, PinOnDisc
+
+ComplexArray = NDArray[np.complex128]
+
+DIFFERENCE = 4e-3
+"""Step of the differences that give the linearised flow, as a fraction of the slip."""
+
+FLOW_TOLERANCE = 1e-11
+"""Of the simulations that are subtracted from each other."""
+
+
+def parameters_of(pin: PinOnDisc, **changes: float) -> dict[str, float]:
+    """Return the parameters of ``pin`` for a claim; ``changes`` adds more, or replaces some."""
+    return asdict(pin) | changes
+
+
+def at_each(name: str, values: ArrayLike) -> str:
+    """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
+    return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
+
+
+def turned(states: ArrayLike, angle: ArrayLike) -> FloatArray:
+    """Return ``states`` (shape (..., 4): x, y, vx, vy) turned about the axis by ``angle`` in rad."""
+    x, y, vx, vy = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
+    turn = np.exp(1j * np.asarray(angle, dtype=float))
+    z, v = (x + 1j * y) * turn, (vx + 1j * vy) * turn
+    return np.stack((z.real, z.imag, v.real, v.imag), axis=-1)
+
+
+def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
+    """Return how far ``end`` can still be from the steady state that it decays to.
+
+    A deviation a·exp(−rt) changes by a·(exp(r·delay) − 1) in the last ``delay`` seconds, a being its size at
+    the end. So the change that is seen gives what is left.
+
+    Parameters
+    ----------
+    earlier : array of shape (n, ...)
+        The quantity over a period of its oscillation that ends ``delay`` seconds before the end: the largest
+        change from there counts.
+    end : array of shape (...)
+        The quantity at the end.
+    rate : float
+        Decay rate r in 1/s of the slowest mode.
+    delay : float
+        In s.
+
+    """
+    change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
+    return np.asarray(change / np.expm1(rate * delay))
+
+
+def measured_eigenvalues(
+    engine: Engine, pin: PinOnDisc, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
+) -> tuple[ComplexArray, float]:
+    """Return the eigenvalues in 1/s with which small deviations from a steady motion grow, and their error.
+
+    Central differences of the engine's flow over ``duration`` seconds, each column two simulations, give the
+    linearised flow; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The
+    error is the change with 2h and 4h in their place, plus the change at a larger tolerance, plus the tolerance
+    itself as an error of the states; the largest of the four eigenvalues counts for all, since one alone may be
+    right by chance.
+
+    Parameters
+    ----------
+    engine : Engine
+        The engine.
+    pin : PinOnDisc
+        The parameters.
+    state : array of shape (4,)
+        x, y, vx, vy on the steady motion, which slides.
+    duration : float
+        In s, short enough for |Im λ|·duration < π.
+    frame_speed : float
+        Of the axes in which the motion is steady, in rad/s.
+
+    """
+    state = np.asarray(state, dtype=float)
+    x, y, vx, vy = state
+    slip = np.hypot(vx + pin.disc_speed * y, vy - pin.disc_speed * x)
+    # Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
+    size = np.array([slip / abs(pin.disc_speed)] * 2 + [slip] * 2)
+
+    def differences(tolerance: float, step: float) -> FloatArray:
+        columns = []
+        for i in range(4):
+            shift = np.zeros(4)
+            shift[i] = step * size[i]
+            ends = [
+                engine.simulate(pin, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
+                for sign in (1.0, -1.0)
+            ]
+            columns.append(turned(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i]))
+        return np.column_stack(columns)
+
+    def eigenvalues(fine: FloatArray, wide: FloatArray) -> ComplexArray:
+        multipliers = np.linalg.eigvals(fine + (fine - wide) / 3.0).astype(complex)
+        return np.asarray(np.log(multipliers) / duration)
+
+    steps = DIFFERENCE * np.array([1.0, 2.0, 4.0])
+    near, far, farther = (differences(FLOW_TOLERANCE, step) for step in steps)
+    rough = [differences(COARSENING * FLOW_TOLERANCE, step) for step in steps[:2]]
+    measured = eigenvalues(near, far)
+    changes = [
+        np.abs(matched(other, measured) - measured)
+        for other in (eigenvalues(far, farther), eigenvalues(*rough))
+    ]
+    # A small deviation from a state of rest may be within the tolerance all the time, so that it changes nothing.
+    smallest = float(np.min(np.abs(np.exp(measured * duration))))
+    unseen = (
+        FLOW_TOLERANCE * float(np.max(np.abs(state))) / (float(np.min(steps[0] * size)) * smallest * duration)
+    )
+    return measured, float(np.max(changes[0]) + np.max(changes[1]) + unseen)
+
+
+def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:
+    """Return complex ``values`` in the order in which they lie nearest to ``to``, both of shape (n,)."""
+    from scipy.optimize import linear_sum_assignment
+
+    values, to = np.asarray(values, dtype=complex), np.asarray(to, dtype=complex)
+    distance = np.abs(to[:, np.newaxis] - values)
+    _, order = linear_sum_assignment(np.where(np.isfinite(distance), distance, 1e300))
+    return np.asarray(values[order])
+
+
+def real_and_imaginary(values: Any) -> FloatArray:
+    """Return complex ``values`` (shape (...)) as real numbers, shape (..., 2), for a claim or for data."""
+    values = np.asarray(values, dtype=complex)
+    return np.stack((values.real, values.imag), axis=-1)
+
+
+def eigenvalues_with_rounding(matrices: ArrayLike) -> tuple[ComplexArray, FloatArray]:
+    """Return the eigenvalues of ``matrices`` (shape (..., n, n)) and the rounding error of each.
+
+    The error is that of a backward stable algorithm, n·ε·‖A‖, times the condition of the eigenvalue, which is
+    the product of the lengths of its right and left eigenvectors.
+    """
+    matrices = np.asarray(matrices, dtype=float)
+    values, right = np.linalg.eig(matrices)
+    left = np.linalg.inv(right)
+    condition = np.linalg.norm(right, axis=-2) * np.linalg.norm(left, axis=-1)
+    size = np.linalg.norm(matrices, axis=(-2, -1))[..., np.newaxis]
+    return values.astype(complex), np.asarray(matrices.shape[-1] * np.finfo(float).eps * size * condition)

@@ -1,0 +1,68 @@
+"""A study: what the paper says, how an engine is measured against it, and how the result is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from compare.claim import Claim
+from compare.engines import Engine
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Data = dict[str, FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """What one study found for one engine: claims, and the arrays that its figures are drawn from."""
+
+    claims: tuple[Claim, ...] = ()
+    data: Data = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Study:
+    """One figure or group of statements.
+
+    Parameters
+    ----------
+    name : str
+        As on the command line: "fig03".
+    title : str
+        A line.
+    paper : str
+        What the paper says, in a paragraph.
+    measure : callable
+        ``measure(engine) -> Findings``; called once for each engine, in a process of its own.
+    draw : callable
+        ``draw(data) -> {figure name: matplotlib Figure}``, where ``data`` maps engine names (those that
+        finished, and "theory") to the ``Findings.data`` of each; must cope with a missing engine.
+    theory : callable, optional
+        ``theory() -> Findings``: statements in which no simulation takes part, and curves of formulas.
+    figures : dict
+        Caption for each figure and animation name.
+    only : tuple of str
+        Names of the engines that the study is about; empty for all.
+    animations : callable, optional
+        ``animations(data) -> {name: GIF}``, ``data`` as in ``draw``; see ``compare.report.animation``.
+    seconds : float
+        About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
+
+    The callables are functions of a module (no lambdas), because they are sent to other processes.
+
+    """
+
+    name: str
+    title: str
+    paper: str
+    measure: Callable[[Engine], Findings]
+    draw: Callable[[Mapping[str, Data]], dict[str, Figure]]
+    theory: Callable[[], Findings] | None = None
+    figures: Mapping[str, str] = field(default_factory=dict)
+    only: tuple[str, ...] = ()
+    animations: Callable[[Mapping[str, Data]], dict[str, bytes]] | None = None
+    seconds: float = 1.0

@@ -1,0 +1,227 @@
+"""Processes that stay alive for one piece of work after the other, and may crash alone.
+
+``concurrent.futures`` gives up its whole pool when one process dies, as an engine of compiled code may.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import pickle
+import signal
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
+)
+"""The cores are busy with one process each: threads of the linear algebra would only get in their way."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a piece of work has no result: a sentence, and where it went wrong ("pin.py:12 in simulate")."""
+
+    reason: str
+    where: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Done:
+    """A finished piece of work: ``value`` is what the function returned, or a ``Failure``."""
+
+    key: Hashable
+    value: Any
+    seconds: float
+
+
+class Workers:
+    """``jobs`` processes, or this very process for ``jobs=1``; use as a context manager.
+
+    Leaving the context ends the processes at once, whatever they do.
+    """
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._processes: list[_Worker] = []
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for worker in self._processes:
+            worker.end()
+
+    def submit(
+        self, key: Hashable, function: Callable[..., Any], *arguments: Any, first: bool = False
+    ) -> None:
+        """Put ``function(*arguments)`` into the queue, at its end unless ``first``."""
+        work = (key, function, arguments)
+        if first:
+            self._queue.appendleft(work)
+        else:
+            self._queue.append(work)
+
+    def finished(self) -> Iterator[Done]:
+        """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
+        while self._queue or any(worker.key is not None for worker in self._processes):
+            if self._jobs == 1:
+                key, function, arguments = self._queue.popleft()
+                yield Done(key, *_timed(function, arguments))
+            else:
+                yield from self._start()
+                yield from self._collect()
+
+    def _start(self) -> Iterator[Done]:
+        """Give work to all that are idle; what can't be sent to another process has failed."""
+        while self._queue:
+            worker = next((worker for worker in self._processes if worker.key is None), None)
+            if worker is None:
+                if len(self._processes) == self._jobs:
+                    return
+                worker = _Worker()
+                self._processes.append(worker)
+            key, function, arguments = self._queue.popleft()
+            try:
+                message = pickle.dumps((function, arguments))
+            except (pickle.PicklingError, AttributeError, TypeError) as error:
+                reason = (
+                    f"it can't be sent to another process ({error}): use --jobs 1 or functions of a module"
+                )
+                yield Done(key, Failure(reason), 0.0)
+                continue
+            worker.start(key, message)
+
+    def _collect(self) -> Iterator[Done]:
+        busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
+        for connection in wait(list(busy)) if busy else ():
+            worker = busy[connection]  # type: ignore[index]
+            done = worker.result()
+            if worker.dead:
+                self._processes.remove(worker)
+            yield done
+
+
+class _Worker:
+    """One process and the connection to it; ``key`` is that of its present work, None while it is idle."""
+
+    def __init__(self) -> None:
+        context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
+        self.connection, other_end = context.Pipe()
+        self.key: Hashable | None = None
+        self.dead = False
+        self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
+        with interrupts_ignored(), _environment(ONE_THREAD):  # Ctrl-C is this process's to handle
+            self._process.start()
+        other_end.close()
+
+    def start(self, key: Hashable, message: bytes) -> None:
+        self.key = key
+        with suppress(BrokenPipeError):  # its end shows in result()
+            self.connection.send_bytes(message)
+
+    def result(self) -> Done:
+        key, self.key = self.key, None
+        try:
+            value, seconds = pickle.loads(self.connection.recv_bytes())
+        except (EOFError, OSError):
+            self.dead = True
+            self._process.join()
+            code = self._process.exitcode or 0
+            cause = signal.Signals(-code).name if code < 0 else f"exit status {code}"
+            value, seconds = Failure(f"its process came to a sudden end ({cause})"), 0.0
+        return Done(key, value, seconds)
+
+    def end(self) -> None:
+        self._process.terminate()
+        self._process.join()
+        self.connection.close()
+
+
+def _serve(connection: Connection) -> None:
+    """Work until the other end of the connection is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    with suppress(EOFError):
+        while True:
+            message = connection.recv_bytes()
+            value, seconds = _timed(_unpickled_call, (message,))
+            try:
+                answer = pickle.dumps((value, seconds))
+            except Exception as error:
+                answer = pickle.dumps((Failure(f"its result can't be sent back: {error}"), seconds))
+            connection.send_bytes(answer)
+
+
+def _end_with_parent() -> None:
+    """End this process in the middle of its work when the one that started it is no more, killed perhaps."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+
+def _unpickled_call(message: bytes) -> Any:
+    function, arguments = pickle.loads(message)
+    return function(*arguments)
+
+
+def _timed(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
+    """Return the result of the call, or its failure, and the seconds that it took."""
+    start = time.perf_counter()
+    try:
+        value = function(*arguments)
+    except Exception as error:  # whatever an engine raises: the others go on
+        value = failure(error)
+    return value, time.perf_counter() - start
+
+
+def failure(error: Exception) -> Failure:
+    """Return what an exception says as a sentence, and the lines of code on its way, innermost last."""
+    lines = str(error).strip().splitlines()
+    # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name
+    named = not isinstance(error, (ValueError, RuntimeError)) or not lines
+    reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
+    frames = traceback.extract_tb(error.__traceback__)
+    # file names only: a report says nothing about the machine that it was made on
+    where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)
+    return Failure(reason, tuple(line for line in where if not line.startswith("workers.py:")))
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Ignore Ctrl-C inside; what starts there inherits it. Without effect outside of the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _environment(variables: dict[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

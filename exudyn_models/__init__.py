@@ -1,0 +1,8 @@
+"""The paper's systems as multibody models in Exudyn."""
+
+from exudyn_models.pin_on_disc import build_pin_on_disc
+from exudyn_models.ring_friction import add_ring_friction
+from exudyn_models.simulate import simulate, simulate_fixed_step
+from exudyn_models.solving import EngineError
+
+__all__ = ["EngineError", "add_ring_friction", "build_pin_on_disc", "simulate", "simulate_fixed_step"]

@@ -1,0 +1,200 @@
+"""One call of an Exudyn solver: quiet, without files, and checked for what Exudyn itself lets pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_models.pin_on_disc import PinModel
+from reference_model.systems import FloatArray
+
+EXPLICIT = ("RK44", "RK67", "DOPRI5")
+FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
+
+
+class EngineError(RuntimeError):
+    """Exudyn could not compute the motion; the message says at which time and what to change."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The states at the start and after every step of a solver.
+
+    Parameters
+    ----------
+    times : array of shape (n,)
+        In s.
+    states : array of shape (n, 4)
+        x, y, vx, vy.
+    accelerations : array of shape (n, 2)
+        In m/s².
+    evaluations : int
+        Evaluations of the equations of motion.
+
+    """
+
+    times: FloatArray
+    states: FloatArray
+    accelerations: FloatArray
+    evaluations: int
+
+
+def joined(parts: Sequence[Steps]) -> Steps:
+    """Return consecutive runs as one; each starts with the state with which the one before it ends."""
+    return Steps(
+        np.concatenate([parts[0].times, *(part.times[1:] for part in parts[1:])]),
+        np.concatenate([parts[0].states, *(part.states[1:] for part in parts[1:])]),
+        np.concatenate([parts[0].accelerations, *(part.accelerations[1:] for part in parts[1:])]),
+        sum(part.evaluations for part in parts),
+    )
+
+
+Watch = Callable[[float, float, float, float, float], bool]
+"""Called with t, x, y, vx, vy after every step; returns False to end the run there."""
+
+
+def solve(
+    model: PinModel,
+    start: float,
+    end: float,
+    *,
+    integrator: str,
+    step: float,
+    tolerance: float,
+    watch: Watch | None = None,
+) -> Steps:
+    """Run ``model`` from its initial values at ``start`` (s) to ``end`` or to where ``watch`` ends it.
+
+    Parameters
+    ----------
+    model : PinModel
+        Assembled.
+    start, end : float
+        In s, start <= end.
+    integrator : str
+        One of ``EXPLICIT`` or ``FIXED_STEP``.
+    step : float
+        In s: the step, for DOPRI5 the largest one.
+    tolerance : float
+        Of DOPRI5's local error, absolute and relative; for the implicit solvers the residual force in N.
+    watch : callable, optional
+        Looks at every step.
+
+    Raises
+    ------
+    EngineError
+        If a state is not finite, the Newton iteration fails or the step falls below what time resolves.
+
+    """
+    if start == end:
+        data = model.mbs.systemData
+        position, velocity = (
+            values(configuration=exu.ConfigurationType.Initial)[1:3]
+            for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
+        )
+        state = np.concatenate((position, velocity))[None, :]
+        return Steps(np.array([start]), state, np.zeros((1, 2)), 0)
+    # A step below the resolution of time leaves it where it is.
+    smallest = 8.0 * float(np.spacing(max(abs(start), abs(end))))
+    settings = _settings(start, end, integrator, step, tolerance)
+    settings.timeIntegration.minimumStepSize = smallest
+    explicit = integrator in EXPLICIT
+    solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
+    failure = ""
+    previous = start
+
+    def after_step(mbs: Any, t: float) -> bool:
+        nonlocal failure, previous
+        _, x, y, _ = mbs.systemData.GetODE2Coordinates().tolist()
+        _, vx, vy, _ = mbs.systemData.GetODE2Coordinates_t().tolist()
+        if not math.isfinite(x + y + vx + vy):  # Exudyn would go on and report success
+            failure = "the state is not finite any more"
+        elif start < t < end and t - previous <= smallest:
+            failure = f"the step fell to {t - previous:.1g} s"
+        previous = t
+        return not failure and (watch is None or watch(t, x, y, vx, vy))
+
+    with _quiet():
+        try:
+            if explicit:
+                first_acceleration = _initial_acceleration(model, start)
+            model.mbs.SetPostStepUserFunction(after_step)
+            success = solver.SolveSystem(model.mbs, settings)
+        except exu.ExudynError as error:
+            if "KeyboardInterrupt" in str(error):  # Ctrl-C arrived while Exudyn was in a user function
+                raise KeyboardInterrupt from error
+            raise EngineError(_advice(integrator, solver.it.currentTime, str(error))) from error
+        finally:
+            model.mbs.SetPostStepUserFunction(0)
+    if failure or not success:
+        raise EngineError(_advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
+    positions, velocities, accelerations = (
+        np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors
+    )
+    states = np.hstack((positions[:, 1:3], velocities[:, 1:3]))
+    accelerations = accelerations[:, 1:3]
+    if explicit:
+        accelerations[0] = first_acceleration
+    if explicit:
+        steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
+        evaluations = steps * (solver.GetNumberOfStages() + 1)
+    else:
+        evaluations = solver.it.newtonStepsCount + solver.it.currentStepIndex
+    return Steps(positions[:, 0], states, accelerations, evaluations)
+
+
+def _settings(start: float, end: float, integrator: str, step: float, tolerance: float) -> Any:
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0  # at every step
+    options = settings.timeIntegration
+    options.verboseMode = 0
+    options.startTime, options.endTime = start, end
+    options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
+    options.solverType = getattr(exu.DynamicSolverType, integrator)
+    if integrator in EXPLICIT:
+        options.absoluteTolerance = options.relativeTolerance = tolerance
+        options.initialStepSize = min(1e-6, end - start) if integrator == "DOPRI5" else 0.0
+    else:
+        options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, tolerance
+        options.newton.useModifiedNewton = False
+        trapezoidal = integrator == "TrapezoidalIndex2"
+        options.generalizedAlpha.useNewmark = options.generalizedAlpha.useIndex2Constraints = trapezoidal
+    return settings
+
+
+def _initial_acceleration(model: PinModel, start: float) -> FloatArray:
+    """Return the acceleration at the start in m/s², shape (2,).
+
+    Explicit solvers of Exudyn report zero there; the implicit ones compute it.
+    """
+    span = 1e-9 * max(1.0, abs(start))
+    settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
+    solver: Any = exu.MainSolverImplicitSecondOrder()
+    if not solver.SolveSystem(model.mbs, settings):
+        raise EngineError(_advice("GeneralizedAlpha", start, "no initial acceleration"))
+    return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1:3]
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Exudyn from printing."""
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exu.config.printToConsole = before
+
+
+def _advice(integrator: str, time: float, what: str) -> str:
+    return (
+        f"Exudyn's {integrator} failed at t = {time:.9g} s: {what}; "
+        "take a smaller step, a larger tolerance or a larger regularisation, or the other solver"
+    )

@@ -1,0 +1,209 @@
+"""Small studies and engines with known verdicts, to test the machinery around the real ones.
+
+A module of its own, because functions are sent to other processes by their names. Run as a program it is the
+command line with these studies in place of the paper's.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+
+from compare import cli
+from compare.claim import Claim, ErrorBudget
+from compare.engines import Engine, register
+from compare.report.animation import gif
+from compare.report.style import axis, curve, engines_in, new_figure, points
+from compare.study import Findings, Study
+from reference_model.trajectory import Phase, Solution, Trajectory
+
+LOADS = np.linspace(0.0, 0.1, 21)
+
+
+def straight(system, initial_state, times, *, tolerance=1e-9):
+    """Return a motion at constant velocity: no physics, but a trajectory."""
+    x, y, vx, vy = initial_state
+    elapsed = np.asarray(times) - times[0]
+    states = np.column_stack((x + vx * elapsed, y + vy * elapsed, 0 * elapsed + vx, 0 * elapsed + vy))
+    phases = (Phase("slip", float(times[0]), float(times[-1]), np.array(initial_state, dtype=float)),)
+    return Trajectory(system, np.array(times), states, phases, Solution("exact", tolerance, 1, 1, 0.0))
+
+
+def failing(system, initial_state, times, *, tolerance=1e-9):
+    raise RuntimeError("the step size became too small at t = 3.2 s: try a larger tolerance")
+
+
+GOOD = Engine("good", straight)
+ALSO_GOOD = Engine("also-good", straight)
+FAILING = Engine("failing", failing)
+
+
+def claim(sentence, engine, predicted, measured, numerical, **more):
+    values = {
+        "equation": "(3)",
+        "parameters": {"mass": 1.0, "stiffness": 1.0, "damping": 0.1, "disc_speed": 0.7, "offset": 0.1},
+        "source": "assumption: any set within (5), the paper prints none for Fig. 3",
+        "unit": "m",
+    } | more
+    resolution = values.pop("resolution", 1e-6)
+    model = values.pop("model", 0.0)
+    return Claim(
+        sentence,
+        engine=engine,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(numerical, resolution=resolution, model=model),
+        **values,
+    )
+
+
+def radius():
+    return np.sqrt(0.1**2 - LOADS**2)
+
+
+def measure_verdicts(engine):
+    engine.simulate(None, (0.0, 0.0, 1.0, 0.0), LOADS)  # a failing engine fails here
+    exact = radius()
+    claims = (
+        claim("The pin comes to rest at the point of eq. (3)", engine.name, 0.08, 0.08 + 3e-11, 1e-10),
+        claim(
+            "Equilibria of all loads lie on the semicircle",
+            engine.name,
+            exact,
+            exact + 4e-11 * np.cos(40 * LOADS),
+            np.full_like(exact, 2e-10),
+            equation="(4)",
+            note="error estimated by a run at a quarter of the tolerance",
+        ),
+        claim(
+            "The equilibrium is lost at the load of eq. (5)",
+            engine.name,
+            0.1,
+            0.1004,
+            1e-6,
+            equation="(5)",
+            unit="N",
+            resolution=1e-4,
+        ),
+        claim(
+            "The time of release follows from eq. (7)", engine.name, 2.0, 2.1, 0.5, equation="(7)", unit="s"
+        ),
+    )
+    return Findings(claims, {"load": LOADS, "radius": exact})
+
+
+def theory_of_verdicts():
+    exact = radius()
+    identity = claim(
+        "The determinant of (12) has the coefficients of (13)", "theory", 0.0, 3e-17, 1e-15, unit=""
+    )
+    return Findings((identity,), {"load": LOADS, "radius": exact})
+
+
+def draw_verdicts(data):
+    figure, (left, right) = new_figure(ncols=2)
+    if "theory" in data:
+        left.plot(data["theory"]["load"], data["theory"]["radius"], **curve("theory", "eq. (3)"))
+    for engine in engines_in(data):
+        load, value = data[engine]["load"], data[engine]["radius"]
+        left.plot(load, value, **points(engine))
+        right.plot(load, value * np.cos(60 * load), **curve(engine))
+    left.set(xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\rho_*", "m"))
+    right.set(xlabel=axis("t", "s"), ylabel=axis("x", "m"))
+    left.legend()
+    return {"fake-radius": figure}
+
+
+def animate_verdicts(data):
+    figure, (axes,) = new_figure(width=3.0, height=2.4)
+    (dot,) = axes.plot([0.0], [0.0], "o", color="black")
+    axes.set(xlim=(-1.2, 1.2), ylim=(-1.2, 1.2), xlabel=axis("x", "m"), ylabel=axis("y", "m"))
+
+    def update(i):
+        dot.set_data([np.cos(i * np.pi / 4)], [np.sin(i * np.pi / 4)])
+
+    return {"fake-motion": gif(figure, update, 8)}
+
+
+VERDICTS = Study(
+    name="verdicts",
+    title="Fig. 3: self-centring of the pin at low speed",
+    paper="Under friction the pin rests at a point of a semicircle over the offset (3), (4), as long as "
+    "μN < C·X₀ (5).\n\nWith growing load it moves towards the centre of the disc.",
+    measure=measure_verdicts,
+    draw=draw_verdicts,
+    theory=theory_of_verdicts,
+    figures={
+        "fake-radius": "Radius of the equilibrium over the load: both engines on the formula (3).",
+        "fake-motion": "The motion at 0.8 rad/s.",
+    },
+    animations=animate_verdicts,
+)
+
+
+def measure_agreement(engine):
+    agreed = claim("Half of one is a half", engine.name, 0.5, 0.5, 0.0, equation="")
+    return Findings((agreed,), {"half": np.array([0.5])})
+
+
+def measure_agreement_and_count(engine):
+    """Leave a mark in the file COUNT for each call."""
+    with open(os.environ["COUNT"], "a", encoding="utf-8") as stream:
+        stream.write(f"{engine.name}\n")
+    return measure_agreement(engine)
+
+
+def draw_nothing(data):
+    return {}
+
+
+AGREEMENT = Study("agreement", "A claim that holds", "One half.", measure_agreement, draw_nothing)
+COUNTED = Study(
+    "counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count, draw_nothing
+)
+
+
+def measure_too_roughly(engine):
+    return Findings((claim("Nothing is shown", engine.name, 2.0, 2.1, 0.5),))
+
+
+INCONCLUSIVE = Study("inconclusive", "A rough claim", "Two.", measure_too_roughly, draw_nothing)
+
+
+def measure_death(engine):
+    os._exit(7)
+
+
+DEATH = Study("death", "A process that dies", "Compiled code may do so.", measure_death, draw_nothing)
+
+
+def measure_unending(engine):
+    """Tell that it runs through the file RUNNING, then never finish with the first engine."""
+    if engine.name == GOOD.name:
+        return measure_agreement(engine)
+    Path(os.environ["RUNNING"]).touch()
+    time.sleep(60.0)
+    return Findings()
+
+
+UNENDING = Study("unending", "A study that takes too long", "A minute.", measure_unending, draw_nothing)
+
+
+def draw_wrongly(data):
+    raise KeyError("radius")
+
+
+UNDRAWABLE = Study("undrawable", "A figure that fails", "None.", measure_agreement, draw_wrongly)
+NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", lambda engine: None, draw_nothing)
+
+ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE)
+
+if __name__ == "__main__":
+    import fake_studies  # by its name, for the other processes
+
+    for engine in (fake_studies.GOOD, fake_studies.ALSO_GOOD, fake_studies.FAILING):
+        register(engine)
+    cli.main(studies=fake_studies.ALL)

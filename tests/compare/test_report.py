@@ -1,0 +1,212 @@
+import base64
+import json
+import re
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+
+import pytest
+from processes import ROOT
+
+from compare.errata import Erratum, Evidence
+from compare.report.matrix import WORST_FIRST, State
+from compare.report.write import write_report
+from compare.runner import run
+
+
+class Cells(HTMLParser):
+    """Collects what the cells of all tables say: [class of table, id of body, label, text, numbers]."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.cells, self.links, self.ids = [], [], []
+        self._table = self._body = self._label = ""
+        self._open = False
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.ids += [attributes["id"]] if "id" in attributes else []
+        self.links += [attributes["href"]] if "href" in attributes else []
+        if tag == "table":
+            self._table = attributes.get("class")
+        elif tag == "tbody":
+            self._body = attributes.get("id", "")
+        elif tag in ("td", "th"):
+            self._open = True
+            self.cells.append([self._table, self._body, attributes.get("data-label"), "", []])
+        elif tag == "data" and self._open:
+            self.cells[-1][4].append(float(attributes["value"]))
+
+    def handle_endtag(self, tag):
+        self._open = self._open and tag not in ("td", "th")
+
+    def handle_data(self, text):
+        if self._open:
+            self.cells[-1][3] += text
+
+
+@pytest.fixture(scope="module")
+def page(reported):
+    return (reported[1] / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def cells(page):
+    return Cells(page)
+
+
+@pytest.fixture(scope="module")
+def results(reported):
+    return json.loads((reported[1] / "results.json").read_text(encoding="utf-8"))
+
+
+def test_the_totals_are_those_of_the_claims(results, page):
+    assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1, "failed": 4, "missing": 0}
+    assert "5 agree, 1 differs, 1 inconclusive, 4 failed." in page
+    verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
+    for verdict in ("agrees", "differs", "inconclusive"):
+        assert verdicts.count(verdict) == results["totals"][verdict]
+
+
+def test_every_number_of_results_json_is_in_the_table_of_its_study(results, cells):
+    tables = [cell for cell in cells.cells if cell[0] == "claims"]
+    labels = {
+        "Predicted": "predicted",
+        "Measured": "measured",
+        "Difference": "difference",
+        "Numerical error": "numerical_error",
+        "Model error": "model_error",
+        "Resolution": "resolution",
+    }
+    for label, name in labels.items():
+        shown = [number for cell in tables if cell[2] == label for number in cell[4]]
+        claims = [claim for study in results["studies"] for claim in study["claims"]]
+        assert len(shown) == len(claims)
+        for number, claim in zip(shown, claims, strict=True):
+            wanted = claim[name]
+            assert number == wanted or (isinstance(wanted, list) and number in wanted)
+
+
+def test_an_array_shows_its_worst_element(results, cells):
+    (claim,) = [
+        c for study in results["studies"] for c in study["claims"] if isinstance(c["predicted"], list)
+    ]
+    worst = max(range(21), key=lambda i: claim["difference"][i])
+    shown = [cell for cell in cells.cells if "worst of 21" in cell[3]]
+    assert [cell[4] for cell in shown] == [[claim["predicted"][worst]]]
+    assert f"worst of 21: no. {worst + 1}" in shown[0][3]
+
+
+def test_the_matrix_says_every_verdict_in_a_word_and_a_mark(cells):
+    said = [
+        cell[3].split()
+        for cell in cells.cells
+        if cell[0] == "matrix" and cell[2] in ("theory", "good", "failing")
+    ]
+    for mark, word in (("✓", "agrees"), ("✗", "differs"), ("?", "inconclusive"), ("!", "failed")):
+        assert [mark, word] in [text[:2] for text in said]
+
+
+def test_what_must_not_be_overlooked_stands_below_the_totals(page):
+    (listed,) = re.findall(r'<ul class="exceptions">(.*?)</ul>', page, flags=re.DOTALL)
+    lines = [" ".join(re.sub("<[^>]*>", "", line).split()) for line in listed.split("</li>")][:-1]
+    assert lines == [
+        "! failed failing: Fig. 3: self-centring of the pin at low speed: "
+        "the step size became too small at t = 3.2 s: try a larger tolerance",
+        "✗ differs good: The equilibrium is lost at the load of eq. (5)",
+        "? inconclusive good: The time of release follows from eq. (7)",
+    ]
+
+
+def test_a_failed_engine_gives_its_reason(results, page):
+    unit = results["studies"][0]["units"]["failing"]
+    assert unit["state"] == "failed"
+    assert unit["reason"] == "the step size became too small at t = 3.2 s: try a larger tolerance"
+    assert page.count(unit["reason"]) >= 2
+
+
+def test_links_lead_somewhere_and_the_page_asks_for_nothing(page, cells, reported):
+    for link in cells.links:
+        assert link[1:] in cells.ids if link.startswith("#") else (reported[1] / link).exists()
+    sources = re.findall(r'(?:src|href)="([^"]*)"', page)
+    assert all(source.startswith(("data:", "#", "results.json", "figures/")) for source in sources)
+    assert "@import" not in page
+    assert "url(" not in page
+    assert "<script" not in page
+
+
+def test_the_page_holds_the_very_figures_of_the_folder(page, reported):
+    for name, kind in (("fake-radius.svg", "image/svg+xml"), ("fake-motion.gif", "image/gif")):
+        content = (reported[1] / "figures" / name).read_bytes()
+        assert f"data:{kind};base64,{base64.b64encode(content).decode()}" in page
+    assert (reported[1] / "figures" / "fake-radius.png").read_bytes().startswith(b"\x89PNG")
+    assert "Radius of the equilibrium over the load: both engines on the formula (3)." in page
+
+
+def test_each_study_says_how_to_repeat_it(page):
+    assert "friction-discs report verdicts --engine good" in page
+    assert "friction-discs report agreement --engine failing" in page
+
+
+def test_parameters_and_their_source_are_there(page):
+    assert "mass = 1, stiffness = 1, damping = 0.1, disc_speed = 0.7, offset = 0.1." in page
+    assert "assumption: any set within (5), the paper prints none for Fig. 3" in page
+
+
+def test_the_report_does_not_tell_where_it_was_made(page, reported):
+    for name in ("results.json", "junit.xml"):
+        page += (reported[1] / name).read_text(encoding="utf-8")
+    assert str(ROOT) not in page
+    assert str(reported[1]) not in page
+
+
+def test_junit_has_a_case_for_each_claim_and_engine(reported, results):
+    root = ET.parse(reported[1] / "junit.xml").getroot()
+    cases = list(root.iter("testcase"))
+    totals = results["totals"]
+    assert len(cases) == sum(totals.values()) == int(root.get("tests"))
+    for tag, attribute, state in (
+        ("failure", "failures", "differs"),
+        ("skipped", "skipped", "inconclusive"),
+        ("error", "errors", "failed"),
+    ):
+        found = [case for case in cases if case.find(tag) is not None]
+        assert len(found) == totals[state] == int(root.get(attribute))
+    (failure,) = root.iter("failure")
+    assert failure.get("message").startswith(
+        "predicted 0.1 N, measured 0.1004 N, difference 0.00040, allowed "
+    )
+    assert {case.get("classname") for case in cases} >= {
+        "verdicts.theory",
+        "verdicts.good",
+        "agreement.failing",
+    }
+
+
+def test_every_state_has_its_place_among_the_worst():
+    assert set(WORST_FIRST) == set(State)
+    assert WORST_FIRST[-1] is State.AGREES
+
+
+def evidence():
+    return Evidence("frequency in rad/s", 1.25, 1.5, 1.25 + 1e-12)
+
+
+def no_evidence():
+    raise RuntimeError("no root was found")
+
+
+def test_errata_show_both_forms_and_the_numbers(tmp_path):
+    errata = (
+        Erratum("(13)", "1 + β/m", "β·(1 + <m>)", "Because.", evidence),
+        Erratum("(26)", "cos²α", "sin²α", "Because.", no_evidence),
+    )
+    write_report(run((), (), folder=tmp_path / "data", errata=errata), tmp_path)
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "β·(1 + &lt;m&gt;)" in page
+    numbers = [cell[4] for cell in Cells(page).cells if cell[0] == "evidence" and cell[4]]
+    assert numbers == [[1.25], [1.5], [1.25 + 1e-12], [0.25], [1.25 + 1e-12 - 1.25]]
+    assert "The evidence could not be computed: no root was found" in page
+    written = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["errata"]
+    assert written[0]["evidence"]["printed_value"] == 1.5
+    assert written[1]["evidence"] == {"failed": "no root was found"}

@@ -1,0 +1,204 @@
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+import pytest
+
+from exudyn_models import add_ring_friction, build_pin_on_disc
+from reference_model.systems import PinOnDisc
+
+items: Any = exudyn.itemInterface
+
+
+@pytest.fixture(autouse=True)
+def _quiet():
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    yield
+    exu.config.printToConsole = before
+
+
+def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], velocity: list[float]) -> Any:
+    # Half of the position is the reference, so that a connector that forgets it is found out.
+    half = [value / 2.0 for value in position]
+    node = mbs.AddNode(
+        items.NodeRigidBody2D(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity)
+    )
+    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=mass, inertia=inertia))
+    return node
+
+
+def rotor(mbs: Any, inertia: float, speed: float) -> Any:
+    node = mbs.AddNode(
+        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
+    )
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+    return node
+
+
+def run_explicitly(mbs: Any, end: float) -> None:
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = end, 6000, 0
+    options.solverType = exu.DynamicSolverType.RK67
+    assert exu.MainSolverExplicit().SolveSystem(mbs, settings)
+
+
+def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:
+    kinds = exu.OutputVariableType
+    position = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates))
+    velocity = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates_t))
+    return position + mbs.GetNodeParameter(node, "referenceCoordinates"), velocity
+
+
+def momenta(mbs: Any, bodies: list[tuple[Any, float, float]]) -> np.ndarray:
+    """Momentum in x, y and angular momentum about the origin."""
+    total = np.zeros(3)
+    for node, mass, inertia in bodies:
+        (x, y, _), (vx, vy, spin) = coordinates(mbs, node)
+        total += [mass * vx, mass * vy, mass * (x * vy - y * vx) + inertia * spin]
+    return total
+
+
+@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 3), (0.12, 6), (0.3, 24)])
+def test_two_free_bodies_keep_their_momentum_and_angular_momentum(radius, points):
+    mbs = exu.SystemContainer().AddSystem()
+    master = planar_body(mbs, 2.0, 0.7, [0.3, -0.2, 0.1], [0.1, 0.05, 2.0])
+    disc = planar_body(mbs, 1.0, 0.02, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
+    add_ring_friction(
+        mbs,
+        master,
+        disc,
+        friction_force=0.5,
+        contact_radius=radius,
+        contact_points=points,
+        regularisation=1e-3,
+    )
+    mbs.Assemble()
+    bodies = [(master, 2.0, 0.7), (disc, 1.0, 0.02)]
+    before, (_, velocity_before) = momenta(mbs, bodies), coordinates(mbs, master)
+    run_explicitly(mbs, 3.0)
+    _, velocity_after = coordinates(mbs, master)
+    assert np.linalg.norm(velocity_after - velocity_before) > 0.1  # the contact did act
+    np.testing.assert_allclose(momenta(mbs, bodies), before, rtol=1e-12, atol=1e-13)
+
+
+def test_rotor_takes_up_the_angular_momentum_about_its_axis_that_a_free_disc_loses():
+    mbs = exu.SystemContainer().AddSystem()
+    master = rotor(mbs, 0.7, 2.0)
+    disc = planar_body(mbs, 1.0, 0.02, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
+    add_ring_friction(
+        mbs, master, disc, friction_force=0.5, contact_radius=0.12, contact_points=6, regularisation=1e-3
+    )
+    mbs.Assemble()
+
+    def angular_momentum() -> float:
+        return momenta(mbs, [(disc, 1.0, 0.02)])[2] + 0.7 * coordinates(mbs, master)[1][0]
+
+    before = angular_momentum()
+    run_explicitly(mbs, 3.0)
+    assert abs(coordinates(mbs, master)[1][0] - 2.0) > 0.1
+    assert angular_momentum() == pytest.approx(before, rel=1e-12)
+
+
+@pytest.mark.parametrize("planar_master", [False, True])
+@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6)])
+@pytest.mark.parametrize("regularisation", [1e-4, 10.0])  # Coulomb friction, viscous friction
+def test_jacobian_is_the_derivative_of_the_force(planar_master, radius, points, regularisation):
+    mbs = exu.SystemContainer().AddSystem()
+    state = [0.3, -0.2, 0.1], [0.1, 0.05, 2.0]
+    master = planar_body(mbs, 2.0, 0.7, *state) if planar_master else rotor(mbs, 0.7, 2.0)
+    disc = planar_body(mbs, 1.0, 0.02, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
+    connector = add_ring_friction(
+        mbs,
+        master,
+        disc,
+        friction_force=0.5,
+        contact_radius=radius,
+        contact_points=points,
+        regularisation=regularisation,
+    )
+    functions = mbs.GetObject(connector)
+    force = functions["forceUserFunction"]["function"]
+    jacobian = functions["jacobianUserFunction"]["function"]
+    rng = np.random.default_rng(1)
+    size = 6 if planar_master else 4
+    q, v = rng.normal(size=size), rng.normal(size=size)
+    h = 1e-6
+
+    def difference(dq: np.ndarray, dv: np.ndarray) -> np.ndarray:
+        def at(sign: float) -> np.ndarray:
+            return np.array(force(mbs, 0.0, 0, (q + sign * h * dq).tolist(), (v + sign * h * dv).tolist()))
+
+        return (at(1.0) - at(-1.0)) / (2.0 * h)
+
+    zero, unit = np.zeros(size), np.eye(size)
+    by_position = np.array([difference(e, zero) for e in unit]).T
+    by_velocity = np.array([difference(zero, e) for e in unit]).T
+    arguments = mbs, 0.0, 0, q.tolist(), v.tolist()
+    np.testing.assert_allclose(jacobian(*arguments, 1.0, 0.0), -by_position, atol=2e-9)
+    np.testing.assert_allclose(jacobian(*arguments, 0.0, 1.0), -by_velocity, atol=2e-9)
+    np.testing.assert_allclose(
+        jacobian(*arguments, 3.0, 0.5), -3.0 * by_position - 0.5 * by_velocity, atol=1e-8
+    )
+
+
+@pytest.mark.parametrize("omega", [1.5, 0.7, -1.5])
+def test_exudyns_linearisation_has_the_eigenvalues_of_the_self_centred_equilibrium(omega):
+    # Eq. 3 and 4: ρ² = X0² − (μN/C)², x = ρ²/X0, y = ±(μN/C)ρ/X0.
+    pin = PinOnDisc(mass=2.0, stiffness=1.3, damping=0.1, friction_force=0.09, disc_speed=omega, offset=0.1)
+    arm = pin.friction_force / pin.stiffness
+    rho = np.sqrt(pin.offset**2 - arm**2)
+    x, y = rho**2 / pin.offset, np.sign(omega) * arm * rho / pin.offset
+    # m r̈ = −βṙ − C(r − X0) − μN u/|u| with u = ṙ − ω×r: d(u/|u|) = (1 − e⊗e) du/|u|.
+    turn = omega * np.array([[0.0, -1.0], [1.0, 0.0]])
+    slip = -turn @ [x, y]
+    speed = np.hypot(*slip)
+    direction = slip / speed
+    np.testing.assert_allclose(
+        pin.stiffness * np.array([x - pin.offset, y]) + pin.friction_force * direction, 0.0, atol=1e-15
+    )
+    friction = pin.friction_force * (np.eye(2) - np.outer(direction, direction)) / speed
+    matrix = np.zeros((4, 4))
+    matrix[:2, 2:] = np.eye(2)
+    matrix[2:, :2] = (-pin.stiffness * np.eye(2) + friction @ turn) / pin.mass
+    matrix[2:, 2:] = (-pin.damping * np.eye(2) - friction) / pin.mass
+    expected = np.sort_complex(np.linalg.eigvals(matrix))
+
+    model = build_pin_on_disc(pin, np.array([x, y, 0.0, 0.0]), regularisation=1e-9)
+    values, _ = model.mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
+    values = np.asarray(values)
+    # Besides, the master disc and the pin's own angle are free to turn: four zeros.
+    found = np.sort_complex(values[np.argsort(np.abs(values))[-4:]])
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"friction_force": -1.0}, "friction_force = -1 N"),
+        ({"friction_force": float("nan")}, "friction_force = nan"),
+        ({"contact_radius": -0.1}, "contact_radius = -0.1 m"),
+        ({"contact_points": 0}, "contact_points = 0"),
+        ({"contact_points": 2.5}, "contact_points = 2.5"),
+        ({"regularisation": 0.0}, "regularisation = 0 m/s"),
+    ],
+)
+def test_nonsense_is_refused_with_its_name_and_value(change, message):
+    mbs = exu.SystemContainer().AddSystem()
+    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    arguments = {"friction_force": 1.0, "regularisation": 1e-3} | change
+    with pytest.raises(ValueError, match=message):
+        add_ring_friction(mbs, master, disc, **arguments)
+
+
+def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve():
+    mbs = exu.SystemContainer().AddSystem()
+    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    point = mbs.AddNode(items.NodePoint())
+    with pytest.raises(ValueError, match=r"disc_node .* takes a NodeRigidBody2D$"):
+        add_ring_friction(mbs, master, master, friction_force=1.0, regularisation=1e-3)
+    with pytest.raises(ValueError, match=r"master_node .* takes a NodeRigidBody2D or Node1D"):
+        add_ring_friction(mbs, point, disc, friction_force=1.0, regularisation=1e-3)

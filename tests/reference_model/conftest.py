@@ -1,0 +1,6 @@
+"""The same examples in every run: a test that fails here fails everywhere."""
+
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
+settings.load_profile("repeatable")

@@ -1,0 +1,150 @@
+"""What no pin can be is refused with one sentence: the parameter, its value and what is allowed."""
+
+import math
+from dataclasses import FrozenInstanceError, replace
+
+import numpy as np
+import pytest
+
+from reference_model import PinOnDisc, simulate
+from reference_model.systems import checked_times, checked_tolerance
+
+FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
+
+
+def refusal(function, *args, **kwargs):
+    """Return the message with which ``function`` refuses: one line, one sentence."""
+    with pytest.raises(ValueError, match=r"\w") as caught:
+        function(*args, **kwargs)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert len(message) < 200
+    assert caught.value.__suppress_context__ or caught.value.__context__ is None  # no second error above it
+    return message
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "message"),
+    [
+        ("mass", 0.0, "mass = 0 kg: it must be > 0"),
+        ("mass", -0.0, "mass = -0 kg: it must be > 0"),
+        ("mass", -1.5, "mass = -1.5 kg: it must be > 0"),
+        ("stiffness", -1.0, "stiffness = -1 N/m: it must be >= 0"),
+        ("damping", -0.1, "damping = -0.1 N s/m: it must be >= 0"),
+        ("friction_force", -1e-300, "friction_force = -1e-300 N: it must be >= 0"),
+    ],
+)
+def test_value_outside_of_its_range_is_refused_with_its_unit_and_range(parameter, value, message):
+    assert refusal(replace, FIG_5, **{parameter: value}) == message
+
+
+@pytest.mark.parametrize("parameter", PARAMETERS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "nan", np.float64("inf")])
+def test_value_that_is_not_finite_is_refused(parameter, value):
+    assert refusal(replace, FIG_5, **{parameter: value}) == f"{parameter} = {float(value)}: it must be finite"
+
+
+@pytest.mark.parametrize("parameter", PARAMETERS)
+@pytest.mark.parametrize("value", ["heavy", "", None, [1.0, 2.0], 1j, {}])
+def test_value_that_is_not_a_number_is_refused(parameter, value):
+    assert refusal(replace, FIG_5, **{parameter: value}) == f"{parameter} = {value!r}: it must be a number"
+
+
+def test_integer_beyond_all_floats_is_refused():
+    assert refusal(replace, FIG_5, mass=10**400) == "mass = inf: it must be finite"
+    assert "times holds an integer too large" in refusal(checked_times, [0, 10**400])
+
+
+@pytest.mark.parametrize("parameter", ["stiffness", "damping", "friction_force", "disc_speed", "offset"])
+def test_everything_but_the_mass_may_be_zero(parameter):
+    assert getattr(replace(FIG_5, **{parameter: 0.0}), parameter) == 0.0
+
+
+def test_numbers_of_any_kind_become_floats():
+    pin = PinOnDisc(
+        mass=2,
+        stiffness=np.float32(0.5),
+        damping=np.int64(1),
+        friction_force="0.25",
+        disc_speed=-1,
+        offset=-0.1,
+    )
+    assert all(type(getattr(pin, parameter)) is float for parameter in PARAMETERS)
+    assert (pin.stiffness, pin.friction_force, pin.disc_speed) == (0.5, 0.25, -1.0)
+
+
+def test_parameters_need_their_names_and_do_not_change():
+    with pytest.raises(TypeError):
+        PinOnDisc(1.0, 1.0, 0.1, 0.09, 1.5)
+    with pytest.raises(TypeError, match="stifness"):
+        replace(FIG_5, stifness=1.0)
+    with pytest.raises(FrozenInstanceError):
+        FIG_5.mass = 2.0
+    assert replace(FIG_5) == FIG_5
+    assert len({FIG_5, replace(FIG_5), replace(FIG_5, mass=2.0)}) == 2
+
+
+def test_natural_frequency_is_that_of_the_free_oscillator():
+    assert replace(FIG_5, mass=2.0, stiffness=18.0).natural_frequency == 3.0
+
+
+@pytest.mark.parametrize(
+    ("state", "message"),
+    [
+        ([0.1, 0.0, 0.0], "initial_state has shape (3,): PinOnDisc takes 4 numbers"),
+        ([0.1] * 6, "initial_state has shape (6,): PinOnDisc takes 4 numbers"),
+        ([], "initial_state has shape (0,): PinOnDisc takes 4 numbers"),
+        (0.1, "initial_state has shape (): PinOnDisc takes 4 numbers"),
+        ([[0.1, 0.0, 0.0, 0.0]], "initial_state has shape (1, 4): PinOnDisc takes 4 numbers"),
+        ([0.1, 0.0, math.nan, 0.0], "initial_state[2] = nan: it must be finite"),
+        ([0.1, -math.inf, 0.0, 0.0], "initial_state[1] = -inf: it must be finite"),
+        ([0.1, "a", 0.0, 0.0], "initial_state = [0.1, 'a', 0.0, 0.0]: it must be a list of numbers"),
+        ([[1.0], [1.0, 2.0]], "initial_state = [[1.0], [1.0, 2.0]]: it must be a list of numbers"),
+        (None, "initial_state"),
+    ],
+)
+def test_state_that_is_none_is_refused(state, message):
+    assert refusal(simulate, FIG_5, state, [0.0, 1.0]).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("times", "message"),
+    [
+        ([], "times has shape (0,): it must be a list of at least one time"),
+        (3.0, "times has shape (): it must be a list of at least one time"),
+        ([[0.0, 1.0]], "times has shape (1, 2): it must be a list of at least one time"),
+        ([0.0, 2.0, 1.0], "times[2] = 1 follows 2: times must increase"),
+        ([0.0, 1.0, 1.0], "times[2] = 1 follows 1: times must increase"),
+        ([0.0, math.nan], "times[1] = nan: it must be finite"),
+        ([0.0, math.inf], "times[1] = inf: it must be finite"),
+        (["now"], "times = ['now']: it must be a list of numbers"),
+    ],
+)
+def test_times_that_do_not_increase_are_refused(times, message):
+    assert refusal(checked_times, times) == message
+    assert refusal(simulate, FIG_5, [0.1, 0.0, 0.0, 0.0], times) == message
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "message"),
+    [
+        (0.0, "tolerance = 0: it must lie between 1e-14 and 1e-2"),
+        (-1e-9, "tolerance = -1e-09: it must lie between 1e-14 and 1e-2"),
+        (1e-15, "tolerance = 1e-15: it must lie between 1e-14 and 1e-2"),
+        (0.5, "tolerance = 0.5: it must lie between 1e-14 and 1e-2"),
+        (math.nan, "tolerance = nan: it must be finite"),
+        ("tight", "tolerance = 'tight': it must be a number"),
+        (None, "tolerance = None: it must be a number"),
+    ],
+)
+def test_tolerance_that_cannot_be_reached_is_refused(tolerance, message):
+    assert refusal(checked_tolerance, tolerance) == message
+    assert refusal(simulate, FIG_5, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0], tolerance=tolerance) == message
+
+
+def test_what_is_handed_in_is_not_changed():
+    state, times = np.array([0.1, 0.0, 0.03, 0.0]), np.linspace(0.0, 1.0, 5)
+    simulate(FIG_5, state, times)
+    state[0], times[0] = 0.2, -1.0  # still writable, still theirs
+    assert simulate(FIG_5, state, times).states[0] == pytest.approx(state, abs=0.0)
