@@ -3,6 +3,5 @@
 from exudyn_models.pin_on_disc import build_pin_on_disc
 from exudyn_models.ring_friction import add_ring_friction
 from exudyn_models.simulate import simulate, simulate_fixed_step
-from exudyn_models.solving import EngineError
 
-__all__ = ["EngineError", "add_ring_friction", "build_pin_on_disc", "simulate", "simulate_fixed_step"]
+__all__ = ["add_ring_friction", "build_pin_on_disc", "simulate", "simulate_fixed_step"]

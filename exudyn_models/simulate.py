@@ -83,7 +83,7 @@ def simulate(
     ------
     ValueError
         If an argument is out of its range.
-    EngineError
+    SimulationError
         If Exudyn can not compute the motion.
 
     """

@@ -13,13 +13,10 @@ import numpy as np
 
 from exudyn_models.pin_on_disc import PinModel
 from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
 
 EXPLICIT = ("RK44", "RK67", "DOPRI5")
 FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
-
-
-class EngineError(RuntimeError):
-    """Exudyn could not compute the motion; the message says at which time and what to change."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +85,7 @@ def solve(
 
     Raises
     ------
-    EngineError
+    SimulationError
         If a state is not finite, the Newton iteration fails or the step falls below what time resolves.
 
     """
@@ -129,11 +126,11 @@ def solve(
         except exu.ExudynError as error:
             if "KeyboardInterrupt" in str(error):  # Ctrl-C arrived while Exudyn was in a user function
                 raise KeyboardInterrupt from error
-            raise EngineError(_advice(integrator, solver.it.currentTime, str(error))) from error
+            raise SimulationError(_advice(integrator, solver.it.currentTime, str(error))) from error
         finally:
             model.mbs.SetPostStepUserFunction(0)
     if failure or not success:
-        raise EngineError(_advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
+        raise SimulationError(_advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
     positions, velocities, accelerations = (
         np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors
     )
@@ -178,7 +175,7 @@ def _initial_acceleration(model: PinModel, start: float) -> FloatArray:
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()
     if not solver.SolveSystem(model.mbs, settings):
-        raise EngineError(_advice("GeneralizedAlpha", start, "no initial acceleration"))
+        raise SimulationError(_advice("GeneralizedAlpha", start, "no initial acceleration"))
     return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1:3]
 
 

@@ -34,8 +34,12 @@ def wrong_sign(ux, uy, epsilon):
 
 
 def square(ux, uy, epsilon):
-    """Friction on each axis by itself: its limit is a square instead of the circle."""
-    return -ux / max(abs(ux), epsilon), -uy / max(abs(uy), epsilon)
+    """Friction on each axis by itself: its limit is a square instead of the circle.
+
+    Such a pin sticks along one axis for long, which is stiff: a coarse ε will do for an engine that is wrong.
+    """
+    epsilon = max(epsilon, 1e-3)
+    return -ux / math.hypot(ux, epsilon), -uy / math.hypot(uy, epsilon)
 
 
 def simulate(system, initial_state, times, *, tolerance=1e-9, law=circle, damping_factor=1.0):

@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import reference_model
-from exudyn_models import EngineError, simulate, simulate_fixed_step
+from exudyn_models import simulate, simulate_fixed_step
+from reference_model import SimulationError
 from reference_model.systems import PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -262,7 +263,7 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(monkeypatch):
     crossing = np.argmax(exact[:, 0] < 0.0) * 1e-3
     monkeypatch.setattr(ring_friction, "ring_friction", Broken)
     for solver in ("explicit", "implicit"):
-        with pytest.raises(EngineError, match=r"failed at t = (\d+\.?\d*) s: .*; take a smaller") as caught:
+        with pytest.raises(SimulationError, match=r"failed at t = (\d+\.?\d*) s: .*; take a smaller") as caught:
             simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver)
         time = float(str(caught.value).split("t = ")[1].split(" s")[0])
         assert time == pytest.approx(crossing, abs=0.1)
@@ -270,7 +271,7 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(monkeypatch):
 
 @pytest.mark.parametrize("solver", ["explicit", "implicit"])
 @pytest.mark.parametrize(
-    ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, EngineError)]
+    ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
 )
 def test_what_is_raised_inside_of_a_run_comes_out_of_it(monkeypatch, solver, raised, seen):
     from exudyn_models import ring_friction
@@ -288,13 +289,14 @@ def test_what_is_raised_inside_of_a_run_comes_out_of_it(monkeypatch, solver, rai
 def test_an_explicit_step_too_large_for_sticking_raises_instead_of_returning_infinity():
     # RK44 is unstable for steps above 2.8·mε/μN; a stiff spring makes it blow up.
     stiff = replace(PIN, stiffness=1e6)
-    with pytest.raises(EngineError, match="not finite"):
+    with pytest.raises(SimulationError, match="not finite"):
         simulate_fixed_step(stiff, STICKING_START, [0.0, 1000.0], integrator="RK44", step=0.1)
 
 
 def test_nothing_is_printed_and_no_file_is_written(tmp_path):
     code = (
-        "from exudyn_models import EngineError, simulate, simulate_fixed_step\n"
+        "from exudyn_models import simulate, simulate_fixed_step\n"
+        "from reference_model import SimulationError\n"
         "from reference_model.systems import PinOnDisc\n"
         f"pin = {PIN!r}\n"
         "for solver in ('explicit', 'implicit'):\n"
@@ -302,7 +304,7 @@ def test_nothing_is_printed_and_no_file_is_written(tmp_path):
         "import dataclasses\n"
         "try:\n"
         "    simulate_fixed_step(dataclasses.replace(pin, stiffness=1e6), [0.1, 0, 0, 0], [0, 1e3], step=0.1)\n"
-        "except EngineError:\n"
+        "except SimulationError:\n"
         "    pass\n"
         "else:\n"
         "    raise SystemExit('no error')\n"
