@@ -6,7 +6,10 @@ from collections import Counter
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from compare.claim import Claim, Verdict
+from compare.report.numbers import error_text
 from compare.runner import THEORY, Run
 from compare.study import Findings, Study
 from compare.workers import Failure
@@ -49,6 +52,15 @@ class Cell:
     state: State
     claims: tuple[Claim, ...] = ()
     reason: str = ""
+
+    @property
+    def within(self) -> str:
+        """The largest error that can have hidden in an agreement, with its unit; "" for a yes or no."""
+        if self.state is not State.AGREES:
+            return ""
+        claim = max(self.claims, key=lambda claim: float(np.max(claim.budget.total)))
+        error = float(np.max(claim.budget.total))
+        return f"{error_text(error)} {claim.unit}".rstrip() if error > 0.0 else ""
 
 
 @dataclass(frozen=True)

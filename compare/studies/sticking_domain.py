@@ -245,7 +245,9 @@ def largest_radii(
         return np.array([radius_at(pin_at(speed), tolerance) for speed in searched])
 
     radii, error = refined(radii_at, SEARCH_TOLERANCE)
-    error = error + PRECISION * radii / 2.0
+    error = np.where(
+        np.isfinite(error), error + PRECISION * radii / 2.0, 0.0
+    )  # a radius not found is NaN itself
     predicted = np.array([sticking_radius(pin_at(speed)) for speed in searched])
     how = (
         f"By bisection to {PRECISION:g} of the radius over starts that pass the angle of the greatest force, "
@@ -293,6 +295,8 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
         square, linear, _ = np.polyfit(s, values, 2)
         return math.sqrt(max(-linear / (2.0 * square), 0.0))
 
+    if not np.all(np.isfinite(values)):
+        return math.nan, 0.0
     middle = found(values)
     shifts = [
         abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)
@@ -371,56 +375,50 @@ def top(pin: PinOnDisc, speed: float, width: float) -> float:
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw the radius over the speed of the disc, the turn until release, and the errors of its time."""
-    figure, (domain, turn, error) = new_figure(ncols=3, width=12.6, height=3.7)
+    """Draw the radius over the speed of the disc, the time until release, and how far it is from (7)."""
+    figure, (domain, time, error) = new_figure(ncols=3, width=12.6, height=3.7)
     if "theory" in data:
         theory = data["theory"]
-        domain.semilogy(theory["speed"], theory["radius"], **curve("theory", "eq. (9)"))
+        speed = theory["speed"]
+        domain.semilogy(speed, theory["radius"], **curve("theory", "eq. (9)"))
         for i, share in enumerate(OUTSIDE):
-            turn.plot(
-                theory["speed"],
-                theory["turn"][:, i] / math.pi,
-                **curve("theory", "eq. (7)" if i == 0 else "_"),
-            )
-            turn.annotate(
+            release = theory["turn"][:, i] / speed
+            time.semilogy(speed, release, **curve("theory", "eq. (7)" if i == 0 else "_"))
+            middle = int(np.argmin(np.abs(speed - 1.75)))
+            time.annotate(
                 rf"start at {share:g} $A$",
-                (1.75, theory["turn"][-1, i] / math.pi),
-                (0, 6),
+                (speed[middle], release[middle]),
+                (2, 8) if i == 0 else (-4, -8),
                 textcoords="offset points",
+                ha="left" if i == 0 else "right",
+                va="bottom" if i == 0 else "top",
                 fontsize=9.5,
             )
     for engine in engines_in(data):
         found = data[engine]
+        speed = found["speed"]
         domain.semilogy(found["searched"], found["radius"], **points(engine, f"{engine}: bisection"))
-        predicted = predicted_turns(found["speed"])
+        away = np.maximum(np.abs(found["turn"] - predicted_turns(speed)), 1e-16)
         for i in range(len(OUTSIDE)):
             label = engine if i == 0 else "_"
-            turn.plot(found["speed"], found["turn"][:, i] / math.pi, **points(engine, label))
-            away = np.maximum(np.abs(found["turn"] - predicted)[:, i], 1e-16)
-            error.semilogy(found["speed"], away, **points(engine, label))
-        budget = f"{engine}: error budget"
-        error.semilogy(
-            found["speed"],
-            found["turn_error"][:, 0],
-            **curve(engine, budget, linewidth=1.0, linestyle="--"),
-        )
+            time.semilogy(speed, found["turn"][:, i] / speed, **points(engine, label))
+            error.semilogy(speed, away[:, i], **points(engine, label))
+        budget = curve(engine, f"{engine}: error budget", linewidth=1.0, linestyle="--")
+        error.semilogy(speed, found["turn_error"][:, 0], **budget)
     domain.axvline(RESONANCE, color=GREY, linestyle=":", linewidth=1.0, label=r"$\omega_*$")
     domain.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("A", "m"), title="Largest radius of sticking")
-    turn.set(
-        xlabel=axis(r"\omega", "rad/s"),
-        ylabel=r"$\omega\,t_r\,/\,\pi$",
-        title=r"Turn of the disc until release",
-        ylim=(0.0, 1.1),
-    )
+    domain.legend()
+    time.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("t_r", "s"), title="Time until release")
     error.set(
         xlabel=axis(r"\omega", "rad/s"),
-        ylabel=r"$|t_r - t_r^{(7)}|$ in s",
-        title="Error of the time of release",
+        ylabel=axis(r"|\Delta(\omega\,t_r)|", "rad"),
+        ylim=(2e-17, 1.0),
+        title="Distance of the turn until release from (7)",
     )
-    domain.legend()
-    for panel in (turn, error):
-        if panel.get_legend_handles_labels()[0]:
-            panel.legend(loc="lower left")
+    for panel, place in ((time, (0.62, 0.7)), (error, (0.3, 0.4))):
+        handles, labels = panel.get_legend_handles_labels()
+        if handles:
+            panel.legend(handles, labels, loc=place)
     return {"sticking-domain": figure}
 
 
@@ -438,10 +436,10 @@ STUDY = Study(
     draw=draw,
     figures={
         "sticking-domain": (
-            "Left: the largest radius at which the pin sticks for ever, by (9) and found by trying. Middle: the "
-            "turn of the disc until a pin that starts further out is let go, from where the least force holds "
-            "it, by (7) and simulated. Right: how far the simulated turn is from (7), with the error budget."
+            "Left: the largest radius at which the pin sticks for ever, by (9) and found by trying. Middle: "
+            "when a pin that starts further out, where the least force holds it, is let go, by (7) and "
+            "simulated. Right: how far the turn of the disc until then is from (7), with the error budget."
         ),
     },
-    seconds=2.0,
+    seconds=2.7,
 )

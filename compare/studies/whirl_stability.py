@@ -636,5 +636,5 @@ STUDY = Study(
             "ω = k/3, where no whirl exists: wherever it exists, it is stable."
         ),
     },
-    seconds=3.0,
+    seconds=2.7,
 )

@@ -1,0 +1,18 @@
+"""What the tests of the studies share."""
+
+from compare.engines import engines
+
+
+def verdicts(findings):
+    """Return the verdict of every sentence."""
+    return {claim.sentence: claim.verdict for claim in findings.claims}
+
+
+def sentences(findings, verdict):
+    """Return the sentences with a verdict."""
+    return {sentence for sentence, found in verdicts(findings).items() if found is verdict}
+
+
+def findings_of(study, name, few):
+    """Measure a part of ``study`` with a registered engine."""
+    return study.measure(engines([name])[0], **few)
