@@ -28,13 +28,13 @@ Outcome = tuple[int, FloatArray]
 
 
 def this_reference(start: Sequence[float]) -> Outcome:
-    """Slip-polar coordinates and stretched time near rest, output at 4001 times."""
+    """Use slip-polar coordinates and stretched time near rest; output at 4001 times."""
     trajectory = simulate(FIG5, start, np.linspace(0.0, UNTIL, SAMPLES))
     return trajectory.solution.evaluations, trajectory.at_end
 
 
 def plain_events(start: Sequence[float]) -> Outcome:
-    """Slip in x, y, vx, vy with a terminal event on the slip speed; stick in closed form; no output on the way."""
+    """Integrate x, y, vx, vy with a terminal event on the slip speed; stick in closed form; no output on the way."""
     motion = SlipMotion.of(FIG5)
     rest = 1e-9  # slip at which the pin counts as stuck, and from which it starts again along the pull
     state, t, evaluations = np.array(start), 0.0, 0
@@ -61,7 +61,7 @@ def plain_events(start: Sequence[float]) -> Outcome:
 
 
 def regularised(start: Sequence[float]) -> Outcome:
-    """The law v/√(v²+ε²) with ε = 1e-6 m/s all the way; its end is off by the regularisation."""
+    """Take the law v/√(v²+ε²) with ε = 1e-6 m/s all the way; its end is off by the regularisation."""
     solution = solve_ivp(_eq1(1e-6), (0.0, UNTIL), start, method="DOP853", rtol=1e-9, atol=1e-10)
     return solution.nfev, solution.y[:, -1]
 

@@ -86,7 +86,7 @@ def friction_discs(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
-    r"""Compare two simulations of friction discs with each other and with every formula of the paper.
+    """Compare two simulations of friction discs with each other and with every formula of the paper.
 
     \b
     Examples:
@@ -105,7 +105,7 @@ def friction_discs(
 
 @app.command("list")
 def list_studies(context: typer.Context) -> None:
-    r"""List the studies and the engines.
+    """List the studies and the engines.
 
     \b
     Example:
@@ -146,7 +146,7 @@ def report(
         typer.Option("--resume", help="Keep what the same version of everything has already measured there."),
     ] = False,
 ) -> int:
-    r"""Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+    """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
 
     The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, and
     130 after Ctrl-C; the report then holds what was finished, and --resume does the rest.
@@ -217,7 +217,7 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    r"""Simulate a system and write its motion; what is not set is the second case of Fig. 5.
+    """Simulate a system and write its motion; what is not set is the second case of Fig. 5.
 
     \b
     Parameters of the pin, with their values in Fig. 5:
@@ -261,7 +261,7 @@ def simulate(
 
 @app.command()
 def errata() -> None:
-    r"""Print where the paper's formulas are wrong, their corrections, and the numbers that show it.
+    """Print where the paper's formulas are wrong, their corrections, and the numbers that show it.
 
     \b
     Example:

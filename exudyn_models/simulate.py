@@ -69,7 +69,8 @@ def simulate(
         Increasing, in s. States are interpolated between the solver's own steps, which do not depend on ``times``
         apart from the first and the last.
     tolerance : float
-        The accuracy to aim at. While the pin slips, "explicit" keeps the error near it. What sticking adds is of
+        The accuracy to aim at, in m and m/s, relative for a motion larger than 1. While the pin slips, "explicit"
+        keeps the error near it. What sticking adds is of
         first order in the regularisation.
     regularisation : float, optional
         ε in m/s below which friction is viscous; 100·tolerance if not given. It should stay well above the
@@ -98,8 +99,10 @@ def simulate(
     scale = _time_scale(pin, end - start)
     if solver == "explicit":
         method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
-        step = 0.1 * scale
-        local = max(STEP_TOLERANCE * tolerance, SMALLEST_STEP_TOLERANCE)
+        step = (
+            6.0 * tolerance**0.2 * scale
+        )  # of order 5, so that even where it binds, errors fall with tolerance
+        local = max(STEP_TOLERANCE * tolerance, SMALLEST_STEP_TOLERANCE) * _motion_scale(pin, state)
     else:
         method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"
         step = 100.0 * math.sqrt(tolerance) * scale
@@ -211,6 +214,12 @@ def _time_scale(pin: PinOnDisc, span: float) -> float:
     """Return the time in s in which the motion changes: the shortest of 1/k, 1/|ω|, m/β, or all of ``span``."""
     rate = max(pin.natural_frequency, abs(pin.disc_speed), pin.damping / pin.mass)
     return min(1.0 / rate, span) if rate > 0.0 else span
+
+
+def _motion_scale(pin: PinOnDisc, state: FloatArray) -> float:
+    """Return the number by which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that."""
+    x, y, vx, vy = state.tolist()
+    return max(1.0, math.hypot(x, y), abs(pin.offset), math.hypot(vx, vy))
 
 
 def _force_scale(pin: PinOnDisc, state: FloatArray) -> float:

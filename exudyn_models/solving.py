@@ -79,7 +79,7 @@ def solve(
     step : float
         In s: the step, for DOPRI5 the largest one.
     tolerance : float
-        Of DOPRI5's local error, absolute and relative; for the implicit solvers the residual force in N.
+        Of DOPRI5's local error, absolute; for the implicit solvers the residual force in N.
     watch : callable, optional
         Looks at every step.
 
@@ -156,7 +156,9 @@ def _settings(start: float, end: float, integrator: str, step: float, tolerance:
     options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
     options.solverType = getattr(exu.DynamicSolverType, integrator)
     if integrator in EXPLICIT:
-        options.absoluteTolerance = options.relativeTolerance = tolerance
+        # Exudyn 1.13 weighs the error with absolute + relative·y for y of either sign: with both tolerances alike
+        # the step would collapse wherever a coordinate passes −1.
+        options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.initialStepSize = min(1e-6, end - start) if integrator == "DOPRI5" else 0.0
     else:
         options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, tolerance

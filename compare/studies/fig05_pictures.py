@@ -66,11 +66,13 @@ def animate(data: Mapping[str, Data]) -> dict[str, bytes]:
     """Show both motions on the turning disc, from the first stick phases to the equilibrium and to the whirl."""
     from compare.report.animation import gif
 
+    if not engines_in(data):
+        return {}
     found = data[engines_in(data)[0]]
     figure, panels = new_figure(ncols=2, width=7.2, height=3.9)
     views = [_View(panel, name, found) for panel, name in zip(panels, LOOKS, strict=True)]
     panels[0].set_ylabel(axis("y", "m"))
-    shown = np.flatnonzero(found["whirl: times"] <= 90.0)[::3]
+    shown = np.flatnonzero(found["whirl: times"] <= 80.0)[::4]
 
     def frame(i: int) -> None:
         for view in views:

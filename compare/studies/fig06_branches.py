@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -40,47 +42,66 @@ EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 CYCLE_LOAD = 0.102
 """Between C·X0 and the load at which the stick–slip cycle ends."""
 
-INNERMOST = 0.02
+CYCLE_DEVIATION = 0.01
+CYCLE_TURNS = 5
+"""How far from the cycle pins are started, relative to it, and for how many turns they are followed."""
+
+INNERMOST = 0.03
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""
 
 SHOOTING = 1e-10
 
 SOURCE = "Fig. 6: Fig. 4 with ω = 1.2; the loads are our choice, the paper prints no range"
 
+EQUILIBRIA = "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0"
+WHIRLS = "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load"
+LAST_WHIRL = "The whirl ends at the load below which the branch of periodic orbits has none"
+COEXIST = "Sticking and the whirl exist for the same parameters"
+CYCLE = "Between C·X0 and the load where it ends, a small stick–slip cycle is one more motion"
+CYCLE_STABLE = "A pin started beside that cycle comes nearer to it in each turn by the cycle's multiplier"
 
-def measure(engine: Engine) -> Findings:
-    """Find the motions at several loads, and the load below which there is no whirl."""
-    whirls = {load: _whirl(engine, load, SHOOTING) for load in WHIRL_LOADS}
-    extents = np.array([_extent(orbit) for orbit in whirls.values()])
-    rest = np.array([_rest(engine, load, 1e-9) for load in EQUILIBRIUM_LOADS])
+
+def measure(
+    engine: Engine,
+    whirl_loads: Sequence[float] = WHIRL_LOADS,
+    equilibrium_loads: Sequence[float] = EQUILIBRIUM_LOADS,
+) -> Findings:
+    """Find the motions at several loads (μN in N), and the load below which there is no whirl."""
+    whirls = {load: whirl(engine, load, SHOOTING) for load in whirl_loads}
+    extents = np.array([extent(orbit) for orbit in whirls.values()])
+    rest = np.array([_rest(engine, load, 1e-9) for load in equilibrium_loads])
     claims = (
-        _claim_equilibria(engine),
-        _claim_whirls(engine, whirls),
-        _claim_last_whirl(engine),
-        _claim_coexistence(engine),
-        _claim_cycle(engine),
+        equilibria_claim(engine, equilibrium_loads),
+        whirls_claim(engine, whirls),
+        last_whirl_claim(engine),
+        coexistence_claim(engine),
+        cycle_claim(engine),
+        cycle_stability_claim(engine),
     )
     return Findings(
         claims,
         {
-            "whirl loads": np.array(WHIRL_LOADS),
+            "whirl loads": np.array(whirl_loads),
             "whirl extents": extents,
-            "equilibrium loads": np.array(EQUILIBRIUM_LOADS),
+            "equilibrium loads": np.array(equilibrium_loads),
             "equilibrium radius": np.hypot(rest[:, -1, 0], rest[:, -1, 1]),
         },
     )
 
 
-def theory() -> Findings:
-    """Follow the branch of whirls through its folds with the reference, and evaluate (3) and (9)."""
+def theory(innermost: float = INNERMOST, step: float = 0.14) -> Findings:
+    """Follow the branch of whirls through its folds with the reference, and evaluate (3) and (9).
+
+    The branch is followed to the crossing ``innermost`` in m, in relative steps of ``step``.
+    """
     outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]))
-    branch = list(whirl_branch(outermost, INNERMOST, step=0.12))
+    branch = list(whirl_branch(outermost, innermost, step=step))
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep
     sticking = np.linspace(LIMIT, WHIRL_LOADS[-1], 101)[1:]
     return Findings(
         data={
             "branch load": np.array([orbit.system.friction_force for orbit in branch]),
-            "branch extent": np.array([_extent(orbit) for orbit in branch]),
+            "branch extent": np.array([extent(orbit) for orbit in branch]),
             "branch stable": np.array([float(orbit.stable) for orbit in branch]),
             "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
             "equilibrium load": loads,
@@ -95,12 +116,13 @@ def _at(load: float, formula: Callable[[PinOnDisc], float]) -> float:
     return float(formula(replace(FIG6, friction_force=float(load))))
 
 
-def _whirl(engine: Engine, load: float, tolerance: float, guess: Orbit | None = None) -> Orbit:
+def whirl(engine: Engine, load: float, tolerance: float, guess: Orbit | None = None) -> Orbit:
+    """Return the whirl at ``load`` in N, found by shooting with ``engine``."""
     pin = replace(FIG6, friction_force=load)
     return whirl_orbit(pin, simulate=engine.simulate, tolerance=tolerance, guess=guess, samples=64)
 
 
-def _extent(orbit: Orbit) -> FloatArray:
+def extent(orbit: Orbit) -> FloatArray:
     """Return the least and the greatest distance from the axis in m."""
     radius = orbit.trajectory.radius
     return np.array([np.min(radius), np.max(radius)])
@@ -114,56 +136,58 @@ def _rest(engine: Engine, load: float, tolerance: float) -> FloatArray:
     return engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), times, tolerance=tolerance).states[1:, :2]
 
 
-def _claim_equilibria(engine: Engine) -> Claim:
-    measured, error = refined(
-        lambda tolerance: [_rest(engine, load, tolerance) for load in EQUILIBRIUM_LOADS]
-    )
-    positions = [equilibrium_position(replace(FIG6, friction_force=load)) for load in EQUILIBRIUM_LOADS]
+def equilibria_claim(engine: Engine, loads: Sequence[float]) -> Claim:
+    """Compare where pins come to rest with (3)."""
+    measured, error = refined(lambda tolerance: [_rest(engine, load, tolerance) for load in loads])
+    positions = [equilibrium_position(replace(FIG6, friction_force=load)) for load in loads]
     predicted = np.repeat(np.array(positions)[:, np.newaxis], measured.shape[1], axis=1)
     # The slowest deviation decays like exp(−βt/2m); it was 5 mm.
     left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * 590.0)
     return Claim(
-        "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
+        EQUILIBRIA,
         equation="(3), (5)",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
         budget=ErrorBudget(float(np.max(error)) + left, resolution=1e-6 * FIG6.offset),
-        parameters=parameters_of(FIG6, friction_force=EQUILIBRIUM_LOADS[-1]),
+        parameters=parameters_of(FIG6, friction_force=loads[-1]),
         source=SOURCE,
         unit="m",
-        note=at_each("μN", EQUILIBRIUM_LOADS) + " N; x and y of each, at eleven times from 590 to 600 s.",
+        note=at_each("μN", loads) + " N; x and y of each, at eleven times from 590 to 600 s.",
     )
 
 
-def _claim_whirls(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
+def whirls_claim(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
+    """Compare the whirls that ``engine`` found, by load in N, with those of the reference."""
+
     def period_and_extent(tolerance: float) -> FloatArray:
-        orbits = [_whirl(engine, load, tolerance, guess) for load, guess in whirls.items()]
-        return np.array([[orbit.period, *_extent(orbit)] for orbit in orbits])
+        orbits = [whirl(engine, load, tolerance, guess) for load, guess in whirls.items()]
+        return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
 
     measured, error = refined(period_and_extent, SHOOTING)
     reference = Engine("reference", simulate)
-    others = [_whirl(reference, load, 3e-13, guess) for load, guess in whirls.items()]
-    predicted = np.array([[orbit.period, *_extent(orbit)] for orbit in others])
+    others = [whirl(reference, load, 3e-13, guess) for load, guess in whirls.items()]
+    predicted = np.array([[orbit.period, *extent(orbit)] for orbit in others])
     miss = max(orbit.residual for orbit in (*whirls.values(), *others))
     # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Claim(
-        "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
+        WHIRLS,
         equation="(17)",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
         budget=ErrorBudget(float(np.max(error)) + miss * sharpness, resolution=1e-6),
-        parameters=parameters_of(FIG6, friction_force=WHIRL_LOADS[-1]),
+        parameters=parameters_of(FIG6, friction_force=max(whirls)),
         source=SOURCE,
         unit="s, m",
-        note=f"Period, least and greatest radius for {at_each('μN', WHIRL_LOADS)} N. "
+        note=f"Period, least and greatest radius for {at_each('μN', list(whirls))} N. "
         "Predicted: shooting with the reference at tolerance 3e-13.",
     )
 
 
-def _claim_last_whirl(engine: Engine) -> Claim:
+def last_whirl_claim(engine: Engine) -> Claim:
+    """Compare the smallest load of the branch with the load at which a multiplier is one."""
     predicted = _load_of_unit_multiplier()
     fold = last_whirl(replace(FIG6, friction_force=0.08), simulate=engine.simulate, tolerance=SHOOTING)
     measured, error = refined(
@@ -173,7 +197,7 @@ def _claim_last_whirl(engine: Engine) -> Claim:
         SHOOTING,
     )
     return Claim(
-        "The whirl ends at the load below which the branch of periodic orbits has none",
+        LAST_WHIRL,
         equation="",
         engine=engine.name,
         predicted=predicted,
@@ -192,6 +216,7 @@ UNIT_MULTIPLIER_ERROR = 1e-5
 """Error of a multiplier from central differences with the relative step ``orbits.CENTRAL``, near a fold."""
 
 
+@functools.cache
 def _load_of_unit_multiplier() -> float:
     orbit = whirl_orbit(replace(FIG6, friction_force=0.08))
 
@@ -202,21 +227,26 @@ def _load_of_unit_multiplier() -> float:
         return float(real[1].real) - 1.0
 
     x = float(orbit.state[0])
-    brentq(excess, 0.85 * x, x, xtol=1e-7 * x)
+    brentq(excess, 0.85 * x, x, xtol=1e-5 * x)
     return orbit.system.friction_force
 
 
-def _claim_coexistence(engine: Engine) -> Claim:
+def coexistence_claim(engine: Engine) -> Claim:
+    """See whether one start sticks and the other goes on sliding."""
     stuck = 0.5 * sticking_radius(FIG6)
-    whirl = whirl_orbit(FIG6)
-    starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*whirl.state[:3], 0.9 * whirl.state[3]))
-    trajectories = [engine.simulate(FIG6, start, [0.0, 5.0, 10.0]) for start in starts]
+    orbit = whirl_orbit(FIG6)
+    starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
+    # Without a whirl it takes a pin some 30 s to come down from there and stick.
+    lengths = (10.0, 100.0)
+    trajectories = [
+        engine.simulate(FIG6, start, [0.0, length]) for start, length in zip(starts, lengths, strict=True)
+    ]
     sticks = [
         float(len(trajectory.phases) == 1 and bool(trajectory.stick_phases)) for trajectory in trajectories
     ]
     slides = [float(not trajectory.stick_phases) for trajectory in trajectories]
     return Claim(
-        "Sticking and the whirl exist for the same parameters",
+        COEXIST,
         equation="(9), (17)",
         engine=engine.name,
         predicted=(1.0, 0.0, 0.0, 1.0),
@@ -225,17 +255,19 @@ def _claim_coexistence(engine: Engine) -> Claim:
         parameters=parameters_of(FIG6),
         source=SOURCE,
         note="For a start stuck at half the radius (9), and one 10 % slower than the whirl: whether it sticks "
-        "for 10 s, whether it slides for 10 s (1: yes).",
+        "all the time, whether it slides all the time (1: yes), for 10 s and 100 s.",
     )
 
 
+@functools.cache
 def _cycle() -> Orbit:
     """Return the stable stick–slip cycle at ``CYCLE_LOAD``, reached along the branch of whirls."""
-    *_, orbit = whirl_branch(whirl_orbit(replace(FIG6, friction_force=0.08)), 0.06, step=0.2, samples=2)
+    *_, orbit = whirl_branch(whirl_orbit(replace(FIG6, friction_force=0.08)), 0.06, step=0.25, samples=2)
     return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
 
 
-def _claim_cycle(engine: Engine) -> Claim:
+def cycle_claim(engine: Engine) -> Claim:
+    """Follow the reference's cycle for a turn."""
     orbit = _cycle()
     times = np.linspace(0.0, orbit.period, 9)
     predicted = simulate(orbit.system, orbit.state, times, tolerance=1e-13).states
@@ -243,7 +275,7 @@ def _claim_cycle(engine: Engine) -> Claim:
         lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
     )
     return Claim(
-        "Between C·X0 and the load where it ends, a small stick–slip cycle is one more stable motion",
+        CYCLE,
         equation="",
         engine=engine.name,
         predicted=predicted,
@@ -253,8 +285,46 @@ def _claim_cycle(engine: Engine) -> Claim:
         source=SOURCE,
         unit="m, m/s",
         note="Not in the paper, which shows only equilibrium, sticking and whirl. State at nine times of one "
-        f"period. Multiplier of the cycle: {abs(orbit.multipliers[1]):.4f}.",
+        "period, from the reference's orbit.",
     )
+
+
+def cycle_stability_claim(engine: Engine) -> Claim:
+    """Measure by how much the distance from the cycle falls in a turn."""
+    orbit = _cycle()
+    measured, error = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION))
+    # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
+    wide = _decay_in_a_turn(engine, orbit, 1e-9, 2.0 * CYCLE_DEVIATION)
+    numerical = float(error) + abs(float(measured) - wide) + UNIT_MULTIPLIER_ERROR
+    return Claim(
+        CYCLE_STABLE,
+        equation="",
+        engine=engine.name,
+        predicted=abs(orbit.multipliers[1]),
+        measured=measured,
+        budget=ErrorBudget(numerical if math.isfinite(numerical) else math.inf, resolution=5e-3),
+        parameters=parameters_of(orbit.system),
+        source=SOURCE,
+        note=f"Two pins start with all of the cycle's state larger and smaller by {CYCLE_DEVIATION:g}; the "
+        f"distance of the radii at which they stick, from one stick phase to the next, over {CYCLE_TURNS} turns. "
+        "Predicted: the largest multiplier of the reference's orbit but that of the phase. Error: tolerance, "
+        "and twice the deviation.",
+    )
+
+
+def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: float) -> float:
+    """Return the mean factor for a turn, or no number where a pin does not stick once in each turn."""
+    times = [0.0, (CYCLE_TURNS + 1.0) * orbit.period]
+    ends = []
+    for scale in (1.0 + deviation, 1.0 - deviation):
+        trajectory = engine.simulate(orbit.system, scale * orbit.state, times, tolerance=tolerance)
+        radii = [math.hypot(*phase.initial_state[:2]) for phase in trajectory.stick_phases]
+        if len(radii) != CYCLE_TURNS + 1:
+            return math.nan
+        ends.append((radii[0], radii[-1]))
+    (first, last), (first_below, last_below) = ends
+    ratio = (last - last_below) / (first - first_below)
+    return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:

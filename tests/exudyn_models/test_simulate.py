@@ -263,7 +263,9 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(monkeypatch):
     crossing = np.argmax(exact[:, 0] < 0.0) * 1e-3
     monkeypatch.setattr(ring_friction, "ring_friction", Broken)
     for solver in ("explicit", "implicit"):
-        with pytest.raises(SimulationError, match=r"failed at t = (\d+\.?\d*) s: .*; take a smaller") as caught:
+        with pytest.raises(
+            SimulationError, match=r"failed at t = (\d+\.?\d*) s: .*; take a smaller"
+        ) as caught:
             simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver)
         time = float(str(caught.value).split("t = ")[1].split(" s")[0])
         assert time == pytest.approx(crossing, abs=0.1)
@@ -365,3 +367,14 @@ def test_sticking_with_nearly_all_of_the_friction_needs_few_steps():
     assert trajectory.at_end[0] == pytest.approx(
         1.02 - 0.92 * 30.0 * trajectory.solution.regularisation, abs=1e-7
     )
+
+
+def test_a_coordinate_that_passes_minus_one_does_not_stop_the_solver():
+    """Exudyn's error weight, absolute + relative·y, is zero at y = −1 if both tolerances are the same."""
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
+    for tolerance in (1e-10, 1e-11, 1e-12):
+        start = [1.0, 0.0, 0.0, 1.0]  # inside of the whirl of radius 1.2: x and y pass −1 in every turn
+        trajectory = simulate(pin, start, [0.0, 50.0], tolerance=tolerance)
+        assert trajectory.at_end == pytest.approx(
+            reference_model.simulate(pin, start, [0.0, 50.0], tolerance=1e-13).at_end, abs=1e-9
+        )
