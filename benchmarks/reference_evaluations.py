@@ -91,7 +91,11 @@ def main() -> None:
             seconds = time.perf_counter() - began
             error = float(np.max(np.abs(state - end)))
             table.add_row(
-                way.__name__.replace("_", " "), str(number), f"{evaluations:,}", f"{error:.1e}", f"{seconds:.2f}"
+                way.__name__.replace("_", " "),
+                str(number),
+                f"{evaluations:,}",
+                f"{error:.1e}",
+                f"{seconds:.2f}",
             )
     Console().print(table)
 

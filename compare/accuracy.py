@@ -1,11 +1,13 @@
-"""Numerical error of a measured quantity, estimated from the measurement itself."""
+"""Numerical error of a measured quantity, and observed orders, estimated from the measurement itself."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.stats import t as student
 
 from reference_model.systems import FloatArray
 
@@ -21,9 +23,7 @@ ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
 
 
-def refined(
-    quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9
-) -> tuple[FloatArray, FloatArray]:
+def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> tuple[FloatArray, FloatArray]:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
     The estimate is the change against ``quantity(COARSENING * tolerance)``, and never less than rounding.
@@ -32,3 +32,47 @@ def refined(
     fine = np.asarray(quantity(tolerance), dtype=float)
     scale = np.max(np.abs(fine), initial=0.0)
     return fine, np.abs(fine - coarse) + ROUNDING * scale
+
+
+def observed_exponent(
+    x: FloatArray, errors: FloatArray, *, next_term: float, noise: ArrayLike = 0.0
+) -> tuple[float, float, float]:
+    """Return p of errors ~ x^p·(1 + b·x^next_term) as x → 0, its numerical and its model error.
+
+    Least squares of ln e = a + p·ln x + b·x^next_term. The numerical error is the 95 % interval that the scatter of
+    successive errors gives, and what ``noise``, the error of the errors themselves, can add. The model error is the
+    size of the next term: the change of p when it is left out. All shapes are (n,). Without numbers p is none either.
+    """
+    if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
+        return math.nan, 0.0, 0.0
+    y = np.log(errors)
+    plain = np.column_stack((np.ones_like(x), np.log(x)))
+    full = np.column_stack((plain, (x / x[0]) ** next_term))
+    inverse = np.linalg.pinv(full)
+    residual = y - full @ (inverse @ y)
+    freedom = len(x) - full.shape[1]
+    row = inverse[1]
+    scatter = math.sqrt(float(residual @ residual) / freedom) * float(np.linalg.norm(row))
+    exponent = float(row @ y)
+    relative = np.nan_to_num(np.broadcast_to(noise, x.shape) / errors, nan=np.inf)
+    numerical = float(student.ppf(0.975, freedom)) * scatter + float(np.abs(row) @ relative)
+    return exponent, numerical, abs(exponent - float(np.linalg.pinv(plain)[1] @ y))
+
+
+def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, float]:
+    """Return the order in h of ``errors`` at halved steps (shape (n,), n >= 4), its numerical and its model error.
+
+    Orders observed between neighbours are a series in h, so that twice the last less the one before is better by one
+    power. The model error is that extrapolation's own step, the numerical one its change from one step to the
+    next, and what ``noise`` in the errors can add.
+    """
+    if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
+        return math.nan, 0.0, 0.0
+    orders = np.log2(errors[:-1] / errors[1:])
+    extrapolated = 2.0 * orders[1:] - orders[:-1]
+    rounding = 4.0 * noise / float(errors[-1]) / math.log(2.0)
+    return (
+        float(extrapolated[-1]),
+        float(abs(extrapolated[-1] - extrapolated[-2])) + rounding,
+        float(abs(orders[-1] - orders[-2])),
+    )

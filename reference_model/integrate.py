@@ -38,6 +38,9 @@ Sampler = Callable[[FloatArray], tuple[ComplexArray, ComplexArray]]
 TIGHTEST = 3e-14
 """The smallest relative tolerance that SciPy's integrators take."""
 
+MOST_STEPS = 5_000_000
+"""Some minutes' work; a motion that takes more is hardly meant."""
+
 
 @dataclass(frozen=True)
 class Thresholds:
@@ -114,7 +117,13 @@ def simulate_with(
     times = checked_times(times)
     tolerance = checked_tolerance(tolerance)
     unit = _Units.of(system, state)
-    run = _Run(unit.motion(system), thresholds, tolerance, (times - times[0]) / unit.time)
+    run = _Run(
+        unit.motion(system),
+        thresholds,
+        tolerance,
+        times=(times - times[0]) / unit.time,
+        seconds=lambda t: float(times[0] + t * unit.time),
+    )
     z = complex(state[0], state[1]) / unit.length
     v = complex(state[2], state[3]) / unit.speed
     disc = 1j * run.motion.disc_speed * z
@@ -175,12 +184,13 @@ class _Units:
 
 @dataclass
 class _Run:
-    """A simulation under way, from t = 0 on; z, w and times are scaled."""
+    """A simulation under way, from t = 0 on; z, w and times are scaled, ``seconds`` gives the time in s."""
 
     motion: SlipMotion
     thresholds: Thresholds
     tolerance: float
     times: FloatArray
+    seconds: Callable[[float], float]
     positions: ComplexArray = field(init=False)
     slip: ComplexArray = field(init=False)
     phases: list[tuple[Kind, float, complex, complex]] = field(default_factory=list)  # kind, start, z, w
@@ -356,9 +366,14 @@ class _Run:
     def _step(self, solver: DOP853, since: float) -> None:
         message = solver.step()
         self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise SimulationError(
+                f"more than {MOST_STEPS:,} steps up to t = {self.seconds(since):g} s: the parameters are very "
+                "stiff, or the motion is very long; simulate it in parts, or with a larger tolerance"
+            )
         if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
             raise SimulationError(
-                f"the integrator gave up after t = {since:g} (in units of the motion's time): "
+                f"the integrator gave up after t = {self.seconds(since):g} s: "
                 f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
             )
 
@@ -400,7 +415,7 @@ def _states(z: ComplexArray, v: ComplexArray) -> FloatArray:
 
 
 def _phases(run: _Run, unit: _Units, times: FloatArray) -> tuple[Phase, ...]:
-    starts = [times[0] + t * unit.time for _, t, _, _ in run.phases]
+    starts = [run.seconds(t) for _, t, _, _ in run.phases]
     ends = [*starts[1:], times[-1]]
     omega = 1j * run.motion.disc_speed
     return tuple(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compare.engines import known
+from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.fig03_self_centring import STUDY as FIG03
 from compare.studies.fig04_whirl_shift import STUDY as FIG04
 from compare.studies.fig05_coexistence import STUDY as FIG05
@@ -22,6 +23,7 @@ STUDIES: tuple[Study, ...] = (
     STICKING_DOMAIN,
     WHIRL_STABILITY,
     POWER_BALANCE,
+    ENGINE_CONVERGENCE,
 )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.report.style import BLACK, GREEN, ORANGE, axis, engine_style, engines_in, new_figure, points
+from compare.report.style import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
 from compare.studies.paper import FIG5
 from compare.study import Data
 from reference_model.systems import FloatArray
@@ -23,7 +23,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 """As in the paper."""
 
-STUCK = ORANGE
+STUCK = PURPLE
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
@@ -58,12 +58,13 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     history.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, None))
     history.legend(loc="lower right", bbox_to_anchor=(1.0, 0.13))
     errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of its time in s")
-    errors.legend()
+    if errors.lines:
+        errors.legend()
     return {"fig05-motions": figure}
 
 
-def animate(data: Mapping[str, Data]) -> dict[str, bytes]:
-    """Show both motions on the turning disc, from the first stick phases to the equilibrium and to the whirl."""
+def animate(data: Mapping[str, Data], until: float = 80.0) -> dict[str, bytes]:
+    """Show the first ``until`` s of both motions on the turning disc: stick phases, equilibrium and whirl."""
     from compare.report.animation import gif
 
     if not engines_in(data):
@@ -72,7 +73,7 @@ def animate(data: Mapping[str, Data]) -> dict[str, bytes]:
     figure, panels = new_figure(ncols=2, width=7.2, height=3.9)
     views = [_View(panel, name, found) for panel, name in zip(panels, LOOKS, strict=True)]
     panels[0].set_ylabel(axis("y", "m"))
-    shown = np.flatnonzero(found["whirl: times"] <= 80.0)[::4]
+    shown = np.flatnonzero(found["whirl: times"] <= until)[::4]
 
     def frame(i: int) -> None:
         for view in views:

@@ -46,7 +46,7 @@ CYCLE_DEVIATION = 0.01
 CYCLE_TURNS = 5
 """How far from the cycle pins are started, relative to it, and for how many turns they are followed."""
 
-INNERMOST = 0.03
+INNERMOST = 0.012
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""
 
 SHOOTING = 1e-10
@@ -94,7 +94,7 @@ def theory(innermost: float = INNERMOST, step: float = 0.14) -> Findings:
 
     The branch is followed to the crossing ``innermost`` in m, in relative steps of ``step``.
     """
-    outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]))
+    outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]), tolerance=1e-10)
     branch = list(whirl_branch(outermost, innermost, step=step))
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep
     sticking = np.linspace(LIMIT, WHIRL_LOADS[-1], 101)[1:]
@@ -102,7 +102,6 @@ def theory(innermost: float = INNERMOST, step: float = 0.14) -> Findings:
         data={
             "branch load": np.array([orbit.system.friction_force for orbit in branch]),
             "branch extent": np.array([extent(orbit) for orbit in branch]),
-            "branch stable": np.array([float(orbit.stable) for orbit in branch]),
             "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
             "equilibrium load": loads,
             "equilibrium radius": np.array([_at(load, equilibrium_radius) for load in loads]),
@@ -262,7 +261,8 @@ def coexistence_claim(engine: Engine) -> Claim:
 @functools.cache
 def _cycle() -> Orbit:
     """Return the stable stick–slip cycle at ``CYCLE_LOAD``, reached along the branch of whirls."""
-    *_, orbit = whirl_branch(whirl_orbit(replace(FIG6, friction_force=0.08)), 0.06, step=0.25, samples=2)
+    start = whirl_orbit(replace(FIG6, friction_force=0.08), tolerance=1e-10)  # the way there may be rough
+    *_, orbit = whirl_branch(start, 0.06, step=0.25, samples=2)
     return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
 
 
@@ -357,20 +357,21 @@ def _draw_theory(panel: Axes, found: Data) -> None:
         linewidth=0.0,
         label="sticks, (9)",
     )
-    stable, sticks = found["branch stable"] > 0.5, found["branch sticks"] > 0.5
-    # A smooth curve through the orbits, coloured by the kind of the nearest one.
-    number = np.arange(len(stable))
+    # A smooth curve through the orbits. In a fold a multiplier passes 1, so they are stable where the load falls
+    # from the outermost whirl on, unstable where it rises.
+    number = np.arange(len(found["branch load"]))
     fine = np.linspace(0.0, number[-1], 20 * number[-1] + 1)
-    nearest = np.rint(fine).astype(int)
     load = PchipInterpolator(number, found["branch load"])(fine)
     extent = PchipInterpolator(number, found["branch extent"])(fine)
+    stable = np.gradient(load) < 0.0
+    sticks = found["branch sticks"][np.rint(fine).astype(int)] > 0.5
     kinds = (
         ("whirl, stable", stable & ~sticks, GREEN, "-"),
         ("unstable", ~stable, GREY, (0.0, (3.0, 1.5))),
         ("stick–slip cycle, stable", stable & sticks, ORANGE, "-"),
     )
     for label, mask, colour, dashes in kinds:
-        shown = np.where(mask[nearest][:, np.newaxis], extent, np.nan)
+        shown = np.where(mask[:, np.newaxis], extent, np.nan)
         panel.plot(load, shown[:, 0], color=colour, linestyle=dashes, linewidth=1.6, label=label)
         panel.plot(load, shown[:, 1], color=colour, linestyle=dashes, linewidth=1.6)
 

@@ -102,7 +102,8 @@ def measure(engine: Engine, motions: Mapping[str, Motion] | None = None) -> Find
 
 
 def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    times = np.linspace(0.0, motion.until, round(motion.until / SAMPLE_DISTANCE) + 1)
+    intervals = 2 * round(motion.until / (2.0 * SAMPLE_DISTANCE))  # every second sample has the last one too
+    times = np.linspace(0.0, motion.until, intervals + 1)
     return engine.simulate(motion.pin, motion.start, times, tolerance=tolerance)
 
 

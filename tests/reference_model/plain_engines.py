@@ -119,7 +119,7 @@ def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", 
 
 
 def regularised(pin, slip_speed):
-    return lambda slip: -pin.friction_force * slip / max(np.sqrt(slip @ slip), slip_speed)
+    return lambda slip: -pin.friction_force * slip / np.sqrt(slip @ slip + slip_speed**2)
 
 
 def creep(pin, state, times, slip_speed):

@@ -20,7 +20,7 @@ from plain_engines import (
     turned_with_disc,
 )
 
-from reference_model import PinOnDisc, SimulationError, simulate
+from reference_model import PinOnDisc, SimulationError, integrate, simulate
 from reference_model import pin_formulas as formulas
 from reference_model.integrate import Thresholds, simulate_with
 from reference_model.pin import simulate_polar_form
@@ -516,3 +516,9 @@ def test_motion_continued_from_its_own_end_is_the_motion_in_one_piece():
 def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
     with pytest.raises(SimulationError, match="not finite"):
         simulate(replace(FIG_5, mass=1e-300), [1.0, 0.0, 0.0, 0.0], [0.0, 1.0])
+
+
+def test_a_motion_of_too_many_steps_is_refused_with_its_time(monkeypatch):
+    monkeypatch.setattr(integrate, "MOST_STEPS", 50)
+    with pytest.raises(SimulationError, match=r"more than 50 steps up to t = \d+"):
+        simulate(FIG_5, TO_WHIRL, [0.0, 400.0])

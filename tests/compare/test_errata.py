@@ -1,0 +1,89 @@
+"""Each erratum: the corrected formula gives the exact number, the printed one does not."""
+
+import functools
+import math
+from dataclasses import replace
+
+import pytest
+
+from compare import errata
+from compare.errata import ERRATA, FIG4
+from reference_model import whirl_orbit
+from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift
+
+ROUNDING = 1e-14
+"""A few dozen operations on numbers of the order one, each good to 1.1e-16."""
+
+ALWAYS_EXISTS, COEFFICIENT, SHIFT = ERRATA
+
+THIRD_ORDER = 30.0 * 1e-3**2
+"""Of (18), relative: (w·X0/ρ)², w = ω/(ω − k) = 6, ρ = 1.2 m, is 25·X0²; X0 = 1 mm."""
+
+TOLERANCES = {ALWAYS_EXISTS: ROUNDING, COEFFICIENT: ROUNDING, SHIFT: THIRD_ORDER}
+
+
+@functools.cache
+def evidence_of(erratum):
+    return erratum.evidence()
+
+
+def test_the_errata_are_those_of_11_and_13_and_18():
+    assert [erratum.equation.split(",")[0] for erratum in ERRATA] == ["(11)", "(13)", "(18)"]
+
+
+@pytest.mark.parametrize("erratum", ERRATA, ids=lambda erratum: erratum.equation)
+def test_the_corrected_formula_gives_the_exact_number_and_the_printed_one_does_not(erratum):
+    evidence = evidence_of(erratum)
+    tolerance = TOLERANCES[erratum] * max(1.0, abs(evidence.exact))
+    assert abs(evidence.corrected_value - evidence.exact) <= tolerance
+    # By far: no choice of the tolerance turns one into the other.
+    assert abs(evidence.printed_value - evidence.exact) > 100.0 * tolerance
+
+
+@pytest.mark.parametrize("erratum", ERRATA, ids=lambda erratum: erratum.equation)
+def test_every_erratum_shows_both_formulas_and_says_why(erratum):
+    assert erratum.printed != erratum.correct
+    for text in (erratum.printed, erratum.correct, erratum.explanation, evidence_of(erratum).quantity):
+        assert text.strip()
+
+
+def test_below_k_friction_brakes_as_much_as_the_damper():
+    """Both take μN from the pin on the circle (11), where βkρ = μN."""
+    evidence = evidence_of(ALWAYS_EXISTS)
+    assert evidence.exact == pytest.approx(-2.0 * FIG4.friction_force, rel=ROUNDING)
+
+
+def test_the_coefficient_of_13_is_the_negative_trace():
+    """By hand at ω = 1.5: β/m·(1 + ω/(ω − k)) = 0.1·(1 + 3); as printed 1 + 0.1·3."""
+    evidence = evidence_of(COEFFICIENT)
+    assert evidence.exact == pytest.approx(0.4, rel=ROUNDING)
+    assert evidence.printed_value == pytest.approx(1.3, rel=ROUNDING)
+
+
+def test_the_printed_13_changes_with_the_unit_of_time_and_the_corrected_one_does_not(monkeypatch):
+    """In units of half a second a rate is half the number, whatever the formula says."""
+    halved = replace(
+        FIG4,
+        stiffness=FIG4.stiffness / 4.0,
+        damping=FIG4.damping / 2.0,
+        friction_force=FIG4.friction_force / 4.0,
+        disc_speed=FIG4.disc_speed / 2.0,
+    )
+    before = evidence_of(COEFFICIENT)
+    monkeypatch.setattr(errata, "FIG4", halved)
+    after = COEFFICIENT.evidence()
+    assert after.corrected_value == pytest.approx(before.corrected_value / 2.0, rel=ROUNDING)
+    assert after.exact == pytest.approx(before.exact / 2.0, rel=ROUNDING)
+    assert after.printed_value != pytest.approx(before.printed_value / 2.0, rel=0.1)
+
+
+def test_the_error_of_the_printed_18_stays_as_the_offset_falls_and_that_of_the_corrected_one_goes():
+    printed, corrected = [], []
+    for offset in (0.02, 0.01):
+        pin = replace(FIG4, disc_speed=1.2, offset=offset)
+        mean = whirl_orbit(pin, samples=64).mean
+        printed.append(math.dist(whirl_shift(pin), mean) / offset)
+        corrected.append(math.dist(first_order_whirl_shift(pin), mean) / offset)
+    growth = (6.0 * 0.02 / 1.2) ** 2  # the next order, relatively
+    assert printed[0] == pytest.approx(printed[1], rel=growth)
+    assert corrected[0] / corrected[1] == pytest.approx(4.0, rel=2.0 * growth)

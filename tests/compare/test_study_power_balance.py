@@ -1,0 +1,133 @@
+"""The study of power agrees for every sound engine, and each of its claims fails for broken ones."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from broken_engines import broken_engines
+from studies_under_test import verdicts
+
+from compare.claim import Verdict
+from compare.engines import Engine, engines
+from compare.studies import power_balance as study
+from reference_model import simulate
+
+ALL = study.all_motions()
+TO_EQUILIBRIUM, TO_WHIRL, SETTLES, STICKS, RESTING, BACKWARDS = ALL
+
+MOTIONS = {name: replace(motion, until=min(motion.until, 30.0)) for name, motion in ALL.items()} | {
+    # The quadrature's error at the stick phases must be small beside the energy that is turned over.
+    TO_WHIRL: replace(ALL[TO_WHIRL], until=200.0),
+    # The engines that are broken can't be tighter in stick, and what they have to show is large.
+    STICKS: replace(ALL[STICKS], until=2.0, tolerance=1e-10),
+}
+SLIDING = {name: motion for name, motion in MOTIONS.items() if name != STICKS}
+
+
+def altered(**factors):
+    """Return the reference with parameters that are wrong by ``factors``."""
+
+    def simulated(system, initial_state, times, *, tolerance=1e-9):
+        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
+        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
+        return replace(trajectory, system=system)
+
+    return Engine("altered", simulated)
+
+
+def gaining(system, initial_state, times, *, tolerance=1e-9):
+    """Kinetic energy grows by 1e-6 of itself in each second."""
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    growth = np.exp(0.5e-6 * (trajectory.times - trajectory.times[0]))[:, np.newaxis]
+    return replace(
+        trajectory, states=np.hstack((trajectory.states[:, :2], growth * trajectory.states[:, 2:]))
+    )
+
+
+def late(system, initial_state, times, *, tolerance=1e-9):
+    """Every state is that of the sample before."""
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    return replace(trajectory, states=np.vstack((trajectory.states[:1], trajectory.states[:-1])))
+
+
+FAULTS = broken_engines() | {
+    "friction 1 % off": altered(friction_force=1.01),
+    "damping 1 % off": altered(damping=1.01),
+    "mass 1 % off": altered(mass=1.01),
+    "offset on the wrong side": altered(offset=-1.0),
+    "energy grows by 1e-6 in a second": Engine("gaining", gaining),
+    "one sample late": Engine("late", late),
+}
+
+SEES, BLIND, UNSURE = Verdict.DIFFERS, Verdict.AGREES, Verdict.INCONCLUSIVE
+
+TABLE = {
+    # On the way to:      equilibrium whirl SETTLES STICKS RESTING BACKWARDS
+    "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES),
+    "square": (SEES, SEES, SEES, SEES, SEES, SEES),
+    # A pin that sticks moves with the disc whatever the parameters are, as long as friction can hold it.
+    "half the damping": (SEES, SEES, SEES, BLIND, SEES, SEES),
+    "friction 1 % off": (SEES, SEES, SEES, BLIND, SEES, SEES),
+    "damping 1 % off": (SEES, SEES, SEES, BLIND, SEES, SEES),
+    "mass 1 % off": (SEES, SEES, SEES, BLIND, SEES, SEES),
+    "offset on the wrong side": (SEES, SEES, BLIND, BLIND, SEES, SEES),  # SETTLES has none
+    "energy grows by 1e-6 in a second": (SEES, SEES, SEES, SEES, SEES, SEES),
+    # A motion that never sticks is balanced a sample later too, but for the first one, which is there twice.
+    "one sample late": (SEES, SEES, UNSURE, SEES, SEES, SEES),
+}
+
+
+@functools.cache
+def claims(fault):
+    findings = study.measure(FAULTS[fault], MOTIONS)
+    return {claim.sentence: claim for claim in findings.claims}
+
+
+@pytest.fixture(scope="module")
+def sound():
+    return {name: study.measure(engines([name])[0], MOTIONS) for name in ("reference", "exudyn")}
+
+
+@pytest.mark.parametrize("name", ["reference", "exudyn"])
+def test_every_motion_is_balanced_in_both_engines(sound, name):
+    assert verdicts(sound[name]) == {study.SENTENCE.format(motion): Verdict.AGREES for motion in ALL}
+
+
+def test_every_sliding_motion_is_balanced_in_the_engine_that_faults_are_put_into():
+    findings = study.measure(FAULTS["intact"], SLIDING)
+    assert verdicts(findings) == {study.SENTENCE.format(motion): Verdict.AGREES for motion in SLIDING}
+
+
+def test_every_motion_is_balanced_at_its_full_length_in_the_reference():
+    assert set(verdicts(study.measure(engines(["reference"])[0])).values()) == {Verdict.AGREES}
+
+
+@pytest.mark.parametrize(
+    ("fault", "motion", "expected"),
+    [
+        (fault, motion, expected)
+        for fault, row in TABLE.items()
+        for motion, expected in zip(ALL, row, strict=True)
+    ],
+)
+def test_each_motion_sees_the_faults_that_concern_it(fault, motion, expected):
+    claim = claims(fault)[study.SENTENCE.format(motion)]
+    assert claim.verdict is expected, claim.measured
+
+
+def test_the_budget_takes_every_second_sample_over_the_same_time():
+    """An odd number of intervals would leave out the last sample, and the error would be that of another motion."""
+    for until in (2.5, 2.0, 0.04, 0.1):
+        motion = replace(ALL[STICKS], until=until)
+        trajectory = study._run(engines(["reference"])[0], motion, 1e-10)
+        assert study._every_second(trajectory).times[-1] == trajectory.times[-1]
+
+
+def test_figures_are_drawn_whatever_is_there(sound):
+    data = {name: findings.data for name, findings in sound.items()}
+    for names in (("reference", "exudyn"), ("reference",), ("exudyn",)):
+        figures = study.draw({name: data[name] for name in names})
+        assert set(figures) == set(study.STUDY.figures)
+        for figure in figures.values():
+            figure.canvas.draw()
