@@ -125,10 +125,11 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         "(18), what is left out",
         printed="x_s = X0/(1 + β²ω²/(4mC(ω−k)²)), y_s = βωx_s/(2mk(ω−k))",
-        correct="mean of the exact first-order response: x_s + iy_s = ½(Ξ* + iU*) of a linear 2×2 problem",
+        correct="x_s + iy_s = X0·conj[(6 − id(w+2)) / (6 + 2d²w + 2id(w−1))], d = β/(mk), w = ω/(ω−k)",
         explanation="The offset excites a second harmonic of the same first order in X0, coupled to the mean "
-        "through friction; (18) keeps the first harmonic only. Its relative error does not vanish as X0 → 0: "
-        "nothing at ω = 2k, all of the shift as ω → k.",
+        "through friction; (18) keeps the first harmonic only. The correction solves (12) with the offset "
+        "as its forcing. The relative error of (18) does not vanish as X0 → 0: nothing at ω = 2k, all of the "
+        "shift as ω → k.",
         evidence=_shift_of_the_whirl,
     ),
 )
