@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from plain_engines import in_units
 from scipy.optimize import brentq, minimize_scalar, root
 
 from reference_model import pin_formulas as formulas
@@ -554,18 +555,6 @@ def pins(draw):
         friction_force=draw(st.one_of(st.floats(0.01, 0.99), st.floats(1.01, 5.0))) * stiffness * 0.3,
         disc_speed=draw(sign) * draw(st.floats(1.01, 5.0)) * math.sqrt(stiffness / mass),
         offset=0.3 * draw(sign),
-    )
-
-
-def in_units(pin, mass, length, time):
-    """The same pin measured in units that are 1/mass, 1/length and 1/time of the old ones."""
-    return PinOnDisc(
-        mass=pin.mass * mass,
-        stiffness=pin.stiffness * mass / time**2,
-        damping=pin.damping * mass / time,
-        friction_force=pin.friction_force * mass * length / time**2,
-        disc_speed=pin.disc_speed / time,
-        offset=pin.offset * length,
     )
 
 

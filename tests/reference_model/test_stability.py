@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from plain_engines import in_units
 
 from reference_model import pin_formulas as formulas
 from reference_model.stability import (
@@ -162,19 +163,9 @@ units = st.floats(0.01, 100.0)
 
 @given(units, units, units)
 def test_eigenvalues_scale_with_the_unit_of_time_alone(mass, length, time):
-    def scaled(pin):
-        return PinOnDisc(
-            mass=pin.mass * mass,
-            stiffness=pin.stiffness * mass / time**2,
-            damping=pin.damping * mass / time,
-            friction_force=pin.friction_force * mass * length / time**2,
-            disc_speed=pin.disc_speed / time,
-            offset=pin.offset * length,
-        )
-
     for eigenvalues, pin in ((equilibrium_eigenvalues, FIG_5), (whirl_eigenvalues, CENTRED)):
         expected = np.array(eigenvalues(pin)) / time
-        assert_same_eigenvalues(eigenvalues(scaled(pin)), expected, tolerance=1e-10)
+        assert_same_eigenvalues(eigenvalues(in_units(pin, mass, length, time)), expected, tolerance=1e-10)
 
 
 # ---------------------------------------------------------------- which equilibria exist
