@@ -191,7 +191,10 @@ def whirl_orbit(
         if slopes is None or size > FRESH:
             slopes = flow.slopes(unknowns, miss, sought)
         unknowns = unknowns.copy()
-        unknowns[sought] -= np.linalg.solve(slopes, miss)
+        try:
+            unknowns[sought] -= np.linalg.solve(slopes, miss)
+        except np.linalg.LinAlgError:
+            break  # no direction to go on in
     if not smallest < CONVERGED:
         raise RuntimeError(
             f"no whirl near the guess for friction_force = {unknowns[5]:g} N, disc_speed = "

@@ -156,6 +156,11 @@ def equilibria_claim(engine: Engine, loads: Sequence[float]) -> Claim:
     )
 
 
+@functools.cache
+def _reference_whirl(load: float) -> Orbit:
+    return whirl(Engine("reference", simulate), load, 3e-13)
+
+
 def whirls_claim(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
     """Compare the whirls that ``engine`` found, by load in N, with those of the reference."""
 
@@ -164,8 +169,7 @@ def whirls_claim(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
         return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
 
     measured, error = refined(period_and_extent, SHOOTING)
-    reference = Engine("reference", simulate)
-    others = [whirl(reference, load, 3e-13, guess) for load, guess in whirls.items()]
+    others = [_reference_whirl(load) for load in whirls]
     predicted = np.array([[orbit.period, *extent(orbit)] for orbit in others])
     miss = max(orbit.residual for orbit in (*whirls.values(), *others))
     # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.

@@ -172,7 +172,7 @@ def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(data):
 
 
 def test_the_animation_is_a_gif_of_more_than_50_frames_that_move(data):
-    (content,) = animate(data, until=22.0).values()
+    (content,) = animate(data, until=20.8).values()
     with PIL.Image.open(io.BytesIO(content)) as picture:
         assert picture.format == "GIF"
         assert picture.n_frames > 50

@@ -58,14 +58,20 @@ TAKES_LONG = None  # and is left out
 
 TABLE = {
     #                  EQUILIBRIA WHIRLS   LAST_WHIRL COEXIST CYCLE  CYCLE_STABLE
-    "wrong sign": (SEES, NO_ORBIT, TAKES_LONG, SEES, SEES, SEES),
+    "wrong sign": (SEES, SEES, TAKES_LONG, SEES, SEES, SEES),
     # Such pins stick, and have whirls, of their own: that both exist is right for them too.
     "square": (SEES, SEES, NO_ORBIT, BLIND, SEES, SEES),
     "half the damping": (SEES, SEES, SEES, BLIND, SEES, SEES),
-    "friction 1 % off": (SEES, SEES, SEES, BLIND, SEES, SEES),
-    # The whirl ends at 1.7 times the load then, 0.13 N. The pin comes to rest in the same place, and still sticks.
-    "damping 70 % too strong": (BLIND, NO_ORBIT, NO_ORBIT, SEES, SEES, SEES),
+    "friction 1 % off": (SEES, SEES, TAKES_LONG, BLIND, SEES, SEES),
+    # The whirl ends at 1.7 times the load then, 0.13 N, and what the search finds at 0.12 N is another orbit.
+    # The pin still sticks, and comes to rest in the same place.
+    "damping 70 % too strong": (BLIND, SEES, NO_ORBIT, SEES, SEES, SEES),
 }
+
+
+@functools.cache
+def claim_of(fault, sentence):
+    return CLAIMS[sentence](FAULTS[fault])
 
 
 @pytest.mark.parametrize("name", ["reference", "intact"])
@@ -92,15 +98,15 @@ def test_the_quick_statements_hold_in_exudyn(sentence):
 def test_each_claim_sees_the_faults_that_concern_it(fault, sentence, expected):
     if expected is NO_ORBIT:
         with pytest.raises(RuntimeError, match=NO_ORBIT):
-            CLAIMS[sentence](FAULTS[fault])
+            claim_of(fault, sentence)
     else:
-        claim = CLAIMS[sentence](FAULTS[fault])
+        claim = claim_of(fault, sentence)
         assert claim.sentence == sentence
         assert claim.verdict is expected
 
 
 def test_half_the_damping_makes_the_stick_slip_cycle_unstable():
-    claim = CLAIMS[study.CYCLE_STABLE](FAULTS["half the damping"])
+    claim = claim_of("half the damping", study.CYCLE_STABLE)
     assert claim.predicted < 1.0 < claim.measured
 
 
