@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference_model import PinOnDisc, whirl_orbit
+from compare.studies.paper import CENTRED
+from reference_model import whirl_orbit
 from reference_model.pin_formulas import (
     characteristic_coefficients,
     characteristic_coefficients_as_printed,
@@ -63,23 +64,19 @@ class Erratum:
     evidence: Callable[[], Evidence]
 
 
-FIG4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.0)
-"""Fig. 4 without its offset."""
-
-
 def _characteristic_coefficient() -> Evidence:
-    matrix_coefficients = np.poly(variational_matrix(FIG4))
+    matrix_coefficients = np.poly(variational_matrix(CENTRED))
     return Evidence(
         "coefficient of λ² of det(λI − A), A the matrix of (12), in 1/s, at Fig. 4's parameters with ω = 1.5",
         exact=float(matrix_coefficients[1]),
-        printed_value=float(characteristic_coefficients_as_printed(FIG4)[1]),
-        corrected_value=float(characteristic_coefficients(FIG4)[1]),
+        printed_value=float(characteristic_coefficients_as_printed(CENTRED)[1]),
+        corrected_value=float(characteristic_coefficients(CENTRED)[1]),
     )
 
 
 def _force_on_the_circle() -> Evidence:
     """Return the tangential force of eq. 1 on a pin that moves on the circle of eq. 11 at ω < k."""
-    pin = replace(FIG4, disc_speed=0.8)
+    pin = replace(CENTRED, disc_speed=0.8)
     k = pin.natural_frequency
     radius = pin.friction_force / (pin.damping * k)
     z, w = complex(radius, 0.0), 1j * (k - pin.disc_speed) * radius
@@ -96,7 +93,7 @@ def _force_on_the_circle() -> Evidence:
 
 
 def _shift_of_the_whirl() -> Evidence:
-    pin = replace(FIG4, disc_speed=1.2, offset=1e-3)
+    pin = replace(CENTRED, disc_speed=1.2, offset=1e-3)
     return Evidence(
         "x_s/X0 of the whirl for X0 = 1 mm, at Fig. 4's parameters with ω = 1.2; exact: the periodic orbit",
         exact=float(whirl_orbit(pin).mean[0]) / pin.offset,

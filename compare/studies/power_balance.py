@@ -13,7 +13,7 @@ from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.report.style import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from compare.studies.common import parameters_of
-from compare.studies.paper import FIG4, FIG5, FIG5_STARTS
+from compare.studies.paper import CENTRED, FIG4, FIG5, FIG5_STARTS
 from compare.study import Data, Findings, Study
 from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.pin_formulas import whirl_radius
@@ -47,8 +47,7 @@ SENTENCE = "What the drive puts in is heat and stored energy: {}"
 
 def all_motions() -> dict[str, Motion]:
     """Return the motions by the words in which the claims name them."""
-    centred = replace(FIG4, offset=0.0)
-    radius = whirl_radius(centred)
+    radius = whirl_radius(CENTRED)
     sticky = FIG4
     stuck = 0.98 * sticking_radius(sticky)
     turning = sticky.disc_speed
@@ -58,7 +57,7 @@ def all_motions() -> dict[str, Motion]:
         ),
         DRAWN: Motion(FIG5, FIG5_STARTS["whirl"], 400.0, "Fig. 5"),
         "a whirl that settles": Motion(
-            centred,
+            CENTRED,
             (0.8 * radius, 0.0, 0.0, radius),
             100.0,
             "Fig. 4 with X0 = 0, started 20 % inside the whirl",
