@@ -110,3 +110,8 @@ class Trajectory:
     def stick_phases(self) -> tuple[Phase, ...]:
         """The phases in which the pin turns with the disc."""
         return tuple(phase for phase in self.phases if phase.kind == "stick")
+
+    @property
+    def stick_times(self) -> FloatArray:
+        """Times in s at which stick phases begin and end, one after the other, shape (2·phases,)."""
+        return np.array([time for phase in self.stick_phases for time in (phase.start, phase.end)])

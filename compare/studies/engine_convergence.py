@@ -142,10 +142,6 @@ def _sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
     return error, sum(trajectory.solution.evaluations for trajectory in trajectories), spent
 
 
-def _events(trajectory: Trajectory) -> FloatArray:
-    return np.array([time for phase in trajectory.stick_phases for time in (phase.start, phase.end)])
-
-
 def _gap(found: FloatArray, exact: FloatArray) -> FloatArray:
     """Return how far the events found are off; without numbers where there are too many or too few of them."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
@@ -201,7 +197,7 @@ def claim_of_sticking(engine: Engine, scan: Scan) -> Part:
 
     def events(run: Simulate, tolerance: float) -> FloatArray:
         return np.concatenate(
-            [_events(run(FIG5, start, (0.0, 8.0), tolerance=tolerance)) for start in STICKING_STARTS]
+            [run(FIG5, start, (0.0, 8.0), tolerance=tolerance).stick_times for start in STICKING_STARTS]
         )
 
     exact = events(simulate, 1e-13)
@@ -267,7 +263,7 @@ def claims_of_regularisation(simulate_smoothed: Simulate) -> Part:
             FIG5, FIG5_STARTS["whirl"], until, tolerance=tolerance, regularisation=epsilon
         )
         state = _root_mean_square(found.at_end - exact.at_end)
-        return np.append(_gap(_events(found), _events(exact)), state)
+        return np.append(_gap(found.stick_times, exact.stick_times), state)
 
     by_epsilon = np.array([errors(epsilon, TIGHT) for epsilon in REGULARISATIONS.tolist()])
     # The tolerance weighs most at the smallest ε.
@@ -280,11 +276,11 @@ def claims_of_regularisation(simulate_smoothed: Simulate) -> Part:
     )[:, 1:]
 
     start = FIG5_STARTS["equilibrium"]
-    first = _events(simulate(FIG5, start, (0.0, 8.0), tolerance=1e-13))[:1]
+    first = simulate(FIG5, start, (0.0, 8.0), tolerance=1e-13).stick_times[:1]
 
     def first_error(epsilon: float, tolerance: float) -> float:
         found = simulate_smoothed(FIG5, start, (0.0, 5.0), tolerance=tolerance, regularisation=epsilon)
-        return float(_gap(_events(found)[:1], first)[0])
+        return float(_gap(found.stick_times[:1], first)[0])
 
     firsts = np.array([first_error(epsilon, TIGHT) for epsilon in FIRST_REGULARISATIONS.tolist()])
     first_noise = abs(first_error(float(FIRST_REGULARISATIONS[-1]), COARSENING * TIGHT) - float(firsts[-1]))
@@ -371,7 +367,7 @@ def claim_of_creep(simulate_fixed_step: Simulate) -> Part:
             simulate_fixed_step(FIG5, start, until, integrator="RK44", step=step, regularisation=epsilon)
             for start in FIG5_STARTS.values()
         ]
-        ends = [_events(trajectory)[1] if trajectory.stick_phases else math.nan for trajectory in found]
+        ends = [trajectory.stick_times[1] if trajectory.stick_phases else math.nan for trajectory in found]
         return np.array([(end - phase.end) / epsilon for end, phase in zip(ends, exact, strict=True)])
 
     measured = np.array([shifts(epsilon, 4.0) for epsilon in CREEP_REGULARISATIONS])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -21,6 +22,9 @@ from reference_model.pin import simulate_polar_form
 from reference_model.pin_formulas import equilibrium_position, release_time
 from reference_model.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
+
+Run = Callable[[str, float], Trajectory]
+"""Gives the run of Fig. 5 to the motion of that name, at a tolerance."""
 
 UNTIL = 400.0
 """Length of the runs in s; the paper does not print it. The slowest transients are down to 1e-8 by then."""
@@ -65,7 +69,7 @@ def measure(engine: Engine) -> Findings:
         data |= {
             f"{name}: times": trajectory.times,
             f"{name}: states": trajectory.states,
-            f"{name}: sticks": _events(trajectory),
+            f"{name}: sticks": trajectory.stick_times,
             f"{name}: reference sticks": reference_events(name),
         }
     return Findings(tuple(claims), data)
@@ -76,15 +80,10 @@ def _run(engine: Engine, name: str, tolerance: float) -> Trajectory:
     return engine.simulate(FIG5, FIG5_STARTS[name], times, tolerance=tolerance)
 
 
-def _events(trajectory: Trajectory) -> FloatArray:
-    """Return the times at which stick phases begin and end, one after the other."""
-    return np.array([time for phase in trajectory.stick_phases for time in (phase.start, phase.end)])
-
-
 @functools.cache
 def reference_events(name: str) -> FloatArray:
     """Return all times in s at which the pin sticks and lets go, from the reference at its tightest."""
-    return _events(simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=1e-13))
+    return simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=1e-13).stick_times
 
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
@@ -119,7 +118,7 @@ def _claim_slip_trajectory(engine: Engine) -> Claim:
     )
 
 
-def _claim_equilibrium(engine: Engine, run: functools._lru_cache_wrapper[Trajectory]) -> Claim:
+def _claim_equilibrium(engine: Engine, run: Run) -> Claim:
     measured, error = refined(lambda tolerance: run("equilibrium", tolerance).at_end[:2])
     states = run("equilibrium", 1e-9).states
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
@@ -142,7 +141,7 @@ def _whirl() -> Orbit:
     return whirl_orbit(FIG5)
 
 
-def _claim_whirl(engine: Engine, run: functools._lru_cache_wrapper[Trajectory]) -> Claim:
+def _claim_whirl(engine: Engine, run: Run) -> Claim:
     orbit = _whirl()
     # The run goes on for some more turns, and the last one is averaged.
     times = np.concatenate(([0.0], orbit.period * (FURTHER_TURNS + np.linspace(0.0, 1.0, 129))))
@@ -170,9 +169,9 @@ def _claim_whirl(engine: Engine, run: functools._lru_cache_wrapper[Trajectory]) 
     )
 
 
-def _claim_first_stick(engine: Engine, run: functools._lru_cache_wrapper[Trajectory], name: str) -> Claim:
+def _claim_first_stick(engine: Engine, run: Run, name: str) -> Claim:
     predicted, other = refined(lambda tolerance: first_stick_and_release(name, tolerance), 4e-13)
-    measured, error = refined(lambda tolerance: _padded(_events(run(name, tolerance))[:2], 2))
+    measured, error = refined(lambda tolerance: _padded(run(name, tolerance).stick_times[:2], 2))
     return Claim(
         FIRST_STICK.format(name),
         equation="(7), (10)",
@@ -225,9 +224,9 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
     return np.array([stick, stick + release_time(FIG5, abs(z), math.atan2(y, x) + omega * left)])
 
 
-def _claim_all_events(engine: Engine, run: functools._lru_cache_wrapper[Trajectory], name: str) -> Claim:
+def _claim_all_events(engine: Engine, run: Run, name: str) -> Claim:
     predicted = reference_events(name)
-    measured, error = refined(lambda tolerance: _padded(_events(run(name, tolerance)), len(predicted)))
+    measured, error = refined(lambda tolerance: _padded(run(name, tolerance).stick_times, len(predicted)))
     return Claim(
         ALL_STICKS.format(name),
         equation="(6), (7)",
