@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from compare import errata
-from compare.errata import ERRATA, FIG4
+from compare.errata import ERRATA
+from compare.studies.paper import CENTRED
 from reference_model import whirl_orbit
 from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift
 
@@ -50,7 +51,7 @@ def test_every_erratum_shows_both_formulas_and_says_why(erratum):
 def test_below_k_friction_brakes_as_much_as_the_damper():
     """Both take μN from the pin on the circle (11), where βkρ = μN."""
     evidence = evidence_of(ALWAYS_EXISTS)
-    assert evidence.exact == pytest.approx(-2.0 * FIG4.friction_force, rel=ROUNDING)
+    assert evidence.exact == pytest.approx(-2.0 * CENTRED.friction_force, rel=ROUNDING)
 
 
 def test_the_coefficient_of_13_is_the_negative_trace():
@@ -63,14 +64,14 @@ def test_the_coefficient_of_13_is_the_negative_trace():
 def test_the_printed_13_changes_with_the_unit_of_time_and_the_corrected_one_does_not(monkeypatch):
     """In units of half a second a rate is half the number, whatever the formula says."""
     halved = replace(
-        FIG4,
-        stiffness=FIG4.stiffness / 4.0,
-        damping=FIG4.damping / 2.0,
-        friction_force=FIG4.friction_force / 4.0,
-        disc_speed=FIG4.disc_speed / 2.0,
+        CENTRED,
+        stiffness=CENTRED.stiffness / 4.0,
+        damping=CENTRED.damping / 2.0,
+        friction_force=CENTRED.friction_force / 4.0,
+        disc_speed=CENTRED.disc_speed / 2.0,
     )
     before = evidence_of(COEFFICIENT)
-    monkeypatch.setattr(errata, "FIG4", halved)
+    monkeypatch.setattr(errata, "CENTRED", halved)
     after = COEFFICIENT.evidence()
     assert after.corrected_value == pytest.approx(before.corrected_value / 2.0, rel=ROUNDING)
     assert after.exact == pytest.approx(before.exact / 2.0, rel=ROUNDING)
@@ -80,7 +81,7 @@ def test_the_printed_13_changes_with_the_unit_of_time_and_the_corrected_one_does
 def test_the_error_of_the_printed_18_stays_as_the_offset_falls_and_that_of_the_corrected_one_goes():
     printed, corrected = [], []
     for offset in (0.02, 0.01):
-        pin = replace(FIG4, disc_speed=1.2, offset=offset)
+        pin = replace(CENTRED, disc_speed=1.2, offset=offset)
         mean = whirl_orbit(pin, samples=64).mean
         printed.append(math.dist(whirl_shift(pin), mean) / offset)
         corrected.append(math.dist(first_order_whirl_shift(pin), mean) / offset)
