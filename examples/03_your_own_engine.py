@@ -3,32 +3,23 @@
 cd examples && friction-discs report fig03 --engine 03_your_own_engine:simulate
 """  # noqa: D400, D415
 
-import numpy as np
 from scipy.integrate import solve_ivp
 
 from reference_model import Phase, Solution, Trajectory
 
 
-def simulate(system, initial_state, times, *, tolerance=1e-9):
+def simulate(pin, initial_state, times, *, tolerance=1e-9):
     """Integrate eq. 1 with friction that is viscous below a slip speed of 100·tolerance."""
-    m, C, beta, omega, slow = (
-        system.mass,
-        system.stiffness,
-        system.damping,
-        system.disc_speed,
-        100 * tolerance,
-    )
 
     def eq1(_, state):
-        x, y, vx, vy = state
-        wx, wy = vx + omega * y, vy - omega * x  # slip
-        mu_n = system.friction_force / max(np.hypot(wx, wy), slow)
-        ax, ay = -beta * vx - C * (x - system.offset) - mu_n * wx, -beta * vy - C * y - mu_n * wy
-        return vx, vy, ax / m, ay / m
+        z, v = complex(*state[:2]), complex(*state[2:])
+        w = v - 1j * pin.disc_speed * z  # slip
+        friction = -pin.friction_force * w / max(abs(w), 100 * tolerance)
+        a = (friction - pin.damping * v - pin.stiffness * (z - pin.offset)) / pin.mass
+        return v.real, v.imag, a.real, a.imag
 
-    times = np.array(times, dtype=float)
-    span, local = (times[0], times[-1]), max(0.01 * tolerance, 1e-13)  # of a step, not of the end
+    local = max(0.01 * tolerance, 1e-13)  # of a step, so that the end is good to the tolerance
+    span = (times[0], times[-1])
     run = solve_ivp(eq1, span, initial_state, method="LSODA", t_eval=times, rtol=local, atol=local)
     phases = (Phase("slip", *span, run.y[:, 0]),)
-    solution = Solution("LSODA", tolerance, run.nfev, len(run.t), wall_time=0.0, regularisation=slow)
-    return Trajectory(system, times, run.y.T, phases, solution)
+    return Trajectory(pin, run.t, run.y.T, phases, Solution("LSODA", tolerance, run.nfev, len(run.t), 0.0))

@@ -51,6 +51,15 @@ def test_the_engine_of_the_example_slides_as_the_reference_does():
     assert errors[1] < 0.1 * errors[0]
 
 
+def test_the_engine_of_the_readme_is_that_of_the_example():
+    code = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
+    example = run("03_your_own_engine.py")
+    names = {name: example[name] for name in ("solve_ivp", "Phase", "Solution", "Trajectory")}
+    exec(code, names)
+    arguments = (run("02_steady_motions.py")["pin"], (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 10.0, 11))
+    assert np.array_equal(names["simulate"](*arguments).states, example["simulate"](*arguments).states)
+
+
 def test_the_code_of_the_readme_gives_the_values_in_its_comments():
     code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL).group(1)
     names = {}
