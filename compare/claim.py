@@ -26,7 +26,8 @@ class ErrorBudget:
     Parameters
     ----------
     numerical : float or array
-        Estimated from the run itself (same run at a tighter tolerance, Richardson), in the claim's unit.
+        Estimated from the run itself (same run at a larger tolerance, Richardson), in the claim's unit. Not a
+        number where an engine gave none to estimate it from: then the claim differs.
     model : float
         Zero for an identity; for an approximation the derived size of the first term left out.
     resolution : float
@@ -42,7 +43,7 @@ class ErrorBudget:
         object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
         object.__setattr__(self, "model", float(model))
         object.__setattr__(self, "resolution", float(resolution))
-        if not (np.all(self.numerical >= 0.0) and model >= 0.0 and resolution > 0.0):
+        if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
             raise ValueError("an error budget takes errors >= 0 and a resolution > 0")
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -195,7 +196,7 @@ def vanishing_load(loads: Sequence[float], positions: FloatArray, error: FloatAr
     squared = last + rho_last * (last - first) / fall
     by_first = 2.0 * first_radius * error[-2] * rho_last * (last - first) / fall**2
     by_last = 2.0 * last_radius * error[-1] * rho_first * (last - first) / fall**2
-    limit = float(np.sqrt(squared))
+    limit = math.sqrt(squared) if squared > 0.0 else math.nan
     return limit, float(abs(by_first) + abs(by_last)) / (2.0 * limit)
 
 

@@ -49,6 +49,11 @@ def test_an_inconclusive_array_shows_its_least_certain_element():
     assert worst(made).index == 1
 
 
+def test_an_error_that_could_not_be_estimated_is_no_agreement():
+    """An engine whose coarser run gives no numbers loses this claim, not the whole study."""
+    assert claim("c", "good", 1.0, 1.0, np.nan, resolution=2.0).verdict is Verdict.DIFFERS
+
+
 def test_a_predicted_nan_is_no_agreement():
     assert claim("c", "good", np.nan, 1.0, 1.0, resolution=2.0).verdict is Verdict.DIFFERS
 
@@ -66,7 +71,7 @@ def test_shapes_that_prove_nothing_are_refused(predicted, measured, numerical, w
         claim("c", "good", predicted, measured, numerical)
 
 
-@pytest.mark.parametrize("budget", [(-1.0, 0.0, 1.0), (np.nan, 0.0, 1.0), (0.0, -1.0, 1.0), (0.0, 0.0, 0.0)])
+@pytest.mark.parametrize("budget", [(-1.0, 0.0, 1.0), (0.0, -1.0, 1.0), (0.0, np.nan, 1.0), (0.0, 0.0, 0.0)])
 def test_a_budget_without_meaning_is_refused(budget):
     numerical, model, resolution = budget
     with pytest.raises(ValueError, match="error budget"):
