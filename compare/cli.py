@@ -11,7 +11,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import fields
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -295,21 +295,15 @@ def _studies(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
 def _pin(settings: Sequence[str]) -> PinOnDisc:
     """Return Fig. 5's pin with changes "name=value"; raise ``ValueError`` for what is neither."""
     from compare.engines import known
+    from compare.paper import FIG5
     from reference_model.systems import PinOnDisc
 
-    values: dict[str, Any] = {
-        "mass": 1.0,
-        "stiffness": 1.0,
-        "damping": 0.1,
-        "friction_force": 0.09,
-        "disc_speed": 1.5,
-        "offset": 0.1,
-    }
+    values: dict[str, Any] = asdict(FIG5)
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
             raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
-        values[known("parameter", name.strip(), [field.name for field in fields(PinOnDisc)])] = value
+        values[known("parameter", name.strip(), values)] = value
     return PinOnDisc(**values)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compare.studies.paper import CENTRED
+from compare.paper import CENTRED
 from reference_model import whirl_orbit
 from reference_model.pin_formulas import (
     characteristic_coefficients,

@@ -247,16 +247,34 @@ def _force_on_planar_master(
     return force
 
 
-# Generalised forces from (F_x, F_y, M, M_master), and the kernel's arguments from the nodes' coordinates: the
-# Jacobians are products of these with the derivatives of the kernel.
+Maps = tuple[FloatArray, FloatArray, FloatArray]
+"""Generalised forces from (F_x, F_y, M, M_master); the kernel's positions and velocities from those of the nodes."""
+
 _FORCES_ON_ROTOR = np.array([[0, 0, 0, 1], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], dtype=float)
-_FORCES_ON_PLANAR = np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR)).astype(float)
-_POSITION_OF_ROTOR = np.hstack((np.zeros((3, 1)), np.eye(3)))
-_POSITION_OF_PLANAR = np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3)))
-_VELOCITY_OF_ROTOR = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float)
-_VELOCITY_OF_PLANAR = np.array(
-    [[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float
+_ON_ROTOR: Maps = (
+    _FORCES_ON_ROTOR,
+    np.hstack((np.zeros((3, 1)), np.eye(3))),
+    np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float),
 )
+_ON_PLANAR: Maps = (
+    np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR)).astype(float),
+    np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3))),
+    np.array([[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float),
+)
+
+
+def _over_both_nodes(
+    derivatives: FloatArray, position_factor: float, velocity_factor: float, maps: Maps
+) -> FloatArray:
+    """Return the Jacobian over the coordinates of both nodes from the derivatives of the kernel.
+
+    Exudyn takes the derivative of the left-hand side, where the force stands with a minus.
+    """
+    forces, positions, velocities = maps
+    weighted = (
+        -position_factor * derivatives[:, :3] @ positions - velocity_factor * derivatives[:, 3:] @ velocities
+    )
+    return np.asarray(forces @ weighted)
 
 
 def _jacobian_on_rotor(x0: float, y0: float, angle0: float, contact: Contact) -> JacobianFunction:
@@ -274,12 +292,7 @@ def _jacobian_on_rotor(x0: float, y0: float, angle0: float, contact: Contact) ->
         derivatives = ring_friction_derivatives(
             x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin, contact
         )
-        # Exudyn takes the derivative of the left-hand side, where the force stands with a minus.
-        weighted = (
-            -position_factor * derivatives[:, :3] @ _POSITION_OF_ROTOR
-            - velocity_factor * derivatives[:, 3:] @ _VELOCITY_OF_ROTOR
-        )
-        return np.asarray(_FORCES_ON_ROTOR @ weighted)
+        return _over_both_nodes(derivatives, position_factor, velocity_factor, _ON_ROTOR)
 
     return jacobian
 
@@ -299,11 +312,7 @@ def _jacobian_on_planar_master(x0: float, y0: float, angle0: float, contact: Con
         derivatives = ring_friction_derivatives(
             x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin, contact
         )
-        weighted = (
-            -position_factor * derivatives[:, :3] @ _POSITION_OF_PLANAR
-            - velocity_factor * derivatives[:, 3:] @ _VELOCITY_OF_PLANAR
-        )
-        return np.asarray(_FORCES_ON_PLANAR @ weighted)
+        return _over_both_nodes(derivatives, position_factor, velocity_factor, _ON_PLANAR)
 
     return jacobian
 

@@ -33,6 +33,9 @@ STEP_TOLERANCE = 1e-2
 SMALLEST_STEP_TOLERANCE = 1e-13
 """Below it rounding makes DOPRI5's error estimate useless, and its step collapses."""
 
+LARGEST_STEP = 6.0
+"""DOPRI5's largest step is 6·tolerance^(1/5) time scales: its order is 5, so errors fall where that binds too."""
+
 RELAXATIONS = 40.0
 """A pin that comes to rest settles to its creep like exp(−t·μN/(mε)); after 40 times that nothing is left of it."""
 
@@ -70,8 +73,7 @@ def simulate(
         apart from the first and the last.
     tolerance : float
         The accuracy to aim at, in m and m/s, relative for a motion larger than 1. While the pin slips, "explicit"
-        keeps the error near it. What sticking adds is of
-        first order in the regularisation.
+        keeps the error near it. What sticking adds is of first order in the regularisation.
     regularisation : float, optional
         ε in m/s below which friction is viscous; 100·tolerance if not given. It should stay well above the
         tolerance.
@@ -99,9 +101,7 @@ def simulate(
     scale = _time_scale(pin, end - start)
     if solver == "explicit":
         method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
-        step = (
-            6.0 * tolerance**0.2 * scale
-        )  # of order 5, so that even where it binds, errors fall with tolerance
+        step = LARGEST_STEP * tolerance**0.2 * scale
         local = max(STEP_TOLERANCE * tolerance, SMALLEST_STEP_TOLERANCE) * _motion_scale(pin, state)
     else:
         method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"

@@ -36,7 +36,8 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` stays stuck, in s; inf if friction never lets go.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning
-    pull q of the position: a single harmonic, whose first upward crossing is an arccos.
+    pull q of the position: a single harmonic, whose first upward crossing has a closed form. It is derived here
+    from the equations of motion: ``pin_formulas.release_time``, which is eq. 7 as printed, is there to judge it.
     """
     constant = motion.stiffness * motion.offset
     turning = motion.pull(z, 0.0) - constant

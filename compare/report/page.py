@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -178,7 +178,7 @@ def _pictures(run: Run, study: Study) -> list[Picture]:
     # in the order of the captions where there is one
     order = list(study.figures)
     return sorted(
-        [replace(picture) for picture in figures + animations],
+        figures + animations,
         key=lambda picture: order.index(picture.name) if picture.name in order else len(order),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import asdict
 from typing import Any
 
@@ -21,9 +22,9 @@ FLOW_TOLERANCE = 1e-11
 """Of the simulations that are subtracted from each other."""
 
 
-def parameters_of(pin: PinOnDisc, **changes: float) -> dict[str, float]:
-    """Return the parameters of ``pin`` for a claim; ``changes`` adds more, or replaces some."""
-    return asdict(pin) | changes
+def parameters_of(pin: PinOnDisc, *, without: Collection[str] = (), **changes: float) -> dict[str, float]:
+    """Return the parameters of ``pin`` for a claim, but those that it sweeps; ``changes`` adds or replaces some."""
+    return {name: value for name, value in asdict(pin).items() if name not in without} | changes
 
 
 def at_each(name: str, values: ArrayLike) -> str:

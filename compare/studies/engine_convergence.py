@@ -15,10 +15,10 @@ import numpy as np
 from compare.accuracy import COARSENING, extrapolated_order, observed_exponent
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import FIG5, FIG5_STARTS
 from compare.studies.common import at_each, parameters_of
 from compare.studies.engine_convergence_pictures import draw
 from compare.studies.exudyn_solvers import SOLVERS
-from compare.studies.paper import FIG5, FIG5_STARTS
 from compare.study import Data, Findings, Study
 from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.pin import simulate_polar_form

@@ -131,8 +131,7 @@ def position_claims(
     engine: Engine, loads: Sequence[float], positions: FloatArray, error: FloatArray
 ) -> tuple[Claim, ...]:
     """Return what the positions of rest say about (3), (4) and (5)."""
-    pin, X0 = parameters_of(PIN), PIN.offset
-    del pin["friction_force"]
+    pin, X0 = parameters_of(PIN, without=("friction_force",)), PIN.offset
     predicted = np.array([equilibrium_position(with_load(load)) for load in loads])
     how = (
         f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s, "
@@ -223,8 +222,7 @@ def existence_claim(engine: Engine, limits: Sequence[float]) -> Claim:
             decay = equilibrium_eigenvalues(pin)[0].real
             left = float(np.exp(decay * SETTLING)) * PIN.offset / min(radii) / revolution
         errors.append((error[0] + left) / PIN.disc_speed)
-    pin_values = parameters_of(PIN)
-    del pin_values["friction_force"]
+    pin_values = parameters_of(PIN, without=("friction_force",))
     return Claim(
         GONE,
         equation="(5)",
@@ -243,8 +241,7 @@ def eigenvalue_claims(
     engine: Engine, loads: Sequence[float], values: Sequence[tuple[ComplexArray, float]]
 ) -> tuple[Claim, ...]:
     """Return how the measured eigenvalues compare with the predicted ones, and with zero."""
-    pin = parameters_of(PIN)
-    del pin["friction_force"]
+    pin = parameters_of(PIN, without=("friction_force",))
     predicted = [
         matched(equilibrium_eigenvalues(with_load(load)), found)
         for load, (found, _) in zip(loads, values, strict=True)

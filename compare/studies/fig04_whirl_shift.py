@@ -11,9 +11,9 @@ import numpy as np
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import FIG4
 from compare.report.style import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.common import parameters_of
-from compare.studies.paper import FIG4
 from compare.study import Data, Findings, Study
 from reference_model import Orbit, PinOnDisc, whirl_orbit
 from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift, whirl_shift_error_limit

@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import FIG5, FIG5_STARTS
 from compare.studies.common import parameters_of, remaining_transient
 from compare.studies.fig05_pictures import animate, draw
-from compare.studies.paper import FIG5, FIG5_STARTS
 from compare.study import Data, Findings, Study
 from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.pin import simulate_polar_form

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compare.paper import FIG5
 from compare.report.style import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
-from compare.studies.paper import FIG5
 from compare.study import Data
 from reference_model.systems import FloatArray
 

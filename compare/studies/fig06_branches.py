@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import FIG4
 from compare.report.style import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.common import at_each, parameters_of
-from compare.studies.paper import FIG4
 from compare.study import Data, Findings, Study
 from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.pin_formulas import (
@@ -69,9 +69,9 @@ def measure(
     """Find the motions at several loads (μN in N), and the load below which there is no whirl."""
     whirls = {load: whirl(engine, load, SHOOTING) for load in whirl_loads}
     extents = np.array([extent(orbit) for orbit in whirls.values()])
-    rest = np.array([_rest(engine, load, 1e-9) for load in equilibrium_loads])
+    equilibria = equilibria_claim(engine, equilibrium_loads)
     claims = (
-        equilibria_claim(engine, equilibrium_loads),
+        equilibria,
         whirls_claim(engine, whirls),
         last_whirl_claim(engine),
         coexistence_claim(engine),
@@ -84,7 +84,7 @@ def measure(
             "whirl loads": np.array(whirl_loads),
             "whirl extents": extents,
             "equilibrium loads": np.array(equilibrium_loads),
-            "equilibrium radius": np.hypot(rest[:, -1, 0], rest[:, -1, 1]),
+            "equilibrium radius": np.hypot(*equilibria.measured[:, -1].T),
         },
     )
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import functools
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,9 @@ import numpy as np
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import CENTRED, FIG4, FIG5, FIG5_STARTS
 from compare.report.style import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from compare.studies.common import parameters_of
-from compare.studies.paper import CENTRED, FIG4, FIG5, FIG5_STARTS
 from compare.study import Data, Findings, Study
 from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.pin_formulas import whirl_radius
@@ -85,8 +86,9 @@ def all_motions() -> dict[str, Motion]:
 def measure(engine: Engine, motions: Mapping[str, Motion] | None = None) -> Findings:
     """Check the balance of every motion; keep that of Fig. 5's second start for the figure."""
     motions = motions or all_motions()
-    claims = tuple(balance_claim(engine, name, motion) for name, motion in motions.items())
-    balance = power_balance(_run(engine, motions[DRAWN], 1e-9))
+    run = functools.cache(functools.partial(_run, engine))
+    claims = tuple(balance_claim(engine, run, name, motion) for name, motion in motions.items())
+    balance = power_balance(run(motions[DRAWN], motions[DRAWN].tolerance))
     return Findings(
         claims,
         {
@@ -110,12 +112,14 @@ def _relative_residual(balance: PowerBalance) -> float:
     return float(np.max(np.abs(balance.residual)) / balance.turned_over)
 
 
-def balance_claim(engine: Engine, name: str, motion: Motion) -> Claim:
-    """Compare the largest residual of the balance of ``motion`` with zero."""
+def balance_claim(
+    engine: Engine, run: Callable[[Motion, float], Trajectory], name: str, motion: Motion
+) -> Claim:
+    """Compare the largest residual of the balance of ``motion`` with zero; ``run`` simulates it at a tolerance."""
     quadrature: dict[float, float] = {}
 
     def residual_at_ends(tolerance: float) -> FloatArray:
-        trajectory = _run(engine, motion, tolerance)
+        trajectory = run(motion, tolerance)
         balance, coarser = power_balance(trajectory), power_balance(_every_second(trajectory))
         quadrature[tolerance] = abs(_relative_residual(balance) - _relative_residual(coarser))
         return np.array([_relative_residual(balance), balance.residual[-1] / balance.turned_over])

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import FIG4
 from compare.report.style import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.common import at_each, parameters_of, turned
-from compare.studies.paper import FIG4
 from compare.study import Data, Findings, Study
 from reference_model.pin_formulas import (
     release_time,
@@ -106,13 +106,6 @@ def measure(
     )
 
 
-def swept_parameters() -> dict[str, float]:
-    """Return the parameters that all claims share."""
-    values = parameters_of(PIN)
-    del values["disc_speed"]
-    return values
-
-
 def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim]:
     """Return where pins that start inside of the radius (9) are in the end, and how often they slipped."""
     slips = 0
@@ -144,7 +137,7 @@ def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim
             predicted=np.zeros_like(measured),
             measured=measured,
             budget=ErrorBudget(np.repeat(np.max(error, axis=1, keepdims=True), 2, axis=1), resolution=1e-2),
-            parameters=swept_parameters(),
+            parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             note="Displacement on the disc over the distance from the axis, in x and y; starts where the least "
             f"force holds the pin, {where}. Error: the change at a larger tolerance, by which a law that only "
@@ -157,7 +150,7 @@ def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim
             predicted=0.0,
             measured=float(slips),
             budget=ErrorBudget(0.0, resolution=0.5),
-            parameters=swept_parameters(),
+            parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             note=f"Number of slip phases of all these motions, {where}.",
         ),
@@ -198,7 +191,7 @@ def releases(engine: Engine, speeds: Sequence[float]) -> tuple[FloatArray, Float
         predicted=predicted_turns(speeds),
         measured=measured,
         budget=ErrorBudget(np.where(np.isfinite(error), error, 0.0), resolution=1e-2),
-        parameters=swept_parameters(),
+        parameters=parameters_of(PIN, without=("disc_speed",)),
         source=SOURCE,
         unit="rad",
         note="Turn of the disc up to the end of the first stick phase, after a start where the least force holds "
@@ -264,7 +257,7 @@ def largest_radii(
             predicted=np.ones(len(searched)),
             measured=radii / predicted,
             budget=ErrorBudget(error / predicted, resolution=1e-2),
-            parameters=swept_parameters(),
+            parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             note=how
             + " In units of (9). Error: that of the bisection, and the change at a larger tolerance.",
@@ -276,7 +269,7 @@ def largest_radii(
             predicted=RESONANCE,
             measured=resonance,
             budget=ErrorBudget(resonance_error, resolution=1e-3 * RESONANCE),
-            parameters=swept_parameters(),
+            parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             unit="rad/s",
             note="Where 1/A² is smallest on the parabola in ω² through the first three radii: by (9) it is one.",
@@ -331,7 +324,7 @@ def theory() -> Findings:
             predicted=expected,
             measured=found,
             budget=ErrorBudget(errors, resolution=1e-3 * RESONANCE),
-            parameters={name: value for name, value in swept_parameters().items() if name != "damping"},
+            parameters=parameters_of(PIN, without=("disc_speed", "damping")),
             source=f"Fig. 4; β = {dampings[0]:g} … {dampings[-1]:g} N s/m is ours",
             unit="rad/s",
             note="Where the right side of (9) is largest, by differences.",
@@ -345,7 +338,7 @@ def theory() -> Findings:
             budget=ErrorBudget(
                 4.0 * np.finfo(float).eps, model=2.0 * (RESONANCE / float(speeds[0])) ** 2, resolution=0.05
             ),
-            parameters=swept_parameters(),
+            parameters=parameters_of(PIN, without=("disc_speed",)),
             source="Fig. 4; the values of ω are ours",
             note=f"Right side of (9) over (μN − C·X0)/(mω²), for {at_each('ω', speeds)} rad/s. Model error: twice "
             "the first term that is left out, (ω*/ω)² at the smallest ω.",

@@ -12,6 +12,7 @@ from scipy.linalg import expm
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
+from compare.paper import CENTRED
 from compare.studies.common import (
     ComplexArray,
     at_each,
@@ -22,7 +23,6 @@ from compare.studies.common import (
     real_and_imaginary,
     remaining_transient,
 )
-from compare.studies.paper import CENTRED
 from compare.studies.whirl_stability_pictures import draw
 from compare.study import Findings, Study
 from reference_model.pin_formulas import (
@@ -171,8 +171,7 @@ def settling_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Cla
         # One instant may be right by chance.
         errors.append(np.max(error, axis=0) + remaining_transient(track[:-1], track[-1], decay, DELAY))
     values, error = np.array(measured), np.array(errors)
-    pin_values = parameters_of(PIN)
-    del pin_values["disc_speed"]
+    pin_values = parameters_of(PIN, without=("disc_speed",))
     note = (
         f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s, for "
         f"{at_each('ω', speeds)} rad/s. Error: the change at a larger tolerance, and what is left of the "
@@ -215,8 +214,7 @@ def balance_claim(engine: Engine, starts: Sequence[float]) -> Claim:
     measured, error = refined(functools.partial(rates, INTERVAL), 1e-11)
     difference = np.abs(rates(2.0 * INTERVAL, 1e-11) - measured)
     rounding = 8.0 * np.finfo(float).eps * PIN.mass * K / (PIN.damping * INTERVAL)
-    pin_values = parameters_of(PIN)
-    del pin_values["disc_speed"]
+    pin_values = parameters_of(PIN, without=("disc_speed",))
     return Claim(
         BALANCE,
         equation="(11)",
@@ -247,8 +245,7 @@ def caught_claim(engine: Engine, speeds: Sequence[float]) -> Claim:
         )
 
     measured, error = refined(ends, 1e-7)
-    pin_values = parameters_of(PIN)
-    del pin_values["disc_speed"]
+    pin_values = parameters_of(PIN, without=("disc_speed",))
     return Claim(
         CAUGHT_BELOW,
         equation="(11)",
@@ -275,9 +272,7 @@ def eigenvalue_claims(
     errors = np.array([error for _, error in values])
     measured = np.array([found for found, _ in values])
     decaying = np.count_nonzero(measured.real < -errors[:, np.newaxis])
-    pin_values = parameters_of(PIN)
-    for swept in ("disc_speed", "damping"):
-        del pin_values[swept]
+    pin_values = parameters_of(PIN, without=("disc_speed", "damping"))
     where = f"for (ω, β) = {', '.join(f'({speed:g}, {damping:g})' for speed, damping in points)}"
     return (
         Claim(
@@ -393,9 +388,7 @@ def three_forms_claim() -> Claim:
         measured.append([*matched(of_12[i], roots[i]), *of_1[i]])
         predicted.append([*roots[i], *expected])
         errors.append(np.max(roots_error[i]) + max(np.max(of_12_error[i]), np.max(of_1_error[i])))
-    pin_values = parameters_of(PIN)
-    for swept in ("disc_speed", "damping"):
-        del pin_values[swept]
+    pin_values = parameters_of(PIN, without=("disc_speed", "damping"))
     return Claim(
         THREE_FORMS,
         equation="(12), (13)",
@@ -431,9 +424,7 @@ def hurwitz() -> tuple[FloatArray, FloatArray, FloatArray, tuple[Claim, ...]]:
     in_14 = np.array([min(coefficient_margins(pin)) > 0.0 for pin in pins])
     in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in pins])
     in_16 = np.array([upper_branch_margin(pin) > 0.0 for pin in pins])
-    values_of_pin = parameters_of(PIN)
-    for swept in ("disc_speed", "damping"):
-        del values_of_pin[swept]
+    values_of_pin = parameters_of(PIN, without=("disc_speed", "damping"))
     grid = (
         f"a grid of {len(ratio)} values of ω/k = {ratio[0]:g} … {ratio[-1]:g} and {len(damping)} of "
         f"β/(mk) = {damping[0]:g} … {damping[-1]:g}"

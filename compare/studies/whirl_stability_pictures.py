@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compare.paper import CENTRED
 from compare.report.style import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.paper import CENTRED
 from compare.study import Data
 from reference_model.pin_formulas import variational_matrix
 

@@ -1,6 +1,13 @@
 """What the tests of the studies share."""
 
+import pytest
+from broken_engines import broken_engines
+
 from compare.engines import engines
+
+for_every_sound_engine = pytest.mark.parametrize(
+    "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
+)
 
 
 def verdicts(findings):

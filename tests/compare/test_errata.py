@@ -8,7 +8,7 @@ import pytest
 
 from compare import errata
 from compare.errata import ERRATA
-from compare.studies.paper import CENTRED
+from compare.paper import CENTRED
 from reference_model import whirl_orbit
 from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift
 

@@ -10,6 +10,7 @@ import reference_model
 from compare.accuracy import extrapolated_order, observed_exponent
 from compare.claim import Verdict
 from compare.engines import Engine, engines
+from compare.paper import FIG5, FIG5_STARTS
 from compare.report.style import paper_style, saved
 from compare.studies import STUDIES
 from compare.studies.engine_convergence import (
@@ -31,7 +32,6 @@ from compare.studies.engine_convergence import (
     measure,
     release_shift_by_creep,
 )
-from compare.studies.paper import FIG5, FIG5_STARTS
 from reference_model.pin import SlipMotion
 from reference_model.trajectory import Solution, Trajectory
 

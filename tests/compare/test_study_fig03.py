@@ -3,19 +3,16 @@
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import findings_of, sentences, verdicts
+from studies_under_test import findings_of, for_every_sound_engine, sentences, verdicts
 
 from compare.claim import Verdict
-from compare.engines import engines
 from compare.studies import fig03_self_centring as study
 
 FEW = {"loads": (0.02, 0.06), "limits": (0.98, 1.2)}
 ALL = {study.RESTS, study.CIRCLE, study.VANISHES, study.GONE, study.EIGENVALUES, study.STABLE}
 
 
-@pytest.mark.parametrize(
-    "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
-)
+@for_every_sound_engine
 def test_every_statement_holds_in_a_sound_engine(engine):
     findings = study.measure(engine, **FEW)
     assert set(verdicts(findings)) == ALL

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import findings_of, sentences, verdicts
+from studies_under_test import findings_of, for_every_sound_engine, sentences, verdicts
 
 from compare.claim import Verdict
-from compare.engines import engines
 from compare.studies import sticking_domain as study
 from reference_model.pin_formulas import squared_holding_force
 
@@ -14,9 +13,7 @@ FEW = {"speeds": (1.4,), "searched": (0.9, 1.0, 1.1)}
 ALL = {study.STAYS, study.HOLDS, study.LETS_GO, study.LARGEST, study.RESONANT}
 
 
-@pytest.mark.parametrize(
-    "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
-)
+@for_every_sound_engine
 def test_every_statement_holds_in_a_sound_engine(engine):
     findings = study.measure(engine, **FEW)
     assert set(verdicts(findings)) == ALL

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import findings_of, sentences, verdicts
+from studies_under_test import findings_of, for_every_sound_engine, sentences, verdicts
 
 from compare.claim import Verdict
-from compare.engines import engines
 from compare.studies import whirl_stability as study
 
 FEW = {"speeds": (1.5,), "starts": (0.8, 1.5), "points": ((1.5, 0.1), (1.5, 1.0))}
@@ -21,9 +20,7 @@ ALL = {
 }
 
 
-@pytest.mark.parametrize(
-    "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
-)
+@for_every_sound_engine
 def test_every_statement_holds_in_a_sound_engine(engine):
     findings = study.measure(engine, **FEW)
     assert set(verdicts(findings)) == ALL
