@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,48 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinOnDisc:
+class _SupportedMass:
+    """A mass on springs and dampers, pressed on a disc that turns at constant speed: what pin and disc share."""
+
+    mass: float
+    stiffness: float
+    damping: float
+    friction_force: float
+    disc_speed: float
+    offset: float = 0.0
+
+    state_size: ClassVar[int]
+    _units: ClassVar[dict[str, str]] = {
+        "mass": "kg",
+        "stiffness": "N/m",
+        "damping": "N s/m",
+        "friction_force": "N",
+    }
+    _positive: ClassVar[tuple[str, ...]] = ("mass",)
+    _not_negative: ClassVar[tuple[str, ...]] = ("stiffness", "damping", "friction_force")
+
+    def __post_init__(self) -> None:
+        """Refuse what no system can be."""
+        for field in fields(self):
+            if field.name != "contact_points":
+                object.__setattr__(self, field.name, finite_number(field.name, getattr(self, field.name)))
+        for name in (*self._positive, *self._not_negative):
+            value = getattr(self, name)
+            if value < 0.0 or (value == 0.0 and name in self._positive):
+                allowed = "> 0" if name in self._positive else ">= 0"
+                raise ValueError(f"{name} = {value:g} {self._units[name]}: it must be {allowed}")
+
+    @property
+    def natural_frequency(self) -> float:
+        """k = √(C/m) of eq. 11, in rad/s."""
+        return math.sqrt(self.stiffness / self.mass)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
+
+    Its state is x, y in m and vx, vy in m/s.
 
     Parameters
     ----------
@@ -38,30 +78,78 @@ class PinOnDisc:
 
     """
 
-    mass: float
-    stiffness: float
-    damping: float
-    friction_force: float
-    disc_speed: float
-    offset: float = 0.0
+    state_size: ClassVar[int] = 4
 
-    state_size = 4  # x, y, vx, vy
+
+@dataclass(frozen=True, kw_only=True)
+class DiscOnDisc(_SupportedMass):
+    """A friction disc on springs and dampers that a ring of contact couples to a turning master disc (Fig. 7).
+
+    A torsional damper couples it to a shaft that turns at constant speed (19). Its state is x, y in m, the angle
+    in rad, vx, vy in m/s and the spin in rad/s.
+
+    Parameters
+    ----------
+    mass : float
+        m in kg, > 0.
+    polar_inertia : float
+        J in kg m², > 0.
+    stiffness : float
+        C of the support in N/m, >= 0, the same in every radial direction.
+    damping : float
+        β of the support in N s/m, >= 0.
+    friction_force : float
+        μN of the whole ring in N, >= 0.
+    disc_speed : float
+        ω of the master disc in rad/s, of either sign.
+    contact_radius : float
+        R of the ring in m, > 0.
+    shaft_damping : float
+        b of the torsional damper in N m s/rad, >= 0.
+    shaft_speed : float
+        Ω of the shaft in rad/s, of either sign.
+    offset : float
+        X0 in m: the springs are relaxed at (X0, 0), the master disc turns about (0, 0).
+    contact_points : int or None
+        Number of points that the contact consists of, >= 3: point i is at the angle φ + 2πi/n and carries N/n. None
+        for the continuous ring of (20).
+
+    Raises
+    ------
+    ValueError
+        If a value is not a finite number or is outside of its range.
+
+    """
+
+    polar_inertia: float
+    contact_radius: float
+    shaft_damping: float
+    shaft_speed: float
+    contact_points: int | None = None
+
+    state_size: ClassVar[int] = 6
+    _units: ClassVar[dict[str, str]] = _SupportedMass._units | {
+        "polar_inertia": "kg m²",
+        "contact_radius": "m",
+        "shaft_damping": "N m s/rad",
+    }
+    _positive: ClassVar[tuple[str, ...]] = (*_SupportedMass._positive, "polar_inertia", "contact_radius")
+    _not_negative: ClassVar[tuple[str, ...]] = (*_SupportedMass._not_negative, "shaft_damping")
 
     def __post_init__(self) -> None:
-        """Refuse what no pin can be."""
-        for field in fields(self):
-            object.__setattr__(self, field.name, finite_number(field.name, getattr(self, field.name)))
-        if self.mass <= 0.0:
-            raise ValueError(f"mass = {self.mass:g} kg: it must be > 0")
-        for name, unit in (("stiffness", "N/m"), ("damping", "N s/m"), ("friction_force", "N")):
-            value = getattr(self, name)
-            if value < 0.0:
-                raise ValueError(f"{name} = {value:g} {unit}: it must be >= 0")
+        """Refuse what no disc can be."""
+        super().__post_init__()
+        if self.contact_points is not None:
+            points = finite_number("contact_points", self.contact_points)
+            if isinstance(self.contact_points, bool) or points != int(points) or points < 3:
+                raise ValueError(
+                    f"contact_points = {self.contact_points}: it must be a whole number >= 3, or None for the "
+                    "continuous ring; a single point is a PinOnDisc"
+                )
+            object.__setattr__(self, "contact_points", int(points))
 
-    @property
-    def natural_frequency(self) -> float:
-        """k = √(C/m) of eq. 11, in rad/s."""
-        return math.sqrt(self.stiffness / self.mass)
+
+System: TypeAlias = PinOnDisc | DiscOnDisc
 
 
 def finite_number(name: str, value: Any) -> float:
@@ -77,7 +165,7 @@ def finite_number(name: str, value: Any) -> float:
     return number
 
 
-def checked_state(system: PinOnDisc, initial_state: ArrayLike) -> FloatArray:
+def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
     """Return ``initial_state`` as an array of shape ``(system.state_size,)``, or raise ``ValueError``."""
     state = _float_array("initial_state", initial_state)
     if state.shape != (system.state_size,):

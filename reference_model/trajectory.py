@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import FloatArray, System
 
 
 class SimulationError(RuntimeError):
@@ -18,10 +18,11 @@ class SimulationError(RuntimeError):
 class Phase:
     """A span of time in which the contact slips or sticks.
 
-    ``initial_state`` is the state at ``start``; a phase ends where the next one starts.
+    ``initial_state`` is the state at ``start``; a phase ends where the next one starts. In a "pivot" phase one
+    of several contact points rests on the master disc and the disc turns about it.
     """
 
-    kind: Literal["slip", "stick"]
+    kind: Literal["slip", "pivot", "stick"]
     start: float
     end: float
     initial_state: FloatArray
@@ -60,12 +61,12 @@ class Trajectory:
 
     Parameters
     ----------
-    system : PinOnDisc
+    system : PinOnDisc or DiscOnDisc
         The parameters.
     times : array of shape (n,)
         In s.
-    states : array of shape (n, 4)
-        x, y in m and vx, vy in m/s.
+    states : array of shape (n, 4) or (n, 6)
+        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
     phases : tuple of Phase
         From ``times[0]`` to ``times[-1]``, without gaps.
     solution : Solution
@@ -73,7 +74,7 @@ class Trajectory:
 
     """
 
-    system: PinOnDisc
+    system: System
     times: FloatArray
     states: FloatArray
     phases: tuple[Phase, ...]
@@ -86,7 +87,7 @@ class Trajectory:
 
     @property
     def at_end(self) -> FloatArray:
-        """The last state, shape (4,)."""
+        """The last state, shape (4,) or (6,)."""
         return np.asarray(self.states[-1])
 
     @property
@@ -96,8 +97,10 @@ class Trajectory:
 
     @property
     def slip_velocity(self) -> FloatArray:
-        """Velocity relative to the disc below, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
-        x, y, vx, vy = self.states.T
+        """Velocity of the centre relative to the disc below, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
+        velocities = self.system.state_size // 2
+        x, y = self.states.T[:2]
+        vx, vy = self.states.T[velocities : velocities + 2]
         omega = self.system.disc_speed
         return np.column_stack((vx + omega * y, vy - omega * x))
 
@@ -108,7 +111,7 @@ class Trajectory:
 
     @property
     def stick_phases(self) -> tuple[Phase, ...]:
-        """The phases in which the pin turns with the disc."""
+        """The phases in which pin or disc turn with the disc below."""
         return tuple(phase for phase in self.phases if phase.kind == "stick")
 
     @property

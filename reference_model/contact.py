@@ -1,0 +1,348 @@
+"""Coulomb friction between two discs: of a pin, of points on a ring, of a ring, of the expansion (22), of an annulus.
+
+All laws answer the same question: which force and moment act on the disc while its centre slips with u over the
+master disc and the master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the
+centre slips with u − i·S·r·exp(iα) (21). Plane vectors are complex numbers, and forces are shares of μN: a force
+in N per N, a moment in m.
+
+Friction has no inner time, so that all laws depend on the ratio of u and S only (degree 0). The laws of circles
+are *isotropic* besides: the force is opposite to u, and neither it nor the moment depends on the angle φ.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy.special import ellipe, ellipkm1, hyp2f1
+
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, finite_number
+
+
+class Contact(Protocol):
+    """A law of friction between two discs."""
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """Return force (N per N of μN) and moment (m) on the disc.
+
+        Parameters
+        ----------
+        slip : complex
+            u of the disc's centre, (ẋ + ωy) + i(ẏ − ωx), in m/s.
+        relative_spin : float
+            S = ω − φ̇ in rad/s.
+        angle : float
+            φ of the disc in rad.
+
+        """
+        ...
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """Return the derivatives of (F_x, F_y, M) by (u_x, u_y, S, φ), shape (3, 4).
+
+        Raises ``ValueError`` where a point of the contact is at rest, because there friction has no derivative.
+        """
+        ...
+
+
+class Shares(NamedTuple):
+    """Resistance to slip of the centre (N per N) and moment about it (m), per newton of μN."""
+
+    resistance: float
+    moment: float
+
+
+class Slopes(NamedTuple):
+    """Derivatives of :class:`Shares` by slip speed U (m/s) and relative spin S (rad/s)."""
+
+    resistance_by_slip: float
+    resistance_by_spin: float
+    moment_by_slip: float
+    moment_by_spin: float
+
+
+class IsotropicContact(ABC):
+    """A law that looks the same from all directions: −F(U, S)·u/U and M(U, S), with U = |u|."""
+
+    @abstractmethod
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """Return F and M for U >= 0 and S of either sign, not both zero; F is zero at U = 0."""
+
+    @abstractmethod
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """Return the derivatives of F and M, at U = 0 those from the side U > 0.
+
+        Raises ``ValueError`` where the law has no derivative.
+        """
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """As :meth:`Contact.force_and_moment`; at rest, where friction is set-valued, zero."""
+        speed = abs(slip)
+        if speed == 0.0 and relative_spin == 0.0:
+            return 0j, 0.0
+        resistance, moment = self.shares(speed, relative_spin)
+        return (-resistance * slip / speed if speed > 0.0 else 0j), moment
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """As :meth:`Contact.jacobian`.
+
+        Slip across its direction turns the force, so that it acts like a damper F/U; along it the slope counts. At
+        U = 0 the two are the same.
+        """
+        speed = abs(slip)
+        slopes = self.slopes(speed, relative_spin)
+        direction = slip / speed if speed > 0.0 else 1.0 + 0j
+        along = np.array((direction.real, direction.imag))
+        across = np.array((-direction.imag, direction.real))
+        turning = (
+            self.shares(speed, relative_spin).resistance / speed if speed > 0.0 else slopes.resistance_by_slip
+        )
+        result = np.zeros((3, 4))
+        result[:2, :2] = -slopes.resistance_by_slip * np.outer(along, along) - turning * np.outer(
+            across, across
+        )
+        if speed > 0.0:
+            result[:2, 2] = -slopes.resistance_by_spin * along
+            result[2, :2] = slopes.moment_by_slip * along
+        result[2, 2] = slopes.moment_by_spin
+        return result
+
+
+@dataclass(frozen=True)
+class Pin(IsotropicContact):
+    """Contact in one point, the centre (1): full friction against slip, no moment."""
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`: none but at rest, where there is no derivative."""
+        if slip_speed == 0.0:
+            raise ValueError("slip = 0 m/s: the pin is at rest, where friction has no derivative")
+        return Slopes(0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Ring(IsotropicContact):
+    """Contact on the whole circle of radius R (20), in closed form.
+
+    With W = R·|S| the mean slip speed on the circle is P(U, W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and
+    F = ∂P/∂U, M = R·∂P/∂W. For k = W/U <= 1 and m = k² Landen's transformation turns P into
+    (2/π)·U·[2E(m) − (1 − m)·K(m)], so that::
+
+        ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
+
+    with B = [E − (1 − m)K]/m and D = (K − E)/m. P is symmetric in U and W, which gives W > U. Nothing
+    cancels anywhere; where U = W, one point of the circle is at rest and the slopes are infinite (like a logarithm).
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+
+    """
+
+    radius: float
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size."""
+        _require_radius("radius", self.radius)
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        rim = self.radius * relative_spin
+        if slip_speed >= abs(rim):
+            resistance, along_rim = _mean_directions(slip_speed, abs(rim))
+        else:
+            along_rim, resistance = _mean_directions(abs(rim), slip_speed)
+        return Shares(resistance, math.copysign(self.radius * along_rim, rim))
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`; there are none where U = W."""
+        rim = abs(self.radius * relative_spin)
+        if slip_speed == rim:
+            raise ValueError(
+                f"slip = {slip_speed:g} m/s = radius·|relative spin|: one point of the ring is at rest, "
+                "where friction has no derivative"
+            )
+        larger, smaller = max(slip_speed, rim), min(slip_speed, rim)
+        ratio = smaller / larger
+        # Second derivative of P by the smaller argument; degree 0 of the first ones gives the others.
+        curvature = 2.0 / math.pi * _integral_d(ratio * ratio, _complement(larger, smaller)) / larger
+        mixed = -ratio * curvature
+        by_larger = ratio * ratio * curvature
+        by_slip, by_rim = (by_larger, curvature) if slip_speed > rim else (curvature, by_larger)
+        sign = math.copysign(1.0, relative_spin)
+        return Slopes(
+            by_slip, sign * self.radius * mixed, sign * self.radius * mixed, self.radius**2 * by_rim
+        )
+
+
+@dataclass(frozen=True)
+class ThreeTermRing(IsotropicContact):
+    """The paper's approximation (23) of the ring: three terms of the expansion (22) of 1/|ν_r|.
+
+    With U = ν̄·cos α and R·S = ν̄·sin α it is F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and
+    M = R·sin α·(1 − ½cos²α + ¾cos²α·sin²α). Off by up to 0.10 near U = 0.77·R|S| and its reciprocal.
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+
+    """
+
+    radius: float
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size."""
+        _require_radius("radius", self.radius)
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        _, c, s = self._polar(slip_speed, relative_spin)
+        both = 0.75 * (c * s) ** 2
+        return Shares(c * (1.0 - 0.5 * s**2 + both), self.radius * s * (1.0 - 0.5 * c**2 + both))
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`."""
+        speed, c, s = self._polar(slip_speed, relative_spin)
+        resistance = s * (-1.0 + 0.5 * s**2 - c**2 - 2.25 * (c * s) ** 2 + 1.5 * c**4) / speed  # dF/dα over ν̄
+        moment = self.radius * c * (1.0 - 0.5 * c**2 + s**2 - 1.5 * s**4 + 2.25 * (c * s) ** 2) / speed
+        return Slopes(-s * resistance, self.radius * c * resistance, -s * moment, self.radius * c * moment)
+
+    def _polar(self, slip_speed: float, relative_spin: float) -> tuple[float, float, float]:
+        """Return ν̄ of (22), cos α and sin α."""
+        rim = self.radius * relative_spin
+        speed = math.hypot(slip_speed, rim)
+        if speed == 0.0:
+            raise ValueError("slip = 0 m/s and relative spin = 0 rad/s: the disc is at rest")
+        return speed, slip_speed / speed, rim / speed
+
+
+@dataclass(frozen=True)
+class PointsOnRing:
+    """Contact in n points on a circle, each with 1/n of the load: the paper's own discretisation with n = 6.
+
+    Point i is at φ + 2πi/n, so that the law keeps the angle.
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+    points : int
+        n >= 3.
+
+    """
+
+    radius: float
+    points: int
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size, and place the points."""
+        _require_radius("radius", self.radius)
+        if isinstance(self.points, bool) or self.points != int(self.points) or self.points < 3:
+            raise ValueError(f"points = {self.points}: it must be a whole number >= 3")
+        around = tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
+        object.__setattr__(self, "_around", around)
+
+    def arms(self, angle: float) -> list[complex]:
+        """Return the positions of the points relative to the centre, in m."""
+        turn = self.radius * cmath.exp(1j * angle)
+        return [turn * point for point in self._around]  # type: ignore[attr-defined]
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """As :meth:`Contact.force_and_moment`; a point at rest, where friction is set-valued, gives nothing."""
+        force, moment = 0j, 0.0
+        for arm in self.arms(angle):
+            velocity = slip - 1j * relative_spin * arm
+            speed = abs(velocity)
+            if speed > 0.0:
+                friction = -velocity / speed
+                force += friction
+                moment += (arm.conjugate() * friction).imag
+        return force / self.points, moment / self.points
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """As :meth:`Contact.jacobian`."""
+        result = np.zeros((3, 4))
+        for arm in self.arms(angle):
+            velocity = slip - 1j * relative_spin * arm
+            speed = abs(velocity)
+            if speed == 0.0:
+                raise ValueError(
+                    f"angle = {angle:g} rad: a point is at rest, where friction has no derivative"
+                )
+            direction = velocity / speed
+            across = 1j * direction
+            # Slip of the point by u_x, u_y, S, φ; friction changes with its part across the direction only.
+            by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
+            turning = -((by_unknowns * across.conjugate()).real / speed)
+            friction = turning * across
+            result[0] += friction.real
+            result[1] += friction.imag
+            result[2] += (arm.conjugate() * friction).imag
+            result[2, 3] += ((1j * arm).conjugate() * -direction).imag  # the arm turns too
+        return result / self.points
+
+
+def contact_of(system: System) -> Contact:
+    """Return the law of friction that the parameters of ``system`` stand for."""
+    if isinstance(system, PinOnDisc):
+        return Pin()
+    if system.contact_points is None:
+        return Ring(system.contact_radius)
+    return PointsOnRing(system.contact_radius, system.contact_points)
+
+
+def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` if that is of points, naming ``what``."""
+    law = contact_of(system) if contact is None else contact
+    if not isinstance(law, IsotropicContact):
+        raise ValueError(
+            f"contact_points = {system.contact_points}: {what} of a disc on single points turn with its angle; "
+            "take the continuous ring, contact_points = None"
+        )
+    return law
+
+
+def _mean_directions(larger: float, smaller: float) -> tuple[float, float]:
+    """Return ∂P by its larger and by its smaller argument, both >= 0 and the larger > 0."""
+    ratio = smaller / larger
+    m, complement = ratio * ratio, _complement(larger, smaller)
+    return 2.0 / math.pi * float(ellipe(m)), 2.0 / math.pi * ratio * _integral_b(m, complement)
+
+
+def _complement(larger: float, smaller: float) -> float:
+    """Return 1 − m without the cancellation near m = 1."""
+    return (larger - smaller) / larger * ((larger + smaller) / larger)
+
+
+SMALL = 0.1
+"""Parameter m below which B and D come from their series: the differences would lose digits."""
+
+
+def _integral_b(m: float, complement: float) -> float:
+    """Return B(m) = ∫cos²t/√(1 − m·sin²t) dt over a quarter turn, an elliptic integral (DLMF 19.2)."""
+    if m < SMALL:
+        return math.pi / 4.0 * float(hyp2f1(0.5, 0.5, 2.0, m))
+    if complement == 0.0:
+        return 1.0
+    return float(ellipe(m) - complement * ellipkm1(complement)) / m
+
+
+def _integral_d(m: float, complement: float) -> float:
+    """Return D(m) = ∫sin²t/√(1 − m·sin²t) dt over a quarter turn; ``complement`` is 1 − m > 0."""
+    if m < SMALL:
+        return math.pi / 4.0 * float(hyp2f1(0.5, 1.5, 2.0, m))
+    return float(ellipkm1(complement) - ellipe(m)) / m
+
+
+def _require_radius(name: str, value: float) -> None:
+    if finite_number(name, value) <= 0.0:
+        raise ValueError(f"{name} = {value:g} m: it must be > 0")
