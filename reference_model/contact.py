@@ -1,4 +1,4 @@
-"""Coulomb friction between two discs: of a pin, of points on a ring, of a ring, of the expansion (22), of an annulus.
+"""Coulomb friction between two discs: of a pin, of a ring, of points on a ring, and of the expansion (22).
 
 All laws answer the same question: which force and moment act on the disc while its centre slips with u over the
 master disc and the master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the
@@ -6,7 +6,8 @@ centre slips with u − i·S·r·exp(iα) (21). Plane vectors are complex number
 in N per N, a moment in m.
 
 Friction has no inner time, so that all laws depend on the ratio of u and S only (degree 0). The laws of circles
-are *isotropic* besides: the force is opposite to u, and neither it nor the moment depends on the angle φ.
+are *isotropic* besides: the force is opposite to u, and neither its size nor the moment depends on the direction of
+u or on the angle φ.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ import cmath
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
+from numbers import Integral
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.special import ellipe, ellipkm1, hyp2f1
 
+from reference_model.ring_integrals import mean_curvatures, mean_directions
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, finite_number
 
 
@@ -85,7 +88,7 @@ class IsotropicContact(ABC):
         if speed == 0.0 and relative_spin == 0.0:
             return 0j, 0.0
         resistance, moment = self.shares(speed, relative_spin)
-        return (-resistance * slip / speed if speed > 0.0 else 0j), moment
+        return (-resistance * (slip / speed) if speed > 0.0 else 0j), moment
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
         """As :meth:`Contact.jacobian`.
@@ -131,14 +134,8 @@ class Pin(IsotropicContact):
 class Ring(IsotropicContact):
     """Contact on the whole circle of radius R (20), in closed form.
 
-    With W = R·|S| the mean slip speed on the circle is P(U, W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and
-    F = ∂P/∂U, M = R·∂P/∂W. For k = W/U <= 1 and m = k² Landen's transformation turns P into
-    (2/π)·U·[2E(m) − (1 − m)·K(m)], so that::
-
-        ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
-
-    with B = [E − (1 − m)K]/m and D = (K − E)/m. P is symmetric in U and W, which gives W > U. Nothing
-    cancels anywhere; where U = W, one point of the circle is at rest and the slopes are infinite (like a logarithm).
+    With the mean slip speed P(U, W) on the circle, W = R·|S|, it is F = ∂P/∂U and M = R·∂P/∂W·sign(S): see
+    :mod:`reference_model.ring_integrals`. Both are accurate to rounding for all ratios of U and W.
 
     Parameters
     ----------
@@ -156,11 +153,8 @@ class Ring(IsotropicContact):
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         """As :meth:`IsotropicContact.shares`."""
         rim = self.radius * relative_spin
-        if slip_speed >= abs(rim):
-            resistance, along_rim = _mean_directions(slip_speed, abs(rim))
-        else:
-            along_rim, resistance = _mean_directions(abs(rim), slip_speed)
-        return Shares(resistance, math.copysign(self.radius * along_rim, rim))
+        along_slip, along_rim = mean_directions(slip_speed, abs(rim))
+        return Shares(along_slip, math.copysign(self.radius * along_rim, rim))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
         """As :meth:`IsotropicContact.slopes`; there are none where U = W."""
@@ -170,25 +164,19 @@ class Ring(IsotropicContact):
                 f"slip = {slip_speed:g} m/s = radius·|relative spin|: one point of the ring is at rest, "
                 "where friction has no derivative"
             )
-        larger, smaller = max(slip_speed, rim), min(slip_speed, rim)
-        ratio = smaller / larger
-        # Second derivative of P by the smaller argument; degree 0 of the first ones gives the others.
-        curvature = 2.0 / math.pi * _integral_d(ratio * ratio, _complement(larger, smaller)) / larger
-        mixed = -ratio * curvature
-        by_larger = ratio * ratio * curvature
-        by_slip, by_rim = (by_larger, curvature) if slip_speed > rim else (curvature, by_larger)
-        sign = math.copysign(1.0, relative_spin)
-        return Slopes(
-            by_slip, sign * self.radius * mixed, sign * self.radius * mixed, self.radius**2 * by_rim
-        )
+        by_slip, mixed, by_rim = mean_curvatures(slip_speed, rim)
+        mixed *= math.copysign(self.radius, relative_spin)
+        return Slopes(by_slip, mixed, mixed, self.radius**2 * by_rim)
 
 
 @dataclass(frozen=True)
 class ThreeTermRing(IsotropicContact):
-    """The paper's approximation (23) of the ring: three terms of the expansion (22) of 1/|ν_r|.
+    """The paper's approximation (23) of the ring: three terms of the expansion (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α it is F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and
-    M = R·sin α·(1 − ½cos²α + ¾cos²α·sin²α). Off by up to 0.10 near U = 0.77·R|S| and its reciprocal.
+    M = R·sin α·(1 − ½cos²α + ¾cos²α·sin²α). Like the ring's they have a potential, ν̄·P(α) with
+    P = 1 − ¼cos²α·sin²α: the mean slip speed up to the same order. It is convex, so that the approximation never
+    puts in power. Off by up to 0.10 near U = 0.77·R|S| (force) and at its reciprocal (moment).
 
     Parameters
     ----------
@@ -212,9 +200,9 @@ class ThreeTermRing(IsotropicContact):
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
         """As :meth:`IsotropicContact.slopes`."""
         speed, c, s = self._polar(slip_speed, relative_spin)
-        resistance = s * (-1.0 + 0.5 * s**2 - c**2 - 2.25 * (c * s) ** 2 + 1.5 * c**4) / speed  # dF/dα over ν̄
-        moment = self.radius * c * (1.0 - 0.5 * c**2 + s**2 - 1.5 * s**4 + 2.25 * (c * s) ** 2) / speed
-        return Slopes(-s * resistance, self.radius * c * resistance, -s * moment, self.radius * c * moment)
+        curvature = (0.5 + 3.75 * (c * s) ** 2) / speed  # P + d²P/dα² over ν̄
+        mixed = -self.radius * c * s * curvature
+        return Slopes(s**2 * curvature, mixed, mixed, (self.radius * c) ** 2 * curvature)
 
     def _polar(self, slip_speed: float, relative_spin: float) -> tuple[float, float, float]:
         """Return ν̄ of (22), cos α and sin α."""
@@ -244,17 +232,19 @@ class PointsOnRing:
     points: int
 
     def __post_init__(self) -> None:
-        """Refuse a circle of no size, and place the points."""
+        """Refuse a circle of no size and what is no number of points."""
         _require_radius("radius", self.radius)
-        if isinstance(self.points, bool) or self.points != int(self.points) or self.points < 3:
-            raise ValueError(f"points = {self.points}: it must be a whole number >= 3")
-        around = tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
-        object.__setattr__(self, "_around", around)
+        require_whole("points", self.points, least=3)
+
+    @cached_property
+    def _around(self) -> tuple[complex, ...]:
+        """The points on the unit circle at φ = 0."""
+        return tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
 
     def arms(self, angle: float) -> list[complex]:
         """Return the positions of the points relative to the centre, in m."""
         turn = self.radius * cmath.exp(1j * angle)
-        return [turn * point for point in self._around]  # type: ignore[attr-defined]
+        return [turn * point for point in self._around]
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         """As :meth:`Contact.force_and_moment`; a point at rest, where friction is set-valued, gives nothing."""
@@ -311,36 +301,10 @@ def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, w
     return law
 
 
-def _mean_directions(larger: float, smaller: float) -> tuple[float, float]:
-    """Return ∂P by its larger and by its smaller argument, both >= 0 and the larger > 0."""
-    ratio = smaller / larger
-    m, complement = ratio * ratio, _complement(larger, smaller)
-    return 2.0 / math.pi * float(ellipe(m)), 2.0 / math.pi * ratio * _integral_b(m, complement)
-
-
-def _complement(larger: float, smaller: float) -> float:
-    """Return 1 − m without the cancellation near m = 1."""
-    return (larger - smaller) / larger * ((larger + smaller) / larger)
-
-
-SMALL = 0.1
-"""Parameter m below which B and D come from their series: the differences would lose digits."""
-
-
-def _integral_b(m: float, complement: float) -> float:
-    """Return B(m) = ∫cos²t/√(1 − m·sin²t) dt over a quarter turn, an elliptic integral (DLMF 19.2)."""
-    if m < SMALL:
-        return math.pi / 4.0 * float(hyp2f1(0.5, 0.5, 2.0, m))
-    if complement == 0.0:
-        return 1.0
-    return float(ellipe(m) - complement * ellipkm1(complement)) / m
-
-
-def _integral_d(m: float, complement: float) -> float:
-    """Return D(m) = ∫sin²t/√(1 − m·sin²t) dt over a quarter turn; ``complement`` is 1 − m > 0."""
-    if m < SMALL:
-        return math.pi / 4.0 * float(hyp2f1(0.5, 1.5, 2.0, m))
-    return float(ellipkm1(complement) - ellipe(m)) / m
+def require_whole(name: str, value: int, *, least: int) -> None:
+    """Raise ``ValueError`` naming ``value`` unless it is an integer of at least ``least``."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        raise ValueError(f"{name} = {value!r}: it must be a whole number >= {least}")
 
 
 def _require_radius(name: str, value: float) -> None:

@@ -1,7 +1,12 @@
-"""Periodic orbits by shooting, with any engine's ``simulate``."""
+"""Periodic orbits by shooting, with any engine's ``simulate``.
+
+The angle of a disc drops out on an isotropic contact: what comes back after a period are place, velocity and
+spin. Without offset everything looks the same from all directions, and a motion may come back turned about the axis.
+"""
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -10,12 +15,19 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from reference_model.contact import isotropic_contact_of
 from reference_model.integrate import simulate as reference_simulate
-from reference_model.pin_formulas import whirl_frequency, whirl_radius
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.steady_states import Whirl, whirls, why_no_whirl
+from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
 Simulate = Callable[..., Trajectory]
+
+X, Y, VX, VY, SPIN = range(5)
+"""Places in the part of the state that an orbit is about; a pin has no spin."""
+
+PERIOD, LOAD, TURN = -3, -2, -1
+"""Places behind that part in the unknowns of shooting: T, μN, and the angle θ of a turn about the axis."""
 
 CENTRAL = 1e-5
 """Relative step of the central differences that give multipliers."""
@@ -31,44 +43,67 @@ CONVERGED = 1e-9
 FRESH = 1e-6
 """Relative miss below which the derivatives are good enough to be used again."""
 
+FARTHEST_PERIOD = 0.5
+"""Relative change of the period beyond which an orbit is no longer near to the guess."""
+
+RECURRENCE = 0.05
+"""Largest relative difference of two states between which a motion is taken to have come round."""
+
+LEAST_MODULATION = 1e-6
+"""Swing of the radius, as a fraction of it, that tells a modulated cycle from a whirl found to ``CONVERGED``."""
+
 
 @dataclass(frozen=True)
 class Flow:
-    """The return map of an engine, and its derivatives, over unknowns (x, y, vx, vy, T, μN)."""
+    """The return map of an engine, and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ)."""
 
     simulate: Simulate
-    system: PinOnDisc
+    system: System
     tolerance: float
 
+    def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
+        """Return the unknowns of the motion that starts from ``state``, shape (4,) or (6,)."""
+        return np.array([*_without_angle(state), period, load, turn])
+
+    def start(self, unknowns: FloatArray) -> FloatArray:
+        """Return the state, shape (4,) or (6,), from which the motion of ``unknowns`` starts; its angle is zero."""
+        part = unknowns[:PERIOD]
+        return np.insert(part, 2, 0.0) if isinstance(self.system, DiscOnDisc) else part.copy()
+
     def miss(self, unknowns: FloatArray) -> FloatArray:
-        """Return Φ_T(state) − state, shape (4,)."""
-        system = replace(self.system, friction_force=float(unknowns[5]))
-        times = [0.0, float(unknowns[4])]
-        return self.simulate(system, unknowns[:4], times, tolerance=self.tolerance).at_end - unknowns[:4]
+        """Return Φ_T(state), turned back by θ, less the state, shape (4,) or (5,)."""
+        system = replace(self.system, friction_force=float(unknowns[LOAD]))
+        times = [0.0, float(unknowns[PERIOD])]
+        end = self.simulate(system, self.start(unknowns), times, tolerance=self.tolerance).at_end
+        return _turned(_without_angle(end), -float(unknowns[TURN])) - unknowns[:PERIOD]
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
-        """Return the derivatives of ``miss`` by the ``sought`` unknowns, shape (4, 4), by forward differences."""
+        """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
         step = math.sqrt(self.tolerance)  # balances the curvature of the map against its noise
         columns = []
         for i in sought:
             shifted = unknowns.copy()
-            shifted[i] += step * self._size(unknowns)[i]
+            shifted[i] += step * self.size(unknowns)[i]
             columns.append((self.miss(shifted) - miss) / (shifted[i] - unknowns[i]))
         return np.column_stack(columns)
 
     def monodromy(self, unknowns: FloatArray) -> FloatArray:
-        """Return the linearised return map, shape (4, 4), by central differences."""
+        """Return the linearised return map, shape (4, 4) or (5, 5), by central differences."""
         columns = []
-        for i in range(4):
-            shift = np.zeros(6)
-            shift[i] = CENTRAL * self._size(unknowns)[i]
+        n = len(unknowns[:PERIOD])
+        for i in range(n):
+            shift = np.zeros_like(unknowns)
+            shift[i] = CENTRAL * self.size(unknowns)[i]
             columns.append((self.miss(unknowns + shift) - self.miss(unknowns - shift)) / (2.0 * shift[i]))
-        return np.column_stack(columns) + np.eye(4)
+        return np.column_stack(columns) + np.eye(n)
 
-    @staticmethod
-    def _size(unknowns: FloatArray) -> FloatArray:
+    def size(self, unknowns: FloatArray) -> FloatArray:
+        """Return by what deviations of the unknowns are to be judged."""
         size = np.abs(unknowns)
-        size[:4] = np.max(size[:4])
+        size[:PERIOD] = _size(self.system, unknowns[:PERIOD])
+        if size[TURN] > 0.0:  # many turns in a period: one of them counts
+            size[PERIOD] /= size[TURN]
+            size[TURN] = 1.0
         return size
 
 
@@ -78,10 +113,10 @@ class Orbit:
 
     Parameters
     ----------
-    system : PinOnDisc
+    system : PinOnDisc or DiscOnDisc
         The parameters.
-    state : array of shape (4,)
-        x, y = 0, vx, vy where the orbit crosses the x axis.
+    state : array of shape (4,) or (6,)
+        Where the orbit crosses the x axis, y = 0; the angle of a disc is zero there.
     period : float
         In s.
     residual : float
@@ -90,20 +125,29 @@ class Orbit:
         One period at equally spaced times, both ends included.
     flow : Flow
         The return map that it was found with.
+    turn : float
+        Angle in rad by which the motion has turned about the axis after a period, whole turns included; 0 where
+        it comes back to the very same place.
 
     """
 
-    system: PinOnDisc
+    system: System
     state: FloatArray
     period: float
     residual: float
     trajectory: Trajectory
     flow: Flow
+    turn: float = 0.0
 
     @property
     def frequency(self) -> float:
         """2π/period in rad/s."""
         return 2.0 * math.pi / self.period
+
+    @property
+    def carrier(self) -> float:
+        """Mean speed in rad/s at which a motion that comes back turned goes about the axis."""
+        return self.turn / self.period
 
     @property
     def mean(self) -> FloatArray:
@@ -112,41 +156,47 @@ class Orbit:
 
     @cached_property
     def multipliers(self) -> tuple[complex, ...]:
-        """Eigenvalues of the linearised return map (Floquet multipliers), largest first; one of them is 1."""
-        unknowns = np.array([*self.state, self.period, self.system.friction_force])
+        """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
+
+        One of them is 1, that of a shift in time; if the motion comes back turned, a turn is another.
+        """
+        unknowns = self.flow.unknowns(self.state, self.period, self.system.friction_force, self.turn)
         multipliers = np.linalg.eigvals(self.flow.monodromy(unknowns))
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
 
     @property
     def stable(self) -> bool:
-        """Whether all small deviations die out but for a shift in phase."""
-        shift = min(self.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
-        return all(abs(multiplier) < 1.0 for multiplier in self.multipliers if multiplier is not shift)
+        """Whether all small deviations die out but for a shift in time and a turn about the axis."""
+        shifts = 1 if self.turn == 0.0 else 2
+        nearest_to_one = sorted(self.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
+        return all(abs(multiplier) < 1.0 for multiplier in nearest_to_one[shifts:])
 
 
 def whirl_orbit(
-    system: PinOnDisc,
+    system: System,
     *,
     simulate: Simulate = reference_simulate,
-    guess: Orbit | None = None,
+    guess: Orbit | Whirl | None = None,
     at_crossing: float | None = None,
     tolerance: float = 1e-12,
     samples: int = 256,
 ) -> Orbit:
-    """Return the whirl of a pin with an offset, a periodic orbit near to the circle of eq. 11, by shooting.
+    """Return the whirl of a pin or disc with an offset, a periodic orbit near to a circle, by shooting.
 
-    Newton's method on x, vx, vy and the period T for Φ_T(x, 0, vx, vy) = (x, 0, vx, vy), with the derivatives
-    of the flow Φ from differences. Orbits with stick phases are found as well: nothing but
+    Newton's method on x, vx, vy, the spin of a disc and the period T for Φ_T(x, 0, vx, vy) = (x, 0, vx, vy), with
+    the derivatives of the flow Φ from differences. Orbits with stick phases are found as well: nothing but
     ``simulate`` is asked for.
 
     Parameters
     ----------
-    system : PinOnDisc
+    system : PinOnDisc or DiscOnDisc
         The parameters, with |ω| > k.
     simulate : callable
-        The engine; of the reference unless told otherwise.
-    guess : Orbit, optional
-        Where to start, such as the orbit for a nearby load; the circle of eq. 11 unless told otherwise.
+        The engine; of the reference unless told otherwise. ``functools.partial(simulate, contact=...)`` is that
+        of a disc under another law.
+    guess : Orbit or Whirl, optional
+        Where to start, such as the orbit for a nearby load; unless told otherwise, the largest circle that there
+        is without offset.
     at_crossing : float, optional
         If given, x is held at this value in m and the load μN is sought in its place. This goes round the
         folds of the branch, where two whirls of the same load meet.
@@ -158,32 +208,94 @@ def whirl_orbit(
     Raises
     ------
     ValueError
-        If eq. 11 gives no whirl to start from.
+        If there is no circle to start from, or if a disc rests on single points.
     RuntimeError
         If Newton's method does not converge: there is no such orbit near the guess.
 
     """
+    _require_isotropic(system)
     if guess is None:
-        radius, frequency = whirl_radius(system), whirl_frequency(system)
-        state = np.array([radius, 0.0, 0.0, radius * frequency])
-        period, load = 2.0 * math.pi / abs(frequency), system.friction_force
-    else:
-        state, period = guess.state, guess.period
-        load = system.friction_force if at_crossing is None else guess.system.friction_force
-    unknowns = np.array([*state, period, load])
-    sought = [0, 2, 3, 4]  # x, vx, vy, T
-    if at_crossing is not None:
-        unknowns[0], sought = at_crossing, [2, 3, 4, 5]  # vx, vy, T, μN
+        guess = _largest_circle(replace(system, offset=0.0))
+    period = guess.period if isinstance(guess, Orbit) else 2.0 * math.pi / abs(guess.frequency)
     flow = Flow(simulate, system, tolerance)
+    unknowns = flow.unknowns(guess.state, period, system.friction_force, 0.0)
+    sought = [X, *range(VX, len(unknowns[:PERIOD])), PERIOD]
+    if at_crossing is not None:
+        _hold_crossing(at_crossing, guess, unknowns, sought)
+    return _shoot(flow, unknowns, sought, samples, "whirl")
 
-    scale = float(np.max(np.abs(state)))
+
+def modulated_cycle(
+    system: System,
+    guess: Trajectory | Orbit,
+    *,
+    simulate: Simulate = reference_simulate,
+    at_crossing: float | None = None,
+    tolerance: float = 1e-12,
+    samples: int = 1024,
+) -> Orbit:
+    """Return the cycle of a whirl whose radius swells and shrinks, X0 = 0 only, by shooting (Fig. 11).
+
+    Two frequencies are in it, that of the modulation and the carrier. But without offset it is periodic but for a
+    turn: after the period T of the modulation all is the same turned about the axis by an angle θ. The orbit starts
+    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    guess : Trajectory or Orbit
+        Where to start: a simulation that has come near to the cycle in its end, over more than a period of the
+        modulation and at times close enough to resolve a turn; or the cycle of nearby parameters.
+    simulate, at_crossing, tolerance, samples
+        As in :func:`whirl_orbit`.
+
+    Raises
+    ------
+    ValueError
+        If the offset is not zero, if a disc rests on single points, or if ``guess`` does not come round.
+    RuntimeError
+        If Newton's method does not converge, or finds a whirl of constant radius: there is no such cycle near the
+        guess.
+
+    """
+    _require_isotropic(system)
+    if system.offset != 0.0:
+        raise ValueError(
+            f"offset = {system.offset:g} m: a modulated cycle comes back turned about the axis, which takes an "
+            "offset of 0"
+        )
+    if isinstance(guess, Trajectory):
+        state, period, turn = _recurrence(guess)
+    else:
+        state, period, turn = guess.state, guess.period, guess.turn
+    flow = Flow(simulate, system, tolerance)
+    unknowns = flow.unknowns(state, period, system.friction_force, turn)
+    unknowns[[Y, VX]] = 0.0
+    sought = [X, *range(VY, len(unknowns[:PERIOD])), PERIOD, TURN]
+    if at_crossing is not None:
+        _hold_crossing(at_crossing, guess, unknowns, sought)
+    orbit = _shoot(flow, unknowns, sought, samples, "modulated cycle")
+    radius = orbit.trajectory.radius
+    if np.ptp(radius) < LEAST_MODULATION * np.max(radius):
+        raise RuntimeError(
+            f"no modulated cycle near the guess for friction_force = {system.friction_force:g} N: shooting found a "
+            f"whirl of constant radius {radius[0]:g} m"
+        )
+    return orbit
+
+
+def _shoot(flow: Flow, unknowns: FloatArray, sought: list[int], samples: int, what: str) -> Orbit:
+    """Solve for the ``sought`` unknowns by Newton's method; return the orbit."""
+    scale, period = flow.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
     slopes = None
     for _ in range(MOST_ITERATIONS):
-        if not (unknowns[4] > 0.0 and unknowns[5] > 0.0 and np.all(np.isfinite(unknowns))):
+        near = abs(unknowns[PERIOD] / period - 1.0) < FARTHEST_PERIOD
+        if not (near and unknowns[LOAD] > 0.0 and np.all(np.isfinite(unknowns))):
             break
         miss = flow.miss(unknowns)
-        size = float(np.max(np.abs(miss))) / scale
+        size = float(np.max(np.abs(miss) / scale))
         if smallest < CONVERGED and size > 0.5 * smallest:
             break  # rounding is reached
         if size < smallest:
@@ -197,31 +309,89 @@ def whirl_orbit(
             break  # no direction to go on in
     if not smallest < CONVERGED:
         raise RuntimeError(
-            f"no whirl near the guess for friction_force = {unknowns[5]:g} N, disc_speed = "
-            f"{system.disc_speed:g} rad/s: shooting stopped at a relative miss of {smallest:.1e}; "
+            f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
+            f"{flow.system.disc_speed:g} rad/s: shooting stopped at a relative miss of {smallest:.1e}; "
             "start from the orbit of a nearby load"
         )
+    period, load, turn = (float(value) for value in best[PERIOD:])
+    system, state = replace(flow.system, friction_force=load), flow.start(best)
+    trajectory = flow.simulate(system, state, np.linspace(0.0, period, samples + 1), tolerance=flow.tolerance)
+    return Orbit(system, state, period, smallest, trajectory, flow, turn)
 
-    system = replace(system, friction_force=float(best[5]))
-    times = np.linspace(0.0, best[4], samples + 1)
-    return Orbit(
-        system,
-        best[:4],
-        float(best[4]),
-        smallest,
-        simulate(system, best[:4], times, tolerance=tolerance),
-        flow,
+
+def _hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
+    """Hold x and seek the load in its place, from that of a ``guess`` that is an orbit."""
+    unknowns[X] = x
+    sought[sought.index(X)] = LOAD
+    if isinstance(guess, Orbit):
+        unknowns[LOAD] = guess.system.friction_force
+
+
+def _require_isotropic(system: System) -> None:
+    if isinstance(system, DiscOnDisc):
+        isotropic_contact_of(system, None, "periodic orbits")
+
+
+def _largest_circle(system: System) -> Whirl:
+    found = whirls(system)
+    if not found:
+        raise ValueError(why_no_whirl(system))
+    return found[0]
+
+
+def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
+    """Return state, period and turn of the last round between two like maxima of the radius.
+
+    The state is turned so that the centre lies on the x axis. Raises ``ValueError`` if there is no such round.
+    """
+    states, times = trajectory.states, trajectory.times
+    velocities = trajectory.system.state_size // 2
+    z = states[:, 0] + 1j * states[:, 1]
+    v = states[:, velocities] + 1j * states[:, velocities + 1]
+    outward = (z.conjugate() * v).real
+    maxima = np.flatnonzero((outward[:-1] > 0.0) & (outward[1:] <= 0.0))
+    angles = np.unwrap(np.angle(z))
+    if len(maxima):
+        last = _turned(_without_angle(states[maxima[-1]]), -float(angles[maxima[-1]]))
+        for i in maxima[-2::-1]:
+            before = _turned(_without_angle(states[i]), -float(angles[i]))
+            if np.all(np.abs(last - before) < RECURRENCE * _size(trajectory.system, last)):
+                period = float(times[maxima[-1]] - times[i])
+                state = np.insert(last, 2, 0.0) if len(last) > SPIN else last
+                return state, period, float(angles[maxima[-1]] - angles[i])
+    raise ValueError(
+        f"the trajectory does not come round by t = {times[-1]:g} s: no two of {len(maxima)} maxima of its radius "
+        "are alike; simulate longer, or start nearer to the cycle"
     )
+
+
+def _without_angle(state: FloatArray) -> FloatArray:
+    """Return x, y, vx, vy and the spin of a disc."""
+    return np.delete(state, 2) if len(state) == DiscOnDisc.state_size else np.array(state)
+
+
+def _size(system: System, part: FloatArray) -> FloatArray:
+    """Return by what deviations of the state without an angle are to be judged, of the same shape."""
+    size = np.full(len(part), np.max(np.abs(part[:SPIN])))
+    if isinstance(system, DiscOnDisc):  # the speed of the rim counts like that of the centre
+        size[SPIN] /= system.contact_radius
+    return size
+
+
+def _turned(part: FloatArray, angle: float) -> FloatArray:
+    """Return the state without an angle, turned about the axis by ``angle`` in rad."""
+    z, v = (complex(part[i], part[i + 1]) * cmath.exp(1j * angle) for i in (X, VX))
+    return np.array([z.real, z.imag, v.real, v.imag, *part[SPIN:]])
 
 
 def whirl_branch(
     orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
 ) -> Iterator[Orbit]:
-    """Yield ``orbit`` and the whirls of other loads that continue it, by decreasing crossing x.
+    """Yield ``orbit``, a whirl or a modulated cycle, and those of other loads that continue it, by decreasing x.
 
-    Each is sought from the line through the two before it, for a fall in x by the fraction ``step``; where
-    Newton's method fails, half of that is tried. The load rises or falls along the branch as it will, and
-    stick phases may come in.
+    x is where they cross the axis. Each is sought from the line through the two before it, for a fall in x by the
+    fraction ``step``; where Newton's method fails, half of that is tried. The load rises or falls along the
+    branch as it will, and stick phases may come in.
 
     Parameters
     ----------
@@ -240,13 +410,14 @@ def whirl_branch(
         If the branch breaks off: if not even a step of ``step``/64 finds an orbit.
 
     """
+    seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
     before, last = None, orbit
     yield last
     fraction = step
     while last.state[0] > until:
         x = max(until, last.state[0] * (1.0 - fraction))
         try:
-            found = whirl_orbit(
+            found = seek(
                 last.system,
                 simulate=last.flow.simulate,
                 guess=last if before is None else _extrapolated(before, last, x),
@@ -272,11 +443,12 @@ def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
         system=replace(last.system, friction_force=float(load)),
         state=last.state + ahead * (last.state - before.state),
         period=last.period + ahead * (last.period - before.period),
+        turn=last.turn + ahead * (last.turn - before.turn),
     )
 
 
 def last_whirl(
-    system: PinOnDisc,
+    system: System,
     *,
     simulate: Simulate = reference_simulate,
     guess: Orbit | None = None,

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from reference_model.systems import FloatArray
+from reference_model.contact import Contact, contact_of
+from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
+
+ComplexArray = NDArray[np.complex128]
 
 SPLINE_DEGREE = 5
 
@@ -25,9 +29,11 @@ class PowerBalance:
     times : array
         In s: those of the trajectory, and the bounds of its phases.
     drive_work : array
-        What the drive of the disc put in.
+        What the drive of the (master) disc put in.
     friction_heat, damper_heat : array
-        What friction and the dampers of the support turned into heat.
+        What friction and the dampers, that of a friction disc's shaft included, turned into heat.
+    shaft_work : array
+        What the shaft of a friction disc took out behind its damper; none for a pin.
     stored_energy : array
         Kinetic energy and that of the springs, itself, not since the start.
 
@@ -37,13 +43,14 @@ class PowerBalance:
     drive_work: FloatArray
     friction_heat: FloatArray
     damper_heat: FloatArray
+    shaft_work: FloatArray
     stored_energy: FloatArray
 
     @property
     def residual(self) -> FloatArray:
-        """Drive work less heat less gain of stored energy: zero for the right motion."""
+        """Drive work less heat, work on the shaft and gain of stored energy: zero for the right motion."""
         gain = self.stored_energy - self.stored_energy[0]
-        return np.asarray(self.drive_work - self.friction_heat - self.damper_heat - gain)
+        return np.asarray(self.drive_work - self.friction_heat - self.damper_heat - self.shaft_work - gain)
 
     @property
     def drive_power(self) -> float:
@@ -56,24 +63,28 @@ class PowerBalance:
         return float(self.friction_heat[-1] + self.damper_heat[-1] + np.max(self.stored_energy))
 
 
-def power_balance(trajectory: Trajectory) -> PowerBalance:
+def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> PowerBalance:
     """Return the energy balance of ``trajectory``.
 
-    The friction heat is μN·∫|w|dt in slip phases (with the smoothing that the engine declared). In stick
-    phases it is the work of the force that holds the pin by eq. 6 on whatever creep the engine shows, which
-    is none for exact friction. The drive's work is ω times the moment impulse on the pin, and that is taken
-    from the pin's motion, not from a friction law: by its angular momentum about the axis,
-    ∫M dt = [m·r×v] + β∫r×v dt + C·X0∫y dt. So the residual vanishes only if force and motion belong together:
-    friction against the slip and of the magnitude μN, the damping β, the springs, energy neither made nor
-    lost by the integrator.
+    The friction heat is μN·∫P dt in slip phases, with the mean slip speed P of the contact: of a pin |w|, of a disc
+    −F·u + M·S in shares of μN. A regularised engine declares the P below which its friction is weaker. In stick
+    phases the heat is the work of force and moment that hold the body by eq. 6 on whatever creep the engine shows,
+    which is none for exact friction. The drive's work is ω times the moment impulse on the body about the axis, and
+    that is taken from its motion, not from a friction law: by its angular momentum about the axis,
+    ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + C·X0∫y dt + b∫(φ̇ − Ω)dt. So the residual vanishes only if force and motion
+    belong together: friction against the slip and of the magnitude μN, the damping β and b, the springs, energy
+    neither made nor lost by the integrator.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the
-    sixth power of the distance of samples where slip is well away from zero, and more slowly near it.
+    sixth power of the distance of samples where the slip of every point is well away from zero, and more slowly
+    near it.
 
     Parameters
     ----------
     trajectory : Trajectory
-        Of a pin, at times close enough to resolve the motion.
+        At times close enough to resolve the motion.
+    contact : Contact or None
+        The law of friction of a disc if it is not that of its parameters.
 
     Raises
     ------
@@ -83,39 +94,64 @@ def power_balance(trajectory: Trajectory) -> PowerBalance:
     """
     if len(trajectory.times) < 2:
         raise ValueError("the trajectory has one time only: a power balance takes at least two")
-    pin, regularisation = trajectory.system, trajectory.solution.regularisation
-    m, C, beta, omega, X0 = pin.mass, pin.stiffness, pin.damping, pin.disc_speed, pin.offset
+    body = trajectory.system
+    law = contact_of(body) if contact is None else contact
+    m, C, beta, omega, X0 = body.mass, body.stiffness, body.damping, body.disc_speed, body.offset
+    inertia, b, Omega = 0.0, 0.0, 0.0
+    if isinstance(body, DiscOnDisc):
+        inertia, b, Omega = body.polar_inertia, body.shaft_damping, body.shaft_speed
     times, states, integrals = [], [], []
-    total = np.zeros(4)
+    total = np.zeros(6)
     for kind, t, state in _spans(trajectory):
-        x, y, vx, vy = state.T
-        wx, wy = vx + omega * y, vy - omega * x
-        if kind == "slip":
-            slip = np.hypot(wx, wy)
-            full = np.maximum(slip, regularisation)
-            share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
-            heating = pin.friction_force * share * slip
+        z, angle, v, spin = _motion(body, state)
+        u = v - 1j * omega * z
+        if kind == "stick":
+            holding = -m * omega**2 * z + 1j * beta * omega * z + C * (z - X0)
+            heating: FloatArray = b * (omega - Omega) * (omega - spin) - (holding.conj() * u).real
         else:
-            holding_x = -m * omega**2 * x - beta * omega * y + C * (x - X0)
-            holding_y = -m * omega**2 * y + beta * omega * x + C * y
-            heating = -(holding_x * wx + holding_y * wy)
-        rates = np.column_stack((heating, vx**2 + vy**2, x * vy - y * vx, y))
+            slip = _mean_slip(law, u, omega - spin, angle)
+            full = np.maximum(slip, trajectory.solution.regularisation)
+            share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
+            heating = body.friction_force * share * slip
+        lag = spin - Omega
+        rates: FloatArray = np.column_stack((heating, abs(v) ** 2, (z.conj() * v).imag, z.imag, lag, lag**2))
         growth = _integral(t, rates)
         times.append(t)
         states.append(state)
         integrals.append(total + growth)
         total = total + growth[-1]
-    x, y, vx, vy = np.concatenate(states).T
-    friction_heat, squared_speed, areal, deflection = np.concatenate(integrals).T
-    momentum = m * (x * vy - y * vx)
-    impulse = momentum - momentum[0] + beta * areal + C * X0 * deflection
+    z, _, v, spin = _motion(body, np.concatenate(states))
+    friction_heat, squared_speed, areal, deflection, lag, squared_lag = np.concatenate(integrals).T
+    momentum = m * (z.conj() * v).imag + inertia * spin
+    impulse = momentum - momentum[0] + beta * areal + C * X0 * deflection + b * lag
     return PowerBalance(
         times=np.concatenate(times),
         drive_work=omega * impulse,
         friction_heat=friction_heat,
-        damper_heat=beta * squared_speed,
-        stored_energy=0.5 * m * (vx**2 + vy**2) + 0.5 * C * ((x - X0) ** 2 + y**2),
+        damper_heat=beta * squared_speed + b * squared_lag,
+        shaft_work=b * Omega * lag,
+        stored_energy=0.5 * m * abs(v) ** 2 + 0.5 * inertia * spin**2 + 0.5 * C * abs(z - X0) ** 2,
     )
+
+
+def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:
+    """Return place z, angle φ, velocity ż and spin φ̇, each (n,); a pin has neither angle nor spin."""
+    places, velocities = np.split(state, 2, axis=1)
+    z, v = (pair[:, 0] + 1j * pair[:, 1] for pair in (places, velocities))
+    if isinstance(body, DiscOnDisc):
+        return z, places[:, 2], v, velocities[:, 2]
+    return z, np.zeros(len(z)), v, np.zeros(len(z))
+
+
+def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return the mean slip speed of the contact, by the power that its friction takes, shape (n,)."""
+    result = np.empty(len(u))
+    for i, (slip, spin, phi) in enumerate(
+        zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
+    ):
+        force, moment = law.force_and_moment(slip, spin, phi)
+        result[i] = moment * spin - (force.conjugate() * slip).real
+    return result
 
 
 def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:

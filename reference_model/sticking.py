@@ -1,18 +1,25 @@
-"""Stick phases of the pin (eq. 6 to 9): what friction must hold, when it lets go, and how slip starts.
+"""Stick phases (eq. 6 to 9): what friction must hold, when it lets go, and how slip starts.
 
 Stuck means w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and the friction that holds it balances
-the pull a(z, 0). All functions take the equations of motion and complex positions.
+the pull a(z, 0). All functions of the pin take the equations of motion and complex positions.
+
+A friction disc sticks only as a whole. Its shaft asks for a moment that does not change meanwhile, and beside that
+moment a contact that looks the same from all directions can hold a force up to its limit surface: so its centre is
+a stuck pin with less friction.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
+from reference_model.contact import IsotropicContact
+from reference_model.disc import DiscMotion
 from reference_model.pin import SlipMotion
 from reference_model.systems import FloatArray
 
@@ -54,6 +61,54 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     if 2.0 * math.pi - turn < ROUNDING:
         turn = 0.0  # at the limit already
     return turn / abs(motion.disc_speed)
+
+
+def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
+    """Return the stuck pin that the centre of a stuck disc is; None if friction can't hold the moment of the shaft.
+
+    Its friction is the force on the limit surface beside that moment. Force and moment of the surface are those of
+    slip with all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    """
+    g = motion.centre.friction
+    asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
+    most = contact.shares(0.0, 1.0).moment
+    if asked > g * most:
+        return None
+
+    def lacking(alpha: float) -> float:
+        return g * contact.shares(math.cos(alpha), math.sin(alpha) / most).moment - asked
+
+    alpha = float(brentq(lacking, 0.0, math.pi / 2.0, xtol=1e-16, rtol=1e-15)) if asked > 0.0 else 0.0
+    return replace(
+        motion.centre, friction=g * contact.shares(math.cos(alpha), math.sin(alpha) / most).resistance
+    )
+
+
+def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) -> NDArray[np.float64]:
+    """Return the unit vector (u_x, u_y, r) along which slip begins from rest at ``z`` where friction gives way.
+
+    With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n is where that is
+    largest: there a − g∇P is along n. At a release, where it is zero, n is normal to the limit surface. The centre
+    begins to slip along its pull, so that one angle is left.
+    """
+    pull, turning = motion.centre.pull(z, 0j), motion.turning_pull(0.0)
+    strength, g = abs(pull), motion.centre.friction
+
+    def growth(beta: float) -> tuple[float, float]:
+        """Return the parts of a − g∇P along n, by which slip grows, and across it, by which n turns."""
+        c, s = math.cos(beta), math.sin(beta)
+        shares = contact.shares(motion.length * c, -s / motion.gyration)
+        force = strength - g * shares.resistance
+        moment = turning + g * shares.moment / (motion.length * motion.gyration)
+        return force * c + moment * s, moment * c - force * s
+
+    angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 65).tolist()
+    best = max(range(len(angles)), key=lambda i: growth(angles[i])[0])
+    low, beta, high = angles[max(best - 1, 0)], angles[best], angles[min(best + 1, len(angles) - 1)]
+    if growth(low)[1] > 0.0 > growth(high)[1]:
+        beta = float(brentq(lambda beta: growth(beta)[1], low, high, xtol=1e-16, rtol=1e-15))
+    along = math.cos(beta) * (pull / strength if strength > 0.0 else 1.0)
+    return np.array((along.real, along.imag, math.sin(beta)))
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,11 @@ from plain_engines import (
     turned_with_disc,
 )
 
-from reference_model import PinOnDisc, SimulationError, integrate, simulate
+from reference_model import PinOnDisc, SimulationError, simulate, stepping
 from reference_model import pin_formulas as formulas
-from reference_model.integrate import Thresholds, simulate_with
+from reference_model.integrate import simulate_with
 from reference_model.pin import simulate_polar_form
+from reference_model.stepping import Thresholds
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
@@ -519,6 +520,6 @@ def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
 
 
 def test_a_motion_of_too_many_steps_is_refused_with_its_time(monkeypatch):
-    monkeypatch.setattr(integrate, "MOST_STEPS", 50)
+    monkeypatch.setattr(stepping, "MOST_STEPS", 50)
     with pytest.raises(SimulationError, match=r"more than 50 steps up to t = \d+"):
         simulate(FIG_5, TO_WHIRL, [0.0, 400.0])

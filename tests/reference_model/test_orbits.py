@@ -1,19 +1,46 @@
 """Periodic orbits: the whirl with an offset, its fold, and the branch with stick phases."""
 
+import functools
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
 from reference_model import PinOnDisc, last_whirl, simulate, whirl_orbit, whirls
 from reference_model import pin_formulas as formulas
-from reference_model.orbits import Flow, whirl_branch
+from reference_model.contact import ThreeTermRing
+from reference_model.orbits import Flow, modulated_cycle, whirl_branch
+from reference_model.systems import DiscOnDisc
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
+FIG_11 = DiscOnDisc(
+    mass=1.0,
+    polar_inertia=1.0,
+    stiffness=1.0,
+    damping=0.5,
+    friction_force=0.0225,
+    disc_speed=1.5,
+    contact_radius=0.12,
+    shaft_damping=0.015,
+    shaft_speed=1.25,
+)
+MIRRORED = replace(FIG_11, disc_speed=-1.5, shaft_speed=-1.25)
 ROUNDING = 1e-12  # of an orbit at a tolerance of 1e-12 whose errors die out
+
+
+def unbraked(pin):
+    """A disc that is like the pin: with nothing to brake it, it spins with the master disc."""
+    return DiscOnDisc(
+        **asdict(pin), polar_inertia=0.01, contact_radius=0.1, shaft_damping=0.0, shaft_speed=0.0
+    )
+
+
+def turned(z, angle):
+    z *= np.exp(1j * angle)
+    return z.real, z.imag
 
 
 @pytest.mark.parametrize("pin", [FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2)])
@@ -169,7 +196,171 @@ def test_branch_goes_round_the_fold_in_steps_of_any_size(fold):
     assert coarse[-1].system.friction_force == pytest.approx(fine[-1].system.friction_force, abs=1e-8)
 
 
+# ---------------------------------------------------------------- the disc
+
+
+@pytest.mark.parametrize("disc", [FIG_11, replace(FIG_11, friction_force=0.08), MIRRORED], ids=str)
+@pytest.mark.parametrize("law", [None, ThreeTermRing(0.12)], ids=["ring", "(23)"])
+def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame(disc, law):
+    (whirl,) = whirls(disc, law)
+    orbit = whirl_orbit(disc, simulate=functools.partial(simulate, contact=law), guess=whirl, samples=2)
+    assert orbit.residual <= 1e-12
+    assert orbit.state == pytest.approx(whirl.state, abs=ROUNDING * 10)
+    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING * 10)
+    multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
+    found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
+    # Differences over 1e-5 of the size of a law that is steep near U = W.
+    assert found == pytest.approx(multipliers, abs=1e-6)
+    assert orbit.stable == whirl.stable
+
+
+def test_the_approximation_23_makes_a_stable_whirl_of_one_that_is_not():
+    ring, approximate = whirls(FIG_11)[0], whirls(FIG_11, ThreeTermRing(0.12))[0]
+    assert (ring.stable, approximate.stable) == (False, True)
+
+
+def test_whirl_of_a_disc_with_an_offset_is_periodic_but_for_its_angle():
+    disc = replace(FIG_11, friction_force=0.08, offset=0.02)
+    orbit = whirl_orbit(disc)
+    assert orbit.residual <= 1e-12
+    assert orbit.state[[1, 2]].tolist() == [0.0, 0.0]
+    assert min(abs(multiplier - 1.0) for multiplier in orbit.multipliers) < 1e-5
+    assert len(orbit.multipliers) == 5
+    assert orbit.stable
+    assert np.hypot(*orbit.mean) > 1e-3
+    moving = [0, 1, 3, 4, 5]
+    later = simulate(
+        disc, [*orbit.state[:2], 0.7, *orbit.state[3:]], [0.0, 3.0 * orbit.period], tolerance=1e-13
+    )
+    assert later.at_end[moving] == pytest.approx(orbit.state[moving], abs=ROUNDING * 10)
+    # It spins at its mean speed, at whatever angle it began.
+    angle = orbit.trajectory.at_end[2]
+    assert later.at_end[2] == pytest.approx(0.7 + 3.0 * angle, abs=1e-10)
+
+
+def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
+    pins, discs = (whirl_orbit(system, samples=2) for system in (FIG_6, unbraked(FIG_6)))
+    moving = [0, 1, 3, 4]
+    assert discs.state[moving] == pytest.approx(pins.state, abs=ROUNDING * 10)
+    assert discs.state[5] == pytest.approx(FIG_6.disc_speed, abs=ROUNDING * 10)
+    assert discs.period == pytest.approx(pins.period, rel=ROUNDING * 10)
+    extra, *others = sorted(
+        discs.multipliers, key=lambda multiplier: min(abs(multiplier - other) for other in pins.multipliers),
+        reverse=True,
+    )  # fmt: skip
+    # The torsional one: small relative spin is damped by μN·R²/(2U) (paper-notes' rotating damping, U for W).
+    assert 0.0 < extra.real < 1.0
+    assert sorted(others, key=abs) == pytest.approx(sorted(pins.multipliers, key=abs), abs=1e-6)
+
+
+def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
+    last = last_whirl(
+        unbraked(FIG_6), guess=whirl_orbit(unbraked(replace(FIG_6, friction_force=0.08)), samples=2)
+    )
+    assert last.system.friction_force == pytest.approx(fold.system.friction_force, abs=2e-10)
+
+
+# ---------------------------------------------------------------- the modulated cycle
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """Fig. 11's disc from near the axis, after it has come to its modulated cycle."""
+    return simulate(FIG_11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
+
+
+@pytest.fixture(scope="module")
+def cycle(settled):
+    return modulated_cycle(FIG_11, settled)
+
+
+def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
+    assert cycle.residual <= 1e-11
+    x, y, _, vx, vy, spin = cycle.state
+    assert (y, vx) == (0.0, 0.0)
+    turns = 2.0
+    start = np.array([*turned(complex(x, y), 0.4), 5.0, *turned(complex(vx, vy), 0.4), spin])
+    later = simulate(FIG_11, start, [0.0, turns * cycle.period], tolerance=1e-13).at_end
+    angle = 0.4 + turns * cycle.turn
+    expected = [*turned(complex(x, y), angle), *turned(complex(vx, vy), angle), spin]
+    assert later[[0, 1, 3, 4, 5]] == pytest.approx(expected, abs=1e-10)
+    # Where it is turned to does not divide a full turn: there are two frequencies in it.
+    assert abs(math.remainder(cycle.turn, 2.0 * math.pi)) > 0.1
+
+
+def test_modulated_cycle_is_where_motions_end_from_inside_and_outside(cycle, settled):
+    outside = simulate(FIG_11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], np.linspace(0.0, 1200.0, 12001))
+    radius, spin = cycle.trajectory.radius, cycle.trajectory.states[:, 5]
+    for trajectory in (settled, outside):
+        late = trajectory.times > trajectory.times[-1] - 1.2 * cycle.period
+        # Samples miss an extremum by half their distance, where the radius is flat to the square of the modulation.
+        assert trajectory.radius[late].max() == pytest.approx(radius.max(), rel=1e-5)
+        assert trajectory.radius[late].min() == pytest.approx(radius.min(), rel=1e-4)
+        assert np.ptp(trajectory.states[late, 5]) == pytest.approx(np.ptp(spin), rel=1e-4)
+    assert radius.min() < 0.25 * whirls(FIG_11)[0].radius < whirls(FIG_11)[0].radius < 0.6 * radius.max()
+
+
+def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
+    shift, turn, *others = sorted(cycle.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
+    assert abs(shift - 1.0) < 1e-5
+    assert abs(turn - 1.0) < 1e-5
+    assert all(abs(other) < 0.01 for other in others)
+    assert cycle.stable
+    assert cycle.carrier == pytest.approx(FIG_11.natural_frequency, rel=0.005)
+
+
+def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
+    mirror = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])  # y = 0 and vx = 0
+    guess = replace(cycle, state=mirror * cycle.state, turn=-cycle.turn)
+    mirrored = modulated_cycle(MIRRORED, guess, samples=64)
+    assert mirrored.state == pytest.approx(mirror * cycle.state, abs=1e-10)
+    assert mirrored.turn == pytest.approx(-cycle.turn, rel=1e-10)
+    assert mirrored.carrier < 0.0
+
+
+def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle):
+    load = 0.02247
+    held = modulated_cycle(replace(FIG_11, friction_force=load), cycle, tolerance=1e-9, samples=64)
+    sought = modulated_cycle(FIG_11, cycle, at_crossing=float(held.state[0]), tolerance=1e-9, samples=64)
+    assert abs(load - FIG_11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
+    assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
+    assert sought.period == pytest.approx(held.period, rel=1e-6)
+
+
 # ---------------------------------------------------------------- refusals
+
+
+def test_no_orbit_of_a_disc_on_single_points_is_sought(cycle):
+    six = replace(FIG_11, contact_points=6)
+    for seek in (whirl_orbit, functools.partial(modulated_cycle, guess=cycle)):
+        with pytest.raises(ValueError, match=r"contact_points = 6: periodic orbits"):
+            seek(six)
+
+
+def test_no_modulated_cycle_is_sought_with_an_offset(cycle):
+    with pytest.raises(ValueError, match=r"offset = 0\.01 m: a modulated cycle"):
+        modulated_cycle(replace(FIG_11, offset=0.01), cycle)
+
+
+@pytest.mark.parametrize("until", [1.0, 200.0])
+def test_a_guess_that_does_not_come_round_is_refused(until):
+    short = simulate(FIG_11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, until, 2001))
+    with pytest.raises(ValueError, match=rf"does not come round by t = {until:g} s: no two of [01] maxima"):
+        modulated_cycle(FIG_11, short)
+
+
+def test_a_whirl_of_constant_radius_is_no_modulated_cycle():
+    steady = replace(FIG_11, friction_force=0.03)
+    spiral = simulate(steady, [0.052, 0.0, 0.0, 0.0, 0.05, 1.345], np.linspace(0.0, 300.0, 6001))
+    with pytest.raises(
+        (RuntimeError, ValueError), match=r"no modulated cycle near the guess|does not come round"
+    ):
+        modulated_cycle(steady, spiral)
+
+
+def test_no_whirl_of_a_disc_is_sought_below_its_least_load():
+    with pytest.raises(ValueError, match=r"friction_force = 0\.018 N: a whirl exists only above 0\.020"):
+        whirl_orbit(replace(FIG_11, friction_force=0.018))
 
 
 @pytest.mark.parametrize("load", [0.05, 0.078])

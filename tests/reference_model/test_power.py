@@ -9,6 +9,8 @@ from plain_engines import coulomb, integrate, stuck_state
 
 from reference_model import PinOnDisc, power_balance, simulate
 from reference_model import pin_formulas as formulas
+from reference_model.contact import ThreeTermRing
+from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -168,3 +170,55 @@ def test_integrator_that_loses_energy_does_not_balance():
     phase = Phase("slip", 0.0, float(times[-1]), states[0].copy())
     euler = Trajectory(FIG_5, times, states, (phase,), Solution("Euler", h, steps, steps, 0.0))
     assert relative_residual(euler) > 1e-4
+
+
+# ---------------------------------------------------------------- the friction disc
+
+DISC = DiscOnDisc(
+    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
+    contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
+)  # fmt: skip
+SLIPPING = [0.5, 0.3, 0.0, 0.0, 0.15, 0.4]
+
+
+@pytest.mark.parametrize("points", [None, 3, 6])
+@pytest.mark.parametrize("start", [[0.1, 0.0, 0.0, 0.03, 0.0, 1.5], SLIPPING])
+def test_power_of_the_disc_is_balanced_through_slip_stick_and_pivots(points, start):
+    disc = replace(DISC, contact_points=points)
+    trajectory = simulate(disc, start, np.linspace(0.0, 30.0, 6001))
+    assert relative_residual(trajectory) < 2e-9
+
+
+def test_power_of_another_law_is_balanced_with_that_law_only():
+    law = ThreeTermRing(0.12)
+    trajectory = simulate(DISC, SLIPPING, np.linspace(0.0, 5.0, 1001), contact=law)
+    balance = power_balance(trajectory, contact=law)
+    assert np.abs(balance.residual).max() < 1e-9 * balance.turned_over
+    assert relative_residual(trajectory) > 1e-4
+
+
+def test_spinning_disc_at_the_axis_passes_on_the_power_of_friction_to_its_shaft():
+    # At the axis the moment is μN·R as long as it slips: drive ω·μN·R, shaft Ω·b(φ̇ − Ω), with b(φ̇ − Ω) = μN·R.
+    moment = 0.09 * 0.12
+    disc = replace(DISC, offset=0.0, shaft_damping=2.0 * moment / 0.25)
+    times = np.linspace(0.0, 10.0, 201)
+    balance = power_balance(simulate(disc, [0.0, 0.0, 0.0, 0.0, 0.0, 1.375], times))
+    assert balance.drive_work == pytest.approx(1.5 * moment * times, abs=1e-10)
+    assert balance.shaft_work == pytest.approx(1.25 * moment * times, abs=1e-10)
+    assert balance.friction_heat == pytest.approx(0.125 * moment * times, abs=1e-10)
+    assert balance.damper_heat == pytest.approx(0.125 * moment * times, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        {"shaft_damping": 0.006}, {"shaft_speed": 1.26}, {"polar_inertia": 0.0202}, {"contact_radius": 0.1212},
+        {"friction_force": 0.0909}, {"damping": 0.11}, {"offset": 0.11},
+    ],
+    ids=lambda fault: next(iter(fault)),
+)  # fmt: skip
+def test_disc_with_a_wrong_parameter_does_not_balance(fault):
+    wrong = simulate(replace(DISC, **fault), SLIPPING, np.linspace(0.0, 5.0, 1001))
+    claimed = Trajectory(DISC, wrong.times.copy(), wrong.states.copy(), wrong.phases, wrong.solution)
+    assert relative_residual(wrong) < 1e-9
+    assert relative_residual(claimed) > 1e-5

@@ -7,11 +7,25 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from plain_disc import (
+    FIG_8,
+    FIG_11,
+    LARGE,
+    disc_in_units,
+    eq_23,
+    mirrored,
+    points_on_ring,
+    rates,
+    rates_in_turning_axes,
+)
 from plain_engines import in_units
 
 from reference_model import pin_formulas as formulas
+from reference_model.annulus import Annulus
+from reference_model.contact import Pin, Ring, ThreeTermRing
 from reference_model.stability import (
     equilibrium_eigenvalues,
+    onset_load,
     sliding_jacobian,
     turning_frame_jacobian,
     whirl_eigenvalues,
@@ -23,6 +37,8 @@ FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, dis
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
 CENTRED = replace(FIG_5, offset=0.0)
 CENTRED_HEAVY = replace(HEAVY, offset=0.0)
+
+WHIRLING = replace(LARGE, disc_speed=3.0, offset=0.0, friction_force=1.5)
 
 COMPLEX_STEP = 1e-20
 
@@ -42,7 +58,7 @@ def rates_of_eq_1(pin, state):
     )
 
 
-def rates_in_turning_axes(pin, frequency, state):
+def pin_rates_in_turning_axes(pin, frequency, state):
     """Rates of (1) for position and velocity along axes that turn at ``frequency``."""
     turn = np.array([-state[1], state[0], -state[3], state[2]])
     return rates_of_eq_1(pin, state) - frequency * turn
@@ -81,7 +97,7 @@ def test_sliding_jacobian_is_the_derivative_of_the_equations_of_motion(state, di
 
 
 def test_stuck_pin_has_no_jacobian():
-    with pytest.raises(ValueError, match=r"x = 0\.25 m, y = 0 m: the pin does not slide"):
+    with pytest.raises(ValueError, match=r"slip = 0 m/s: the pin is at rest"):
         sliding_jacobian(FIG_5, [0.25, 0.0, 0.0, 0.375])
 
 
@@ -95,9 +111,108 @@ def test_without_friction_the_stuck_pin_is_an_oscillator():
 def test_whirl_is_a_fixed_point_of_the_turning_frame_and_has_the_jacobian_there(pin):
     radius, frequency = formulas.whirl_radius(pin), formulas.whirl_frequency(pin)
     state = [radius, 0.0, 0.0, frequency * radius]
-    assert np.abs(rates_in_turning_axes(pin, frequency, state)).max() < 1e-14 * radius
-    expected = derivative(lambda s: rates_in_turning_axes(pin, frequency, s), state)
+    assert np.abs(pin_rates_in_turning_axes(pin, frequency, state)).max() < 1e-14 * radius
+    expected = derivative(lambda s: pin_rates_in_turning_axes(pin, frequency, s), state)
     assert turning_frame_jacobian(pin) == pytest.approx(expected, abs=1e-12)
+
+
+disc_states = st.lists(coordinates, min_size=6, max_size=6)
+
+
+def slip_ratio(disc, state):
+    """U over R|S|."""
+    x, y, _, vx, vy, spin = state
+    rim = disc.contact_radius * abs(disc.disc_speed - spin)
+    return math.hypot(vx + disc.disc_speed * y, vy - disc.disc_speed * x) / max(rim, 1e-300)
+
+
+def assert_is_derivative(jacobian, function, state, tolerance):
+    expected = derivative(function, state)
+    assert jacobian == pytest.approx(expected, abs=tolerance * np.abs(expected).max())
+
+
+@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, shaft_damping=0.0)]))
+def test_jacobian_of_a_disc_on_points_is_the_derivative_of_eq_19(state, disc):
+    disc = replace(disc, contact_points=6)
+    places = state[2] + 2.0 * math.pi * np.arange(6) / 6
+    slip = complex(state[3] + disc.disc_speed * state[1], state[4] - disc.disc_speed * state[0])
+    of_points = slip - 1j * (disc.disc_speed - state[5]) * disc.contact_radius * np.exp(1j * places)
+    if np.abs(of_points).min() > 1e-3:
+        friction = points_on_ring(disc, 6)
+        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
+
+
+@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, stiffness=0.0)]))
+def test_jacobian_of_a_disc_on_the_ring_is_the_derivative_of_eq_19(state, disc):
+    ratio = slip_ratio(disc, state)
+    if ratio < 0.95 or ratio > 1.05:
+        friction = points_on_ring(disc, 1024)  # these converge like (the smaller ratio)^n: 1e-22
+        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
+
+
+@given(disc_states)
+def test_jacobian_of_a_disc_on_another_contact_is_the_derivative_of_eq_23(state):
+    if slip_ratio(LARGE, state) > 1e-3:
+        jacobian = sliding_jacobian(LARGE, state, ThreeTermRing(LARGE.contact_radius))
+        assert_is_derivative(jacobian, lambda s: rates(LARGE, eq_23(LARGE), s), state, 1e-10)
+
+
+def test_without_friction_a_disc_has_a_jacobian_at_rest_too():
+    jacobian = sliding_jacobian(replace(FIG_11, friction_force=0.0), [0.0, 0.0, 0.0, 0.0, 0.0, 1.5])
+    assert jacobian[3:, 3:] == pytest.approx(-np.diag([0.5, 0.5, 0.015]), abs=1e-15)
+
+
+@pytest.mark.parametrize("contact_points", [None, 6])
+def test_stuck_disc_has_no_jacobian(contact_points):
+    with pytest.raises(ValueError, match="at rest"):
+        sliding_jacobian(replace(FIG_11, contact_points=contact_points), [0.25, 0.0, 0.0, 0.0, 0.375, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("disc", "contact", "friction"),
+    [
+        (FIG_11, None, points_on_ring(FIG_11, 4096)),
+        (mirrored(FIG_11), None, points_on_ring(mirrored(FIG_11), 4096)),
+        (FIG_11, ThreeTermRing(0.12), eq_23(FIG_11)),
+        (WHIRLING, ThreeTermRing(0.5), eq_23(WHIRLING)),
+    ],
+)
+def test_whirl_of_a_disc_is_a_fixed_point_of_the_turning_frame_and_has_the_jacobian_there(
+    disc, contact, friction
+):
+    (whirl,) = whirls(disc, contact)
+    state = np.delete(whirl.state, 2)
+    still = rates_in_turning_axes(disc, friction, whirl.frequency, state)
+    assert np.abs(still).max() < 1e-14
+    jacobian = turning_frame_jacobian(disc, whirl.state, contact)
+    assert_is_derivative(
+        jacobian, lambda s: rates_in_turning_axes(disc, friction, whirl.frequency, s), state, 1e-10
+    )
+    assert whirl.eigenvalues == whirl_eigenvalues(disc, whirl.state, contact)
+    assert whirl.eigenvalues[0] == 0.0
+    assert_same_eigenvalues(whirl.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-11)
+
+
+def test_whirl_does_not_depend_on_where_its_centre_starts():
+    (whirl,) = whirls(FIG_11)
+    opposite = whirl.state * [-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]
+    assert_same_eigenvalues(whirl_eigenvalues(FIG_11, opposite), whirl.eigenvalues)
+
+
+def test_states_that_are_none_of_a_steady_motion_are_refused():
+    for function in (turning_frame_jacobian, whirl_eigenvalues):
+        with pytest.raises(ValueError, match="state = None: a disc may have several whirls"):
+            function(FIG_11)
+        with pytest.raises(ValueError, match=r"x = 0\.1 m, y = 0\.2 m"):
+            function(FIG_11, [0.1, 0.2, 0.0, 0.0, 0.1, 1.0])
+        with pytest.raises(ValueError, match="contact_points = 6"):
+            function(replace(FIG_11, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.1, 1.0])
+    with pytest.raises(ValueError, match="state = None"):
+        equilibrium_eigenvalues(FIG_8)
+    with pytest.raises(ValueError, match="contact_points = 6"):
+        equilibrium_eigenvalues(replace(FIG_8, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.0, 0.6])
+    with pytest.raises(ValueError, match="a pin touches in one point"):
+        sliding_jacobian(FIG_5, [0.1, 0.0, 0.0, 0.0], Pin())
 
 
 # ---------------------------------------------------------------- eigenvalues
@@ -166,6 +281,103 @@ def test_eigenvalues_scale_with_the_unit_of_time_alone(mass, length, time):
     for eigenvalues, pin in ((equilibrium_eigenvalues, FIG_5), (whirl_eigenvalues, CENTRED)):
         expected = np.array(eigenvalues(pin)) / time
         assert_same_eigenvalues(eigenvalues(in_units(pin, mass, length, time)), expected, tolerance=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("motions", "disc"),
+    [
+        (self_centred_equilibria, FIG_8),
+        (self_centred_equilibria, LARGE),
+        (whirls, FIG_11),
+        (whirls, WHIRLING),
+    ],
+)
+def test_eigenvalues_of_a_disc_scale_with_the_unit_of_time_alone(motions, disc):
+    (motion,) = motions(disc)
+    (same,) = motions(disc_in_units(disc, mass=30.0, length=0.05, time=0.2))
+    assert_same_eigenvalues(same.eigenvalues, np.array(motion.eigenvalues) / 0.2, tolerance=1e-10)
+
+
+@pytest.mark.parametrize("disc", [FIG_8, replace(FIG_8, disc_speed=-0.8), LARGE])
+def test_disc_that_does_not_spin_against_the_master_disc_has_the_eigenvalues_of_a_pin_and_one_of_the_spin(
+    disc,
+):
+    disc = replace(disc, shaft_speed=disc.disc_speed)
+    pin = PinOnDisc(
+        mass=disc.mass, stiffness=disc.stiffness, damping=disc.damping, friction_force=disc.friction_force,
+        disc_speed=disc.disc_speed, offset=disc.offset,
+    )  # fmt: skip
+    (equilibrium,) = self_centred_equilibria(disc)
+    # Of pure slip U the moment grows like μN·R·W/(2U).
+    slip = abs(disc.disc_speed) * math.hypot(equilibrium.x, equilibrium.y)
+    resistance = disc.shaft_damping + disc.friction_force * disc.contact_radius**2 / (2.0 * slip)
+    expected = [*equilibrium_eigenvalues(pin), -resistance / disc.polar_inertia]
+    assert_same_eigenvalues(equilibrium.eigenvalues, expected, tolerance=1e-12)
+
+
+# ---------------------------------------------------------------- the onset
+
+TURNING = [
+    replace(FIG_11, disc_speed=speed, shaft_speed=shaft)
+    for speed in (1.5, -1.5, 4.0)
+    for shaft in (1.25, -1.25, 9.0)
+]
+
+
+@pytest.mark.parametrize(
+    "law", [Ring, ThreeTermRing, lambda R: Annulus(0.5 * R, R), lambda R: Annulus(0.0, R)]
+)
+@pytest.mark.parametrize("disc", [*TURNING, replace(LARGE, offset=0.0)])
+def test_centred_rotation_loses_its_stability_at_the_onset_with_the_natural_frequency(disc, law):
+    contact = law(disc.contact_radius)
+    load = onset_load(disc, contact)
+    (at_onset,) = self_centred_equilibria(replace(disc, friction_force=load), contact)
+    assert (at_onset.x, at_onset.y) == (0.0, 0.0)
+    critical = max(at_onset.eigenvalues, key=lambda value: value.real)
+    k = disc.natural_frequency
+    assert critical.real == pytest.approx(0.0, abs=1e-13 * k)
+    assert abs(critical.imag) == pytest.approx(k, rel=1e-13)
+    below, above = (
+        self_centred_equilibria(replace(disc, friction_force=factor * load), contact)[0].stable
+        for factor in (1.0 - 1e-9, 1.0 + 1e-9)
+    )
+    assert below
+    assert not above
+
+
+def test_onset_on_the_ring_is_that_of_rotating_damping():
+    """By hand: W = 0.12·0.25 − μN·0.0144/0.015 and μN·0.5/(2W) = 0.5 give μN = 0.03/1.46."""
+    assert onset_load(FIG_11) == pytest.approx(0.03 / 1.46, rel=1e-14)
+
+
+def test_without_damping_any_friction_makes_a_fast_disc_unstable():
+    disc = replace(FIG_11, damping=0.0)
+    assert onset_load(disc) == 0.0
+    assert not self_centred_equilibria(replace(disc, friction_force=1e-6))[0].stable
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.5, 1.0, -1.0])
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.999])
+def test_centred_rotation_over_a_slow_master_disc_is_stable_at_every_load(speed, share):
+    disc = replace(FIG_11, disc_speed=speed, shaft_speed=speed - 0.25)
+    with pytest.raises(ValueError, match=f"disc_speed = {speed:g} rad/s.*natural frequency 1 rad/s"):
+        onset_load(disc)
+    disc = replace(disc, friction_force=share * 0.015 * 0.25 / 0.12)  # of the load at which it sticks
+    assert self_centred_equilibria(disc)[0].stable
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"offset": 0.1}, r"offset = 0\.1 m"),
+        ({"shaft_damping": 0.0}, "shaft_damping = 0 N m s/rad"),
+        ({"shaft_speed": 1.5}, "disc_speed - shaft_speed = 0 rad/s"),
+        ({"contact_points": 6}, "contact_points = 6"),
+    ],
+)
+def test_onset_is_refused_where_there_is_none(changes, message):
+    with pytest.raises(ValueError, match=message):
+        onset_load(replace(FIG_11, **changes))
 
 
 # ---------------------------------------------------------------- which equilibria exist

@@ -1,0 +1,179 @@
+"""Curves along which equations hold with one unknown to spare, followed by pseudo-arclength continuation.
+
+Each point is predicted along the tangent and corrected across it by Newton's method, so that a curve may turn back
+in every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from reference_model.systems import FloatArray
+
+Function = Callable[[FloatArray], FloatArray]
+
+DIFFERENCE = 6e-6
+"""Step of the central differences in units of the scales: about the third root of rounding."""
+
+CONVERGED = 1e-7
+"""Correction below which one more iteration leaves nothing but rounding."""
+
+ITERATIONS = 8
+QUICK = 3
+"""Of Newton's method: at most, and for the next step to be longer."""
+
+TURN = 0.97
+"""Least cosine of the angle between the tangents of neighbouring points."""
+
+SHORTEST = 1e-9
+"""Step in units of the scales at which a curve is given up."""
+
+
+class ContinuationError(RuntimeError):
+    """A curve could not be followed; the message says where."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Points along a curve.
+
+    Parameters
+    ----------
+    points : array of shape (n, d)
+        In the order in which they follow each other; the last one of a closed curve is the first one again.
+    ends : tuple of int
+        The limits that the first and the last point lie on, by their index; none of a closed curve.
+
+    """
+
+    points: FloatArray
+    ends: tuple[int, ...]
+
+    @property
+    def closed(self) -> bool:
+        """Whether the curve comes back to where it began."""
+        return not self.ends
+
+
+def follow(
+    equations: Function, limits: Function, start: ArrayLike, scales: ArrayLike, *, step: float = 0.03
+) -> Curve:
+    """Follow the curve through ``start`` both ways, until it reaches a limit or closes.
+
+    Parameters
+    ----------
+    equations : callable
+        From the d unknowns, shape (d,), to the d − 1 numbers that are zero on the curve.
+    limits : callable
+        From the unknowns to numbers, shape (m,), all of which are positive where the curve is wanted. It must be
+        possible to evaluate both functions a little beyond.
+    start : array of shape (d,)
+        A point near the curve, within the limits.
+    scales : array of shape (d,)
+        Changes of the unknowns that count as much as each other.
+    step : float
+        Largest distance between neighbouring points in units of ``scales``.
+
+    Raises
+    ------
+    ContinuationError
+        If Newton's method leads to no curve from the start or from a point on the way.
+
+    """
+    tracer = _Tracer(equations, limits, np.asarray(scales, dtype=float), step)
+    near = np.asarray(start, dtype=float) / tracer.scales
+    first, _ = tracer.corrected(near, tracer.tangent(near))
+    tangent = tracer.tangent(first)
+    points, last = tracer.walk(first, tangent)
+    if last is None:
+        return Curve(np.array(points) * tracer.scales, ())
+    before, end = tracer.walk(first, -tangent)
+    if end is None:
+        raise ContinuationError(f"the curve through {first * tracer.scales} closes in one direction only")
+    return Curve(np.array([*before[:0:-1], *points]) * tracer.scales, (end, last))
+
+
+@dataclass(frozen=True, eq=False)
+class _Tracer:
+    """The curve in units of the scales."""
+
+    equations: Function
+    limits: Function
+    scales: FloatArray
+    step: float
+
+    def walk(self, first: FloatArray, direction: FloatArray) -> tuple[list[FloatArray], int | None]:
+        """Return the points from ``first`` on and the limit where they end, None if they come back."""
+        points, tangent, step = [first], direction, self.step / 4.0
+        while step > SHORTEST:
+            try:
+                point, iterations = self.corrected(points[-1] + step * tangent, tangent)
+                turned = self.tangent(point)
+            except (ContinuationError, ArithmeticError, ValueError, np.linalg.LinAlgError):
+                step /= 2.0
+                continue
+            turned *= np.sign(turned @ tangent)
+            if turned @ tangent < TURN:
+                step /= 2.0
+                continue
+            if np.any(self.limits(point * self.scales) <= 0.0):
+                end, reached = self.end(points[-1], point)
+                return [*points, end], reached
+            points.append(point)
+            passed = (points[-2] - first) @ direction < 0.0 <= (point - first) @ direction
+            if passed and np.linalg.norm(point - first) <= 2.0 * step:
+                return [*points[:-1], first], None
+            tangent = turned
+            step = min(1.5 * step, self.step) if iterations <= QUICK else step
+        raise ContinuationError(f"the curve can't be followed beyond {points[-1] * self.scales}")
+
+    def end(self, inside: FloatArray, outside: FloatArray) -> tuple[FloatArray, int]:
+        """Return the point between two others at which the first limit is reached, and which that is."""
+        chord = outside - inside
+
+        def between(share: float) -> FloatArray:
+            return self.corrected(inside + share * chord, chord)[0]
+
+        violated = np.flatnonzero(self.limits(outside * self.scales) <= 0.0).tolist()
+        shares = [
+            brentq(lambda share, i=i: self.limits(between(share) * self.scales)[i], 0.0, 1.0, xtol=1e-14)
+            for i in violated
+        ]
+        first = int(np.argmin(shares))
+        return between(shares[first]), violated[first]
+
+    def corrected(self, near: FloatArray, across: FloatArray) -> tuple[FloatArray, int]:
+        """Return the point of the curve in the plane through ``near`` across a vector, after how many iterations."""
+
+        def excess(point: FloatArray) -> FloatArray:
+            return np.append(self.equations(point * self.scales), across @ (point - near))
+
+        point, converged = near, False
+        for iteration in range(1, ITERATIONS + 1):
+            correction = np.linalg.solve(_slopes(excess, point), excess(point))
+            point = point - correction
+            if converged:
+                return point, iteration - 1
+            converged = bool(np.linalg.norm(correction) < CONVERGED)
+        raise ContinuationError(f"Newton's method finds no point of the curve near {near * self.scales}")
+
+    def tangent(self, point: FloatArray) -> FloatArray:
+        """Return the unit vector along the curve, in one of its two directions."""
+        slopes = _slopes(lambda unknowns: self.equations(unknowns * self.scales), point)
+        slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
+        return np.asarray(np.linalg.svd(slopes)[2][-1])
+
+
+def _slopes(function: Function, point: FloatArray) -> FloatArray:
+    """Return the derivatives of ``function`` by central differences, shape (m, d)."""
+    columns = []
+    for i in range(len(point)):
+        shift = np.zeros(len(point))
+        shift[i] = DIFFERENCE
+        columns.append((function(point + shift) - function(point - shift)) / (2.0 * DIFFERENCE))
+    return np.column_stack(columns)

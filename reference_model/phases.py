@@ -1,0 +1,198 @@
+"""Phases of slip and stick, one after the other: what pin and disc have in common, and what each does its way."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from reference_model.contact import IsotropicContact, Ring
+from reference_model.disc import DiscMotion
+from reference_model.growth import begin_slip
+from reference_model.pin import SlipMotion
+from reference_model.slip import Coordinates, never, slide, slide_slowly
+from reference_model.stepping import Run
+from reference_model.sticking import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
+from reference_model.systems import FloatArray
+
+
+class Body(ABC):
+    """A body that slips over the master disc or sticks to it; its unknowns are scaled and relative to that disc."""
+
+    def __init__(self, run: Run, coordinates: Coordinates, friction: float) -> None:
+        """Take up a body whose slip is written in ``coordinates``."""
+        self.run = run
+        self.coordinates = coordinates
+        self.sticky = friction > 0.0
+
+    def go(self, y: list[float]) -> None:
+        """Run from the unknowns ``y`` at t = 0 to the last time."""
+        run, t = self.run, 0.0
+        run.record(t, lambda _: np.array([y]).T)
+        self.begin(y)
+        while t < run.end:
+            t, y = self.advance(t, y)
+
+    def begin(self, y: list[float]) -> None:
+        """Enter the first phase."""
+        stuck = self.sticky and self.coordinates.speed(y) == 0.0 and self.holds_for(y) > 0.0
+        self.run.enter("stick" if stuck else "slip", 0.0, y)
+
+    def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow the motion through one description of it; return when and where that ends."""
+        if not self.sticky or self.coordinates.speed(y) > 0.0:
+            return self.slip(t, y)
+        held = self.holds_for(y)
+        if held > 0.0:
+            return self.stick(t, y, held)
+        return self.let_go(t, y)
+
+    def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow slip, fast or slow, as long as its description holds."""
+        slowly = self.sticky and self.coordinates.speed(y) < self.coordinates.slow(y)
+        end = (slide_slowly if slowly else slide)(self.run, self.coordinates, t, y, self.leave)
+        return end.t, end.y
+
+    def leave(self, y: list[float]) -> bool:
+        """Tell whether slip is to be described in another way from ``y`` on."""
+        return False
+
+    def stick(self, t: float, y: list[float], held: float) -> tuple[float, list[float]]:
+        """Turn with the master disc for ``held``, until friction lets go, or to the end."""
+        self.run.enter("stick", t, y)
+        release = min(t + held, self.run.end)
+        self.run.record(release, lambda times: self.turned(y, times - t))
+        y = self.turned(y, np.array([release - t]))[:, 0].tolist()
+        if release < self.run.end:
+            self.run.enter("slip", release, y)
+            return self.let_go(release, y)
+        return release, y
+
+    @abstractmethod
+    def holds_for(self, y: Sequence[float]) -> float:
+        """Return how long friction holds the body at rest at ``y``."""
+
+    @abstractmethod
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """Return the unknowns of a stuck body after ``delays`` (n,), shape (unknowns, n)."""
+
+    @abstractmethod
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow slip as it grows from rest."""
+
+
+class PinBody(Body):
+    """The pin; its unknowns are x, y and the slip velocity."""
+
+    def __init__(self, run: Run, motion: SlipMotion) -> None:
+        """Take up the pin that moves by ``motion``."""
+        self.motion = motion
+        omega, g = motion.disc_speed, motion.friction
+
+        def rates(unknowns: Sequence[float]) -> tuple[float, ...]:
+            x, y, wx, wy = unknowns
+            w = complex(wx, wy)
+            speed = abs(w)
+            a = motion.pull(complex(x, y), w) - (g * w / speed if speed > 0.0 else 0.0)
+            return wx - omega * y, wy + omega * x, a.real, a.imag
+
+        slow = run.thresholds.slow_slip * g
+        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0), g)
+
+    def holds_for(self, y: Sequence[float]) -> float:
+        """As :meth:`Body.holds_for`: by eq. 6 and 7."""
+        z = complex(y[0], y[1])
+        return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
+
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """As :meth:`Body.turned`."""
+        z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
+        none = np.zeros_like(delays)
+        return np.array((z.real, z.imag, none, none))
+
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow the series by which slip grows from rest, as far as it holds or until slip ends again."""
+        run = self.run
+        start = slip_from_rest(self.motion, complex(y[0], y[1]), tolerance=run.thresholds.series)
+        run.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
+        stop = t + min(start.duration, start.rest)
+        end = min(stop, run.end)
+
+        def sample(times: FloatArray) -> FloatArray:
+            z, w = start.at(times - t)
+            return np.array((z.real, z.imag, w.real, w.imag))
+
+        run.record(end, sample)
+        y = sample(np.array([end]))[:, 0].tolist()
+        rests = start.rest <= start.duration and end == stop
+        if rests:
+            y[2:] = [0.0, 0.0]
+        elif end < run.end:
+            return slide(run, self.coordinates, end, y, self.leave)[:2]
+        return end, y
+
+
+class DiscBody(Body):
+    """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
+
+    def __init__(
+        self, run: Run, motion: DiscMotion, edge: Callable[[Sequence[float]], float] | None = None
+    ) -> None:
+        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``edge``."""
+        self.motion = motion
+        slow = run.thresholds.slow_slip * motion.centre.friction
+        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edge=edge)
+        super().__init__(run, coordinates, motion.centre.friction)
+
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """As :meth:`Body.turned`."""
+        turn = self.motion.centre.disc_speed * delays
+        z = complex(y[0], y[1]) * np.exp(1j * turn)
+        none = np.zeros_like(delays)
+        return np.array((z.real, z.imag, y[2] + turn, none, none, none))
+
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """As :meth:`Body.let_go`."""
+        return self.begin_slip(t, y[:3], self.coordinates, self.drift(y), self.direction(y))
+
+    def begin_slip(
+        self,
+        t: float,
+        own: Sequence[float],
+        coordinates: Coordinates,
+        drift: Sequence[float],
+        direction: FloatArray,
+    ) -> tuple[float, list[float]]:
+        """Follow slip as it begins from rest in some coordinates; return time and unknowns of the disc."""
+        leave = self.leave if coordinates is self.coordinates else never
+        end = begin_slip(self.run, coordinates, t, own, drift, direction, leave)
+        return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
+
+    def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
+        """Return the rates of x, y and φ of a disc that turns with the master disc."""
+        omega = self.motion.centre.disc_speed
+        return -omega * y[1], omega * y[0], omega
+
+    @abstractmethod
+    def direction(self, y: Sequence[float]) -> FloatArray:
+        """Return the direction in which slip begins."""
+
+
+class RingBody(DiscBody):
+    """A disc whose contact looks the same from all directions."""
+
+    def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
+        """Take up the disc that moves by ``motion``."""
+        super().__init__(run, motion, motion.edge if isinstance(contact, Ring) else None)
+        self.contact = contact
+        self.stuck = stuck_centre(motion, contact) if self.sticky else None
+
+    def holds_for(self, y: Sequence[float]) -> float:
+        """As :meth:`Body.holds_for`: by eq. 6 and 7 with the friction that the moment leaves."""
+        z = complex(y[0], y[1])
+        return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
+
+    def direction(self, y: Sequence[float]) -> FloatArray:
+        """As :meth:`DiscBody.direction`."""
+        return slip_direction(self.motion, self.contact, complex(y[0], y[1]))

@@ -1,0 +1,86 @@
+"""The mean slip speed on a circle, differentiated once and twice, by complete elliptic integrals.
+
+On a circle whose centre slips with U and whose rim turns with W = R·|S| relative to the disc below, the mean slip
+speed is P(U, W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and friction is the derivative of P. P is symmetric in U and W
+and of degree 1. For k = W/U <= 1 and m = k² Landen's transformation turns P into (2/π)·U·[2E(m) − (1 − m)·K(m)], so
+that::
+
+    ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
+
+with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). Where U = W one point of the circle is at rest and
+the second derivatives are infinite, like a logarithm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from scipy.special import ellipe, ellipkm1
+
+SMALL = 0.05
+"""Parameter m below which B and D come from their series, because the differences would lose digits.
+
+Just above, two integrals of 1.57 with an error of 2e-16 each leave 0.04: some 1e-14 of it.
+"""
+
+TERMS = 13
+"""Of the series: the first one left out is below SMALL^13 = 1e-17."""
+
+
+def mean_directions(slip: float, rim: float) -> tuple[float, float]:
+    """Return ∂P/∂U and ∂P/∂W for U, W >= 0 in m/s, not both zero; both lie between 0 and 1."""
+    if slip >= rim:
+        ratio = rim / slip
+        return _by_larger(ratio), _by_smaller(ratio)
+    ratio = slip / rim
+    return _by_smaller(ratio), _by_larger(ratio)
+
+
+def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
+    """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² in s/m for U, W >= 0 in m/s, which must differ."""
+    larger, smaller = max(slip, rim), min(slip, rim)
+    ratio = smaller / larger
+    m = ratio * ratio
+    if m < SMALL:
+        integral = math.pi / 4.0 * _series(_D_SERIES, m)
+    else:
+        complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m, all of whose digits count here
+        integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
+    # By the smaller argument; since the first derivatives are of degree 0 the others follow.
+    curvature = 2.0 / math.pi * integral / larger
+    mixed, by_larger = -ratio * curvature, m * curvature
+    return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)
+
+
+def _by_larger(ratio: float) -> float:
+    return 2.0 / math.pi * float(ellipe(ratio * ratio))
+
+
+def _by_smaller(ratio: float) -> float:
+    m = ratio * ratio
+    if m < SMALL:
+        return 0.5 * ratio * _series(_B_SERIES, m)
+    complement = 1.0 - m  # times a logarithm of itself, so that its rounding does not count
+    if complement == 0.0:
+        return 2.0 / math.pi
+    return 2.0 / math.pi * (float(ellipe(m)) - complement * float(ellipkm1(complement))) / ratio
+
+
+def _series(coefficients: Sequence[float], m: float) -> float:
+    value = 0.0
+    for coefficient in coefficients:
+        value = value * m + coefficient
+    return value
+
+
+def _hypergeometric(a: float, b: float) -> tuple[float, ...]:
+    """Return the coefficients of F(a, b; 2; m), the highest power first."""
+    coefficients = [1.0]
+    for n in range(TERMS - 1):
+        coefficients.append(coefficients[-1] * (a + n) * (b + n) / ((n + 2) * (n + 1)))
+    return tuple(reversed(coefficients))
+
+
+_B_SERIES = _hypergeometric(0.5, 0.5)  # B = (π/4)·F(½, ½; 2; m)
+_D_SERIES = _hypergeometric(0.5, 1.5)  # D = (π/4)·F(½, 3/2; 2; m)

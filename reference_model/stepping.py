@@ -1,0 +1,224 @@
+"""A simulation under way: its thresholds, what it has recorded, and the steps of its integrators."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from scipy.integrate import DOP853, DenseOutput
+from scipy.optimize import brentq
+
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+Kind = Literal["slip", "pivot", "stick"]
+Sampler = Callable[[FloatArray], FloatArray]
+"""Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
+
+TIGHTEST = 3e-14
+"""The smallest relative tolerance that SciPy's integrators take."""
+
+MOST_STEPS = 5_000_000
+"""Some minutes' work; a motion that takes more is hardly meant."""
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Where one description of the motion hands over to the next; results must not depend on it.
+
+    Parameters
+    ----------
+    slow_slip : float
+        Slip that falls below this multiple of g·T is described in slip-polar coordinates (T: unit of time).
+    stretching : float
+        s₀ of the stretched time as a multiple of ``slow_slip``.
+    rest_time : float
+        Error, in units of T, up to which the closed form for the time of coming to rest is taken.
+    reversal_slip : float
+        Slip speed, in units of length per T, below which slip that friction can't hold counts as turned.
+    common_rest : float
+        Slip speed, in units of length per T, below which all points of a disc come to rest together.
+    series : float
+        Size of the last terms of the series by which slip starts.
+    safety : float
+        The integrator's tolerance as a fraction of the one asked for.
+
+    """
+
+    slow_slip: float = 0.5
+    stretching: float = 2.0
+    rest_time: float = 1e-12
+    reversal_slip: float = 1e-13
+    common_rest: float = 1e-11
+    series: float = 1e-12
+    safety: float = 0.05
+
+
+@dataclass
+class Run:
+    """A simulation from t = 0 on; times and unknowns are scaled, ``seconds`` gives the time in s.
+
+    Parameters
+    ----------
+    times : array of shape (n,)
+        Those that were asked for, the first of them 0.
+    unknowns : int
+        Number of unknowns of the body, half of them its relative velocities.
+    seconds : callable
+        Turns a time into one in s.
+    thresholds : Thresholds
+        Where the descriptions hand over.
+    tolerance : float
+        The one that was asked for.
+
+    """
+
+    times: FloatArray
+    unknowns: int
+    seconds: Callable[[float], float]
+    thresholds: Thresholds
+    tolerance: float
+    motion: FloatArray = field(init=False)
+    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
+    evaluations: int = 0
+    steps: int = 0
+    _recorded: int = 0
+
+    def __post_init__(self) -> None:
+        self.motion = np.empty((len(self.times), self.unknowns))
+        self.local_tolerance = max(self.thresholds.safety * self.tolerance, TIGHTEST)
+        self.end = float(self.times[-1])
+
+    def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
+        """Begin a phase of this kind, unless it is under way."""
+        if not self.phases or self.phases[-1][0] != kind:
+            self.phases.append((kind, t, np.array(y)))
+
+    def step(self, solver: DOP853, since: float) -> None:
+        """Take one step, or raise ``SimulationError`` with the time up to which all was well."""
+        evaluations = solver.nfev
+        message = solver.step()
+        self.evaluations += solver.nfev - evaluations
+        self.count_step(since)
+        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+            raise SimulationError(
+                f"the integrator gave up after t = {self.seconds(since):g} s: "
+                f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
+            )
+
+    def count_step(self, since: float) -> None:
+        """Count one step more; raise ``SimulationError`` if there are too many."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise SimulationError(
+                f"more than {MOST_STEPS:,} steps up to t = {self.seconds(since):g} s: the parameters are very "
+                "stiff, or the motion is very long; simulate it in parts, or with a larger tolerance"
+            )
+
+    def pending(self, t: float) -> bool:
+        """Tell whether a time that was asked for lies before or at ``t``."""
+        return self._recorded < len(self.times) and bool(self.times[self._recorded] <= t)
+
+    def record(self, until: float, sample: Sampler) -> None:
+        """Store the motion at the times up to ``until`` that are not yet recorded."""
+        stop = int(np.searchsorted(self.times, until, side="right"))
+        span = slice(self._recorded, stop)
+        if stop > self._recorded:
+            self.motion[span] = sample(self.times[span]).T
+            self._recorded = stop
+
+
+class Stepper:
+    """SciPy's eighth-order Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
+
+    An error estimate tells little of a step across such an edge, but it can be trusted on either side. So a step that
+    has crossed one is taken back and made to end there.
+
+    Parameters
+    ----------
+    run : Run
+        The simulation, which counts steps and evaluations.
+    rates : callable
+        The right side, as SciPy takes it.
+    y : sequence
+        Where to begin.
+    span : (float, float)
+        When to begin and to end.
+    relative_tolerance : array of shape (unknowns,)
+        Of each unknown; the absolute tolerance is that of the run.
+    edge : callable or None
+        Takes the unknowns and changes sign at an edge.
+
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        rates: Callable[[float, FloatArray], Sequence[float]],
+        y: Sequence[float],
+        span: tuple[float, float],
+        relative_tolerance: FloatArray,
+        edge: Callable[[list[float]], float] | None = None,
+    ) -> None:
+        self._run, self._rates, self._edge = run, rates, edge
+        self._relative_tolerance = relative_tolerance
+        self._end = span[1]
+        self._landed, self._usual_step = False, math.inf
+        self._start(span[0], np.array(y), self._end)
+
+    @property
+    def t(self) -> float:
+        """The time, or what stands for it, that is reached."""
+        return float(self._solver.t)
+
+    @property
+    def y(self) -> FloatArray:
+        """The unknowns there."""
+        return np.asarray(self._solver.y)
+
+    @property
+    def rates(self) -> FloatArray:
+        """Their rates there."""
+        return np.asarray(self._solver.f)
+
+    def dense_output(self) -> DenseOutput:
+        """Return the interpolant of the last step."""
+        evaluations = self._solver.nfev
+        dense = self._solver.dense_output()
+        self._run.evaluations += self._solver.nfev - evaluations
+        return dense
+
+    def step(self, since: float) -> None:
+        """Take one step; ``since`` is the time to tell if that fails."""
+        if self._solver.status == "finished" and self.t < self._end:
+            self._landed = True  # it is on an edge
+            self._start(self.t, self.y, self._end, self._usual_step)
+        solver = self._solver
+        t, y = solver.t, solver.y
+        self._run.step(solver, since)
+        if self._edge is None or solver.t_bound != self._end or self._landed:
+            self._landed = False
+            return
+        if self._edge(y.tolist()) * self._edge(solver.y.tolist()) < 0.0:
+            dense, edge = self.dense_output(), self._edge
+            crossing = float(brentq(lambda tau: edge(dense(tau).tolist()), t, solver.t, rtol=TIGHTEST))
+            if t < crossing < solver.t:
+                self._usual_step = float(solver.t - t)
+                self._start(t, y, crossing, crossing - t)
+                self._run.step(self._solver, since)
+
+    def _start(self, t: float, y: FloatArray, end: float, first_step: float | None = None) -> None:
+        first_step = None if first_step is None else min(first_step, end - t)
+        self._solver = DOP853(
+            self._rates,
+            t,
+            y,
+            end,
+            rtol=self._relative_tolerance,
+            atol=self._run.local_tolerance,
+            first_step=first_step,
+        )
+        self._run.evaluations += self._solver.nfev
