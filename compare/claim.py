@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -68,8 +69,8 @@ class Claim:
         In ``unit``.
     budget : ErrorBudget
         Errors in the same unit.
-    parameters : dict
-        All that is needed to repeat the measurement.
+    parameters : mapping
+        All that is needed to repeat the measurement: numbers, or words where a number says less.
     source : str
         Where the parameters come from: a figure, or an assumption in words.
     unit : str
@@ -85,7 +86,7 @@ class Claim:
     predicted: FloatArray
     measured: FloatArray
     budget: ErrorBudget
-    parameters: dict[str, float]
+    parameters: Mapping[str, float | str]
     source: str
     unit: str = ""
     note: str = ""
@@ -99,7 +100,7 @@ class Claim:
         predicted: ArrayLike,
         measured: ArrayLike,
         budget: ErrorBudget,
-        parameters: dict[str, float],
+        parameters: Mapping[str, float | str],
         source: str,
         unit: str = "",
         note: str = "",

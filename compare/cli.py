@@ -11,7 +11,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from compare.runner import Run
     from compare.study import Study
     from compare.workers import Failure
-    from reference_model.systems import PinOnDisc
+    from reference_model.systems import System
 
 FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -93,6 +93,7 @@ def friction_discs(
       friction-discs list
       friction-discs report
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
+      friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs errata
     """
     if version:
@@ -190,37 +191,66 @@ def report(
     return SOMETHING_DIFFERS if _wrong(result, matrix) else FINE
 
 
-@app.command()
-def simulate(
-    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="What to simulate: pin.")],
-    engine: Annotated[str, typer.Option(metavar="NAME", help="Engine that simulates.")] = "reference",
-    settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=VALUE",
-            help="A parameter in SI units, several times for several.",
-            show_default=False,
-        ),
-    ] = None,
-    start: Annotated[
-        tuple[str, str, str, str],
-        typer.Option(metavar="X Y VX VY", help="Position in m and velocity in m/s at time 0."),
-    ] = ("0.1", "0", "0.03", "0"),
-    until: Annotated[str, typer.Option(metavar="T", help="Last time in s.")] = "400",
-    samples: Annotated[str, typer.Option(metavar="N", help="Number of times from 0 to T, >= 2.")] = "4001",
-    tolerance: Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")] = "1e-9",
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
-        ),
-    ] = None,
-) -> None:
-    """Simulate a system and write its motion; what is not set is the second case of Fig. 5.
+simulate = typer.Typer(rich_markup_mode=None)
+app.add_typer(simulate, name="simulate")
+
+EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter in SI units, several times for several.",
+        show_default=False,
+    ),
+]
+PinState = Annotated[
+    tuple[str, str, str, str],
+    typer.Option(metavar="X Y VX VY", help="Position in m and velocity in m/s at time 0."),
+]
+DiscState = Annotated[
+    tuple[str, str, str, str, str, str],
+    typer.Option(
+        metavar="X Y ANGLE VX VY SPIN",
+        help="Position in m, angle in rad, velocity in m/s and spin in rad/s at time 0.",
+    ),
+]
+Until = Annotated[str, typer.Option(metavar="T", help="Last time in s.")]
+Samples = Annotated[str, typer.Option(metavar="N", help="Number of times from 0 to T, >= 2.")]
+Tolerance = Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")]
+File = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
+    ),
+]
+
+
+@simulate.callback()
+def simulate_system() -> None:
+    """Simulate a system and write its motion.
 
     \b
-    Parameters of the pin, with their values in Fig. 5:
+    Examples:
+      friction-discs simulate pin --output whirl.json
+      friction-discs simulate disc --help
+    """
+
+
+@simulate.command("pin")
+def simulate_pin(
+    engine: EngineName = "reference",
+    settings: Settings = None,
+    start: PinState = ("0.1", "0", "0.03", "0"),
+    until: Until = "400",
+    samples: Samples = "4001",
+    tolerance: Tolerance = "1e-9",
+    output: File = None,
+) -> None:
+    """Simulate a pin and write its motion; what is not set is the second case of Fig. 5.
+
+    \b
+    Parameters, with their values in Fig. 5:
       mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
     \b
     Examples:
@@ -228,24 +258,68 @@ def simulate(
       friction-discs simulate pin --engine exudyn --set disc_speed=1.2 --set friction_force=0.05
           --start 0.1 0 -0.02 0 --until 100 --samples 1001 --output pin.csv
     """
+    from compare.paper import FIG5
+
+    _simulate(FIG5, engine, settings or [], start, until, samples, tolerance, output)
+
+
+@simulate.command("disc")
+def simulate_disc(
+    engine: EngineName = "reference",
+    settings: Settings = None,
+    start: DiscState = ("0.02", "0", "0", "0", "0", "1.3"),
+    until: Until = "400",
+    samples: Samples = "4001",
+    tolerance: Tolerance = "1e-9",
+    output: File = None,
+) -> None:
+    """Simulate a friction disc and write its motion; what is not set is Fig. 11 with X0 = 0.
+
+    \b
+    Parameters, with their values in Fig. 11; contact_points=none is the continuous ring:
+      mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
+      contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
+    \b
+    Examples:
+      friction-discs simulate disc --output modulated.csv
+      friction-discs simulate disc --engine exudyn --set contact_points=6 --set disc_speed=2
+          --start 0.1 0 0 0 0 1.2 --until 100 --samples 1001 --output disc.json
+    """
+    from compare.paper import FIG11
+
+    _simulate(FIG11, engine, settings or [], start, until, samples, tolerance, output)
+
+
+def _simulate(
+    paper: System,
+    engine: str,
+    settings: Sequence[str],
+    start: Sequence[str],
+    until: str,
+    samples: str,
+    tolerance: str,
+    output: Path | None,
+) -> None:
+    """Simulate ``paper`` with its changes ``settings`` and write the motion to a file or standard output."""
     import numpy as np
 
-    from compare.engines import engines, known
+    from compare.engines import UnsupportedSystemError, engines
     from compare.export import write_csv, writer
     from reference_model.systems import checked_state, checked_tolerance, finite_number
 
     with refused():
-        known("system", system, ["pin"])
         (chosen,) = engines([engine])
-        pin = _pin(settings or [])
-        state = checked_state(pin, [finite_number("start", value) for value in start])
+        system = _changed(paper, settings)
+        if missing := chosen.lacking([system]):
+            raise UnsupportedSystemError(missing)
+        state = checked_state(system, [finite_number("start", value) for value in start])
         accuracy = checked_tolerance(finite_number("tolerance", tolerance))
         times = np.linspace(0.0, _positive("until", until, "s"), _count("samples", samples, least=2))
         write = write_csv if output is None else writer(output)
         if output is not None:
             _check_file(output)
     try:
-        trajectory = chosen.simulate(pin, state, times, tolerance=accuracy)
+        trajectory = chosen.simulate(system, state, times, tolerance=accuracy)
     except (RuntimeError, ArithmeticError) as error:
         raise EngineFailedError(str(error)) from error
     if output is None:
@@ -292,19 +366,20 @@ def _studies(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
         return studies(names, STUDIES if context.obj is None else context.obj)
 
 
-def _pin(settings: Sequence[str]) -> PinOnDisc:
-    """Return Fig. 5's pin with changes "name=value"; raise ``ValueError`` for what is neither."""
+def _changed(system: System, settings: Sequence[str]) -> System:
+    """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
     from compare.engines import known
-    from compare.paper import FIG5
-    from reference_model.systems import PinOnDisc
 
-    values: dict[str, Any] = asdict(FIG5)
+    names = [field.name for field in fields(system)]
+    changes: dict[str, Any] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
             raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
-        values[known("parameter", name.strip(), values)] = value
-    return PinOnDisc(**values)
+        name = known("parameter", name.strip(), names)
+        ring = name == "contact_points" and value.strip().lower() == "none"
+        changes[name] = None if ring else value
+    return replace(system, **changes)
 
 
 def _positive(name: str, text: str, unit: str) -> float:
@@ -381,7 +456,10 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     for group in matrix.groups:
         for row in group.rows:
             for column, cell in row.cells.items():
-                if cell.state is not State.AGREES:
+                if cell.state is State.NOT_SIMULATED:
+                    if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
+                        print(f"{group.study.name} {column} not simulated: {cell.reason}")
+                elif cell.state is not State.AGREES:
                     reason = f": {cell.reason}" if cell.reason else ""
                     print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
     for what, failure in _failures(result).items():

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compare.paper import CENTRED
+from compare.paper import CENTRED, FIG8
 from reference_model import whirl_orbit
+from reference_model.contact import ThreeTermRing
+from reference_model.disc_formulas import inverse_slip_speed, inverse_slip_speed_as_printed, places_by_26
 from reference_model.pin_formulas import (
     characteristic_coefficients,
     characteristic_coefficients_as_printed,
@@ -17,6 +19,7 @@ from reference_model.pin_formulas import (
     variational_matrix,
     whirl_shift,
 )
+from reference_model.steady_states import self_centred_equilibria
 
 
 @dataclass(frozen=True)
@@ -102,6 +105,39 @@ def _shift_of_the_whirl() -> Evidence:
     )
 
 
+def _moment_of_the_expansion() -> Evidence:
+    """Return the moment on a ring whose centre slips as fast as its rim, from averages over the ring."""
+    slip, rim_speed = 1j, 1.0
+    mean_speed = math.hypot(abs(slip), rim_speed)
+    places = 2.0 * math.pi * np.arange(16) / 16  # averages are exact: cubic at most in sine and cosine
+    along_rim = [
+        slip.real * math.sin(place) - slip.imag * math.cos(place) + rim_speed for place in places
+    ]  # ν̃_r
+    corrected = [inverse_slip_speed(slip, rim_speed, place) for place in places]
+    # As printed the first line is ν̃_r/|ν_r| itself, corrected it is ν̄_r/|ν_r|.
+    return Evidence(
+        "moment over μN·R where U = R(ω − φ̇), from the average of the first line over the ring; exact: (23)",
+        exact=ThreeTermRing(radius=1.0).shares(abs(slip), rim_speed).moment,
+        printed_value=float(
+            np.mean([inverse_slip_speed_as_printed(slip, rim_speed, place) for place in places])
+        ),
+        corrected_value=float(np.mean(np.multiply(along_rim, corrected))) / mean_speed,
+    )
+
+
+def _spin_of_the_self_centred_disc() -> Evidence:
+    (equilibrium,) = self_centred_equilibria(FIG8, ThreeTermRing(FIG8.contact_radius))
+    (printed,) = places_by_26(FIG8, as_printed=True)
+    (corrected,) = places_by_26(FIG8)
+    return Evidence(
+        f"spin in rad/s of Fig. 8's disc at μN = {FIG8.friction_force:g} N, X0 = {FIG8.offset:g} m; exact: the "
+        "steady state of (19) with (23)",
+        exact=equilibrium.spin,
+        printed_value=printed.spin,
+        corrected_value=corrected.spin,
+    )
+
+
 ERRATA: tuple[Erratum, ...] = (
     Erratum(
         '(11), "always exists"',
@@ -128,6 +164,24 @@ ERRATA: tuple[Erratum, ...] = (
         "as its forcing. The relative error of (18) does not vanish as X0 → 0: nothing at ω = 2k, all of the "
         "shift as ω → k.",
         evidence=_shift_of_the_whirl,
+    ),
+    Erratum(
+        "(22), first line",
+        printed="ν̃_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r²",
+        correct="ν̄_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r² + (3/2)R²(ω − φ̇)²ν̃_xy²/ν̄_r⁴",
+        explanation="|ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², so that the right side belongs to the "
+        "reciprocal of |ν_r| over its mean square. (23) is the average of the slip velocity times three terms: its "
+        "¾Φ comes from the third, which the printed line leaves out. As printed the moment would not depend on "
+        "the slip of the centre at all.",
+        evidence=_moment_of_the_expansion,
+    ),
+    Erratum(
+        "(26), bracket in A",
+        printed="1 − ½cos²α + (3/16)sin²α",
+        correct="1 − ½sin²α + (3/16)sin²2α",
+        explanation="(24) put into (23) gives F = μN·cos α·(1 − ½sin²α + ¾cos²α·sin²α), and the springs balance it: "
+        "C²A²cos²α + F² = C²X0². The δ and θ lines of (26) are right as printed.",
+        evidence=_spin_of_the_self_centred_disc,
     ),
 )
 """In the order of the equations."""

@@ -9,10 +9,20 @@ from pathlib import Path
 from typing import TextIO
 
 from compare.store import version_of
-from reference_model.systems import PinOnDisc
+from reference_model.systems import DiscOnDisc, PinOnDisc, System
 from reference_model.trajectory import Trajectory
 
-COLUMNS = {PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s"))}
+COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
+    PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
+    DiscOnDisc: (
+        ("x", "m"),
+        ("y", "m"),
+        ("angle", "rad"),
+        ("vx", "m/s"),
+        ("vy", "m/s"),
+        ("spin", "rad/s"),
+    ),
+}
 """Name and unit of each state of a system."""
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from compare.engines import Engine
+from compare.engines import Engine, UnsupportedSystemError
 from compare.errata import Erratum, Evidence
 from compare.report.style import paper_style, saved
 from compare.store import Store, stamp
@@ -73,9 +73,13 @@ class Run:
         )
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of all that finished, by engine."""
+        """Return the arrays of all that found any, by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
-        return {column: outcome.data for column, outcome in found.items() if isinstance(outcome, Findings)}
+        return {
+            column: outcome.data
+            for column, outcome in found.items()
+            if isinstance(outcome, Findings) and outcome.data
+        }
 
 
 def run(
@@ -138,7 +142,7 @@ class _Runner:
             for column in result.columns(study)
         }
         for key, (study, engine) in work.items():
-            simulate = () if engine is None else (engine.simulate,)
+            simulate = () if engine is None else (engine.function,)
             self._stamps[key] = stamp(study.measure, *simulate)
             found = self._store.find(*key, self._stamps[key]) if resume else None
             if found is None:
@@ -184,7 +188,10 @@ def _measured(study: Study, engine: Engine | None) -> Findings:
     """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``."""
     findings: object = None
     if engine is not None:
-        findings = study.measure(engine)
+        try:
+            findings = study.measure(engine)
+        except UnsupportedSystemError as error:
+            findings = Findings(not_simulated=str(error))
     elif study.theory is not None:
         findings = study.theory()
     if not isinstance(findings, Findings):

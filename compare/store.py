@@ -51,6 +51,7 @@ class Store:
             "engine": engine,
             "stamp": stamp,
             "seconds": seconds,
+            "not_simulated": findings.not_simulated,
             "claims": [claim_as_json(claim) for claim in findings.claims],
         }
         write_text(path.with_suffix(".json"), json.dumps(content, indent=1, ensure_ascii=False))
@@ -65,7 +66,7 @@ class Store:
             claims = tuple(claim_from_json(claim) for claim in content["claims"])
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
                 data = {name: arrays[name] for name in arrays.files}
-            return Findings(claims, data), float(content["seconds"])
+            return Findings(claims, data, content["not_simulated"]), float(content["seconds"])
         except (OSError, EOFError, BadZipFile, ValueError, KeyError, TypeError):  # so it is computed again
             return None
 

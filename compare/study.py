@@ -18,10 +18,22 @@ Data = dict[str, FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What one study found for one engine: claims, and the arrays that its figures are drawn from."""
+    """What one study found for one engine.
+
+    Parameters
+    ----------
+    claims : tuple of Claim
+        Those that could be measured.
+    data : dict
+        Arrays that the figures are drawn from.
+    not_simulated : str
+        Why claims are missing that other engines have, in a sentence, see ``Engine.lacking``; "" if none is.
+
+    """
 
     claims: tuple[Claim, ...] = ()
     data: Data = field(default_factory=dict)
+    not_simulated: str = ""
 
 
 @dataclass(frozen=True)
@@ -37,10 +49,11 @@ class Study:
     paper : str
         What the paper says, in a paragraph.
     measure : callable
-        ``measure(engine) -> Findings``; called once for each engine, in a process of its own.
+        ``measure(engine) -> Findings``; called once for each engine, in a process of its own. Where it
+        simulates what the engine does not promise, nothing is found, and the report says so.
     draw : callable
         ``draw(data) -> {figure name: matplotlib Figure}``, where ``data`` maps engine names (those that
-        finished, and "theory") to the ``Findings.data`` of each; must cope with a missing engine.
+        found any, and "theory") to the ``Findings.data`` of each; must cope with a missing engine.
     theory : callable, optional
         ``theory() -> Findings``: statements in which no simulation takes part, and curves of formulas.
     figures : dict

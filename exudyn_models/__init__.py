@@ -1,7 +1,16 @@
 """The paper's systems as multibody models in Exudyn."""
 
+from exudyn_models.disc_on_disc import build_disc_on_disc
+from exudyn_models.linearisation import eigenvalues
 from exudyn_models.pin_on_disc import build_pin_on_disc
 from exudyn_models.ring_friction import add_ring_friction
 from exudyn_models.simulate import simulate, simulate_fixed_step
 
-__all__ = ["add_ring_friction", "build_pin_on_disc", "simulate", "simulate_fixed_step"]
+__all__ = [
+    "add_ring_friction",
+    "build_disc_on_disc",
+    "build_pin_on_disc",
+    "eigenvalues",
+    "simulate",
+    "simulate_fixed_step",
+]

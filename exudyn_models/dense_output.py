@@ -9,7 +9,7 @@ from reference_model.systems import FloatArray
 
 
 def states_at(steps: Steps, times: FloatArray) -> FloatArray:
-    """Return x, y, vx, vy at ``times`` (s), shape (len(times), 4).
+    """Return the states at ``times`` (s), shape (len(times), 2d).
 
     Between two steps each coordinate is the polynomial of fifth degree that has position, velocity and acceleration
     of both ends; velocities are its derivative. Its error is h⁶/46080 of the sixth derivative, below the error of
@@ -20,8 +20,9 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     h = (steps.times[after] - steps.times[index])[:, None]
     h = np.where(h > 0.0, h, 1.0)
     s = (times - steps.times[index])[:, None] / h
-    p0, p1 = steps.states[index, :2], steps.states[after, :2]
-    v0, v1 = h * steps.states[index, 2:], h * steps.states[after, 2:]
+    size = steps.accelerations.shape[1]
+    p0, p1 = steps.states[index, :size], steps.states[after, :size]
+    v0, v1 = h * steps.states[index, size:], h * steps.states[after, size:]
     a0, a1 = h * h * steps.accelerations[index], h * h * steps.accelerations[after]
     # Remainders after the Taylor polynomial of the left end.
     dp = p1 - p0 - v0 - a0 / 2.0

@@ -1,78 +1,93 @@
-"""When the pin slips and when it sticks, read from the motion under the regularised law."""
+"""When the contact slips and when it sticks, read from the motion under the regularised law."""
 
 from __future__ import annotations
 
-import numpy as np
+import itertools
+from dataclasses import replace
+from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios
 from exudyn_models.dense_output import states_at
+from exudyn_models.scales import settling_time
 from exudyn_models.solving import Steps
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase
 
+NOTHING = -1
+"""In place of the part of the contact that creeps."""
 
-def phases(pin: PinOnDisc, steps: Steps, regularisation: float) -> tuple[Phase, ...]:
-    """Return the slip and stick phases from the first to the last step, without gaps.
 
-    Under the regularised law a pin that sticks creeps with a slip speed below ε while friction is able to hold it.
-    *Sticking starts* where the slip speed, which falls linearly until it is ε, would be zero if it went on falling
-    like that. It *ends* where the force that is needed to turn the pin with the disc, eq. 6 evaluated on Exudyn's
-    own motion, reaches μN. Both times have errors of first order in ε.
+def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, ...]:
+    """Return the phases from the first to the last step, without gaps.
+
+    Under the regularised law what sticks creeps, with less than ε as long as Coulomb friction can hold it. While the
+    contact creeps as a whole, the system sticks; while one of several points does, the disc pivots about it. Creep
+    that ends before it has settled is none: at release the slip speed stays near ε for a while and may pass it
+    several times by the errors of single steps.
+
+    A phase *starts* where the slip speed, which falls linearly until it is ε, would be zero if it went on falling
+    like that. It *ends* where the slip speed reaches ε. Both times have errors of first order in ε.
     """
-    slip_speed, decay = _slip(pin, steps)
-    margin = pin.friction_force - _holding_force(pin, steps.states)
-    stuck = (slip_speed < regularisation) & (margin > 0.0)
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], stuck, [False])).astype(int)))
-    found: list[Phase] = []
-    time = float(steps.times[0])
+    ratios = creep_ratios(system, steps.states, regularisation)
+    below = ratios < 1.0
+    creeping = np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
+    for first, beyond in _runs(creeping):
+        end = steps.times[min(beyond, len(creeping) - 1)]
+        if end - steps.times[first] <= settling_time(system, regularisation):
+            creeping[first:beyond] = NOTHING
     last = float(steps.times[-1])
-    for first, beyond in edges.reshape(-1, 2):
-        start, end = time, last
-        if first > 0:
-            before = first - 1
-            if slip_speed[before] >= regularisation and decay[before] > 0.0:
-                start = steps.times[before] + slip_speed[before] / decay[before]
-            else:
-                start = _root(steps.times, margin, before)
-        if beyond < len(stuck):
-            end = steps.times[beyond] if margin[beyond] > 0.0 else _root(steps.times, margin, beyond - 1)
-        start, end = float(max(start, time)), float(min(end, last))
-        if not start < end:
+    changes = [first for first, _ in _runs(creeping)][1:]
+    times = [float(steps.times[0])]
+    for i in changes:
+        before, after = creeping[i - 1], creeping[i]
+        if after == NOTHING or (before == WHOLE):
+            time = _crossing(steps.times, ratios[:, before] - 1.0, i - 1)
+        else:
+            time = _time_of_rest(system, steps, ratios[:, after], after, i - 1, regularisation)
+        times.append(min(max(time, times[-1]), last))
+    found: list[Phase] = []
+    part_before = None
+    for i, start, end in zip([0, *changes], times, [*times[1:], last], strict=True):
+        if start == end < last:
             continue
-        if start > time:
-            found.append(_phase("slip", time, start, steps))
-        found.append(_phase("stick", start, end, steps))
-        time = end
-    if time < last or not found:
-        found.append(_phase("slip", time, last, steps))
+        if found and (start == end or creeping[i] == part_before):
+            found[-1] = replace(found[-1], end=end)
+        else:
+            found.append(Phase(_kind(creeping[i]), start, end, states_at(steps, np.array([start]))[0]))
+        part_before = creeping[i]
     return tuple(found)
 
 
-def _phase(kind: str, start: float, end: float, steps: Steps) -> Phase:
-    state = states_at(steps, np.array([start]))[0]
-    return Phase("stick" if kind == "stick" else "slip", start, end, state)
+def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
+    """Return the kind of phase in which ``part`` of the contact creeps."""
+    return "slip" if part == NOTHING else "stick" if part == WHOLE else "pivot"
 
 
-def _slip(pin: PinOnDisc, steps: Steps) -> tuple[FloatArray, FloatArray]:
-    """Return the slip speed in m/s and the rate at which it falls in m/s², both of shape (n,)."""
-    x, y, vx, vy = steps.states.T
-    ax, ay = steps.accelerations.T
-    omega = pin.disc_speed
-    ux, uy = vx + omega * y, vy - omega * x
-    speed = np.hypot(ux, uy)
-    rate = ux * (ax + omega * vy) + uy * (ay - omega * vx)
-    return speed, -rate / np.where(speed > 0.0, speed, 1.0)
+def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
+    """Return the first index of every run of equal values and the one beyond its last."""
+    edges = [0, *(np.flatnonzero(values[1:] != values[:-1]) + 1).tolist(), len(values)]
+    return list(itertools.pairwise(edges))
 
 
-def _holding_force(pin: PinOnDisc, states: FloatArray) -> FloatArray:
-    """Return the force in N that friction must provide so that the pin turns with the disc, shape (n,)."""
-    x, y = states[:, 0], states[:, 1]
-    omega = pin.disc_speed
-    fx = -pin.mass * omega**2 * x - pin.damping * omega * y + pin.stiffness * (x - pin.offset)
-    fy = -pin.mass * omega**2 * y + pin.damping * omega * x + pin.stiffness * y
-    return np.hypot(fx, fy)
+def _time_of_rest(
+    system: System, steps: Steps, ratio: FloatArray, part: int, left: int, regularisation: float
+) -> float:
+    """Return the time at which the slip of ``part`` would be zero if it went on falling as at step ``left``.
+
+    ``ratio`` is its creep ratio. Without such a fall the contact rests since the next step.
+    """
+    start, end = steps.times[left], steps.times[left + 1]
+    rates = creep_ratio_rates(system, steps.states[left], steps.accelerations[left], regularisation)
+    falls = rates[part] < 0.0 and ratio[left] > ratio[left + 1]
+    return float(start - ratio[left] / rates[part]) if falls else float(end)
 
 
-def _root(times: FloatArray, values: FloatArray, left: int) -> float:
-    """Return the time between steps ``left`` and ``left + 1`` at which ``values`` pass zero."""
+def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
+    """Return the time between steps ``left`` and ``left + 1`` at which ``values`` pass zero, at the latest."""
+    if values[left] >= 0.0 or values[left + 1] <= 0.0:
+        return float(times[left + 1])
     share = values[left] / (values[left] - values[left + 1])
     return float(times[left] + share * (times[left + 1] - times[left]))

@@ -11,7 +11,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.pin_on_disc import PinModel
+from exudyn_models.supported_body import Model
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -27,10 +27,10 @@ class Steps:
     ----------
     times : array of shape (n,)
         In s.
-    states : array of shape (n, 4)
-        x, y, vx, vy.
-    accelerations : array of shape (n, 2)
-        In m/s².
+    states : array of shape (n, 2d)
+        The d coordinates of the system (m, rad) and their d velocities (m/s, rad/s).
+    accelerations : array of shape (n, d)
+        In m/s², rad/s².
     evaluations : int
         Evaluations of the equations of motion.
 
@@ -52,12 +52,12 @@ def joined(parts: Sequence[Steps]) -> Steps:
     )
 
 
-Watch = Callable[[float, float, float, float, float], bool]
-"""Called with t, x, y, vx, vy after every step; returns False to end the run there."""
+Watch = Callable[[float, list[float]], bool]
+"""Called with time (s) and state after every step; returns False to end the run there."""
 
 
 def solve(
-    model: PinModel,
+    model: Model,
     start: float,
     end: float,
     *,
@@ -70,7 +70,7 @@ def solve(
 
     Parameters
     ----------
-    model : PinModel
+    model : Model
         Assembled.
     start, end : float
         In s, start <= end.
@@ -89,14 +89,14 @@ def solve(
         If a state is not finite, the Newton iteration fails or the step falls below what time resolves.
 
     """
+    data = model.mbs.systemData
+    own = slice(model.first, model.first + model.size)
     if start == end:
-        data = model.mbs.systemData
-        position, velocity = (
-            values(configuration=exu.ConfigurationType.Initial)[1:3]
+        initial = [
+            values(configuration=exu.ConfigurationType.Initial)[own]
             for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
-        )
-        state = np.concatenate((position, velocity))[None, :]
-        return Steps(np.array([start]), state, np.zeros((1, 2)), 0)
+        ]
+        return Steps(np.array([start]), np.hstack(initial)[None, :], np.zeros((1, model.size)), 0)
     # A step below the resolution of time leaves it where it is.
     smallest = 8.0 * float(np.spacing(max(abs(start), abs(end))))
     settings = _settings(start, end, integrator, step, tolerance)
@@ -104,20 +104,21 @@ def solve(
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
     failure = ""
+    stopped = False
     previous = start
 
     def after_step(mbs: Any, t: float) -> bool:
-        nonlocal failure, previous
-        _, x, y, _ = mbs.systemData.GetODE2Coordinates().tolist()
-        _, vx, vy, _ = mbs.systemData.GetODE2Coordinates_t().tolist()
-        if not math.isfinite(x + y + vx + vy):  # Exudyn would go on and report success
+        nonlocal failure, stopped, previous
+        state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
+        if not math.isfinite(sum(state)):  # Exudyn would go on and report success
             failure = "the state is not finite any more"
         elif start < t < end and t - previous <= smallest:
             failure = f"the step fell to {t - previous:.1g} s"
         previous = t
-        return not failure and (watch is None or watch(t, x, y, vx, vy))
+        stopped = bool(failure) or not (watch is None or watch(t, state))
+        return not stopped
 
-    with _quiet():
+    with quiet():
         try:
             if explicit:
                 first_acceleration = _initial_acceleration(model, start)
@@ -131,11 +132,11 @@ def solve(
             model.mbs.SetPostStepUserFunction(0)
     if failure or not success:
         raise SimulationError(_advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
-    positions, velocities, accelerations = (
-        np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors
-    )
-    states = np.hstack((positions[:, 1:3], velocities[:, 1:3]))
-    accelerations = accelerations[:, 1:3]
+    recorded = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
+    times = recorded[0][:, 0]
+    if not stopped:  # what fixed steps add up to may differ from it in the last digits
+        times[-1] = end
+    positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in recorded)
     if explicit:
         accelerations[0] = first_acceleration
     if explicit:
@@ -143,7 +144,7 @@ def solve(
         evaluations = steps * (solver.GetNumberOfStages() + 1)
     else:
         evaluations = solver.it.newtonStepsCount + solver.it.currentStepIndex
-    return Steps(positions[:, 0], states, accelerations, evaluations)
+    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
 
 
 def _settings(start: float, end: float, integrator: str, step: float, tolerance: float) -> Any:
@@ -168,8 +169,8 @@ def _settings(start: float, end: float, integrator: str, step: float, tolerance:
     return settings
 
 
-def _initial_acceleration(model: PinModel, start: float) -> FloatArray:
-    """Return the acceleration at the start in m/s², shape (2,).
+def _initial_acceleration(model: Model, start: float) -> FloatArray:
+    """Return the accelerations at the start in m/s², rad/s², shape (d,).
 
     Explicit solvers of Exudyn report zero there; the implicit ones compute it.
     """
@@ -178,11 +179,11 @@ def _initial_acceleration(model: PinModel, start: float) -> FloatArray:
     solver: Any = exu.MainSolverImplicitSecondOrder()
     if not solver.SolveSystem(model.mbs, settings):
         raise SimulationError(_advice("GeneralizedAlpha", start, "no initial acceleration"))
-    return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1:3]
+    return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1 : 1 + model.size]
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keep Exudyn from printing."""
     before = exu.config.printToConsole
     exu.config.printToConsole = False

@@ -51,6 +51,16 @@ def test_the_engine_of_the_example_slides_as_the_reference_does():
     assert errors[1] < 0.1 * errors[0]
 
 
+def test_the_whirl_of_the_disc_gives_way_to_a_modulated_cycle():
+    example = run("04_friction_disc.py")
+    assert example["whirl"].eigenvalues[1].real > 0.0 > example["by_23"].eigenvalues[1].real
+    swings = [motion.radius[-2500:] for motion in (example["trajectory"], example["in_exudyn"])]
+    for radius in swings:
+        assert radius.min() < 0.5 * example["whirl"].radius < 1.5 * example["whirl"].radius < radius.max()
+    # The engines' errors grow with the whirl's own instability until the cycle holds them.
+    assert swings[1] == pytest.approx(swings[0], abs=1e-6)
+
+
 def test_the_engine_of_the_readme_is_that_of_the_example():
     code = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
     example = run("03_your_own_engine.py")

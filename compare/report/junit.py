@@ -13,7 +13,7 @@ from compare.workers import Failure
 
 
 def junit(run: Run, matrix: Matrix) -> bytes:
-    """Return the document: "differs" is a failure, inconclusive and missing skipped, failed an error."""
+    """Return the document: "differs" is a failure, failed an error, all that has no verdict skipped."""
     root = ET.Element("testsuites", name="friction-discs")
     for group in matrix.groups:
         suite = ET.SubElement(root, "testsuite", name=group.study.name)

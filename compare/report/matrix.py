@@ -23,14 +23,31 @@ class State(Enum):
     INCONCLUSIVE = "inconclusive"
     FAILED = "failed"
     MISSING = "missing"
+    NOT_SIMULATED = "not simulated"
 
     @property
     def symbol(self) -> str:
         """A mark that is told apart without colour."""
-        return {"agrees": "✓", "differs": "✗", "inconclusive": "?", "failed": "!", "missing": "…"}[self.value]
+        return _SYMBOLS[self.value]
 
 
-WORST_FIRST = (State.FAILED, State.DIFFERS, State.INCONCLUSIVE, State.MISSING, State.AGREES)
+_SYMBOLS = {
+    "agrees": "✓",
+    "differs": "✗",
+    "inconclusive": "?",
+    "failed": "!",
+    "missing": "…",
+    "not simulated": "∅",
+}
+
+WORST_FIRST = (
+    State.FAILED,
+    State.DIFFERS,
+    State.INCONCLUSIVE,
+    State.MISSING,
+    State.NOT_SIMULATED,
+    State.AGREES,
+)
 """A cell with several claims says the first that applies to any."""
 
 
@@ -139,14 +156,19 @@ def _group(run: Run, study: Study) -> Group:
                 cells[column] = gaps[column]
         rows.append(Row(sentence, equation, cells))
     # a gap that no row shows, because nobody made a claim there, still has to be seen
-    unseen = {column: gap for column, gap in gaps.items() if not any(column in row.cells for row in rows)}
+    unseen = {
+        column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
+    }
     if unseen:
         rows.append(Row("(claims not known)", "", unseen))
     return Group(study, tuple(rows))
 
 
 def _gap(run: Run, study: Study, column: str) -> Cell | None:
+    """Return what stands in place of the claims that ``column`` has not, None where none is missing."""
     outcome = run.outcomes.get((study.name, column))
+    if isinstance(outcome, Findings) and outcome.not_simulated:
+        return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
     if isinstance(outcome, Failure):
         return Cell(State.FAILED, reason=outcome.reason)
     return Cell(State.MISSING, reason="not finished before the interruption") if outcome is None else None

@@ -77,14 +77,15 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
 
 
 def summary(matrix: Matrix) -> str:
-    """Return the totals in words: "41 agree, 1 differs, 0 inconclusive", and what failed or is missing."""
+    """Return the totals in words: "41 agree, 1 differs, 0 inconclusive", and the gaps."""
     totals = matrix.totals
     words = [
         f"{totals[State.AGREES]} agree" + "s" * (totals[State.AGREES] == 1),
         f"{totals[State.DIFFERS]} differ" + "s" * (totals[State.DIFFERS] == 1),
         f"{totals[State.INCONCLUSIVE]} inconclusive",
     ]
-    words += [f"{totals[state]} {state.value}" for state in (State.FAILED, State.MISSING) if totals[state]]
+    gaps = (State.FAILED, State.MISSING, State.NOT_SIMULATED)
+    words += [f"{totals[state]} {state.value}" for state in gaps if totals[state]]
     return ", ".join(words)
 
 

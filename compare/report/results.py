@@ -8,7 +8,6 @@ from compare.errata import Evidence
 from compare.report.matrix import Matrix, State
 from compare.runner import Drawing, Run
 from compare.store import claim_as_json, number_as_json
-from compare.study import Findings
 from compare.workers import Failure
 
 
@@ -48,10 +47,15 @@ def _study(run: Run, matrix: Matrix, i: int) -> dict[str, Any]:
 
 def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
     outcome = run.outcomes.get((study, column))
-    state = "finished" if isinstance(outcome, Findings) else "missing" if outcome is None else "failed"
+    state, reason = State.MISSING.value, ""
+    if isinstance(outcome, Failure):
+        state, reason = State.FAILED.value, outcome.reason
+    elif outcome is not None:
+        reason = outcome.not_simulated
+        state = State.NOT_SIMULATED.value if reason else "finished"
     return {
         "state": state,
-        "reason": outcome.reason if isinstance(outcome, Failure) else "",
+        "reason": reason,
         "seconds": run.seconds.get((study, column)),
     }
 

@@ -92,9 +92,9 @@ _STYLES = {
     "theory": EngineStyle(BLACK, "-", "", 0.8),
     "reference": EngineStyle(BLUE, "-", "o", 2.4),
     "exudyn": EngineStyle(ORANGE, (0.0, (4.0, 2.0)), "x", 1.6),
+    "exudyn-native": EngineStyle(GREEN, (0.0, (1.0, 1.2)), "s", 1.6),
 }
 _OTHERS = (
-    EngineStyle(GREEN, (0.0, (1.0, 1.2)), "s", 1.6),
     EngineStyle(PURPLE, (0.0, (6.0, 1.5, 1.0, 1.5)), "^", 1.6),
     EngineStyle(SKY, (0.0, (2.0, 2.0)), "D", 1.6),
 )

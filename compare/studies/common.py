@@ -11,20 +11,31 @@ from numpy.typing import ArrayLike, NDArray
 
 from compare.accuracy import COARSENING
 from compare.engines import Engine
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import DiscOnDisc, FloatArray, System
 
 ComplexArray = NDArray[np.complex128]
 
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
 
+ANGLE = 2
+"""Place of the angle among the states of a disc."""
+
 FLOW_TOLERANCE = 1e-11
 """Of the simulations that are subtracted from each other."""
 
 
-def parameters_of(pin: PinOnDisc, *, without: Collection[str] = (), **changes: float) -> dict[str, float]:
-    """Return the parameters of ``pin`` for a claim, but those that it sweeps; ``changes`` adds or replaces some."""
-    return {name: value for name, value in asdict(pin).items() if name not in without} | changes
+def parameters_of(
+    system: System, *, without: Collection[str] = (), **changes: float
+) -> dict[str, float | str]:
+    """Return the parameters of ``system`` for a claim, but those that it sweeps; ``changes`` adds or replaces some.
+
+    A disc without contact points has "continuous ring" in their place.
+    """
+    parameters: dict[str, float | str] = {
+        name: "continuous ring" if value is None else value for name, value in asdict(system).items()
+    }
+    return {name: value for name, value in parameters.items() if name not in without} | changes
 
 
 def at_each(name: str, values: ArrayLike) -> str:
@@ -33,11 +44,16 @@ def at_each(name: str, values: ArrayLike) -> str:
 
 
 def turned(states: ArrayLike, angle: ArrayLike) -> FloatArray:
-    """Return ``states`` (shape (..., 4): x, y, vx, vy) turned about the axis by ``angle`` in rad."""
-    x, y, vx, vy = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
-    turn = np.exp(1j * np.asarray(angle, dtype=float))
-    z, v = (x + 1j * y) * turn, (vx + 1j * vy) * turn
-    return np.stack((z.real, z.imag, v.real, v.imag), axis=-1)
+    """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) turned about the axis by ``angle`` in rad."""
+    states, angle = np.asarray(states, dtype=float), np.asarray(angle, dtype=float)
+    result = np.array(np.broadcast_to(states, np.broadcast_shapes(states.shape, (*angle.shape, 1))))
+    half = result.shape[-1] // 2
+    for x, y in ((0, 1), (half, half + 1)):
+        z = (result[..., x] + 1j * result[..., y]) * np.exp(1j * angle)
+        result[..., x], result[..., y] = z.real, z.imag
+    if half == ANGLE + 1:
+        result[..., ANGLE] += angle
+    return result
 
 
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
@@ -64,7 +80,7 @@ def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: 
 
 
 def measured_eigenvalues(
-    engine: Engine, pin: PinOnDisc, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
+    engine: Engine, system: System, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues in 1/s with which small deviations from a steady motion grow, and their error.
 
@@ -78,10 +94,10 @@ def measured_eigenvalues(
     ----------
     engine : Engine
         The engine.
-    pin : PinOnDisc
-        The parameters.
-    state : array of shape (4,)
-        x, y, vx, vy on the steady motion, which slides.
+    system : PinOnDisc or DiscOnDisc
+        The parameters. A disc is taken on a continuous ring, on which its angle drops out: it has five eigenvalues.
+    state : array of shape (4,) or (6,)
+        Of the steady motion, which slides.
     duration : float
         In s, short enough for |Im λ|·duration < π.
     frame_speed : float
@@ -89,21 +105,28 @@ def measured_eigenvalues(
 
     """
     state = np.asarray(state, dtype=float)
-    x, y, vx, vy = state
-    slip = np.hypot(vx + pin.disc_speed * y, vy - pin.disc_speed * x)
+    half, omega = len(state) // 2, system.disc_speed
+    (x, y), (vx, vy) = state[:2], state[half : half + 2]
+    slip = np.hypot(vx + omega * y, vy - omega * x)
+    if isinstance(system, DiscOnDisc):
+        slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
     # Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
-    size = np.array([slip / abs(pin.disc_speed)] * 2 + [slip] * 2)
+    size = np.array([slip / abs(omega)] * 2 + [slip] * 2)
+    moving = [0, 1, half, half + 1]
+    if isinstance(system, DiscOnDisc):
+        size, moving = np.append(size, slip / system.contact_radius), [*moving, len(state) - 1]
 
     def differences(tolerance: float, step: float) -> FloatArray:
         columns = []
-        for i in range(4):
-            shift = np.zeros(4)
-            shift[i] = step * size[i]
+        for i, width in zip(moving, size, strict=True):
+            shift = np.zeros(len(state))
+            shift[i] = step * width
             ends = [
-                engine.simulate(pin, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
+                engine.simulate(system, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
                 for sign in (1.0, -1.0)
             ]
-            columns.append(turned(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i]))
+            change = turned(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i])
+            columns.append(change[moving])
         return np.column_stack(columns)
 
     def eigenvalues(fine: FloatArray, wide: FloatArray) -> ComplexArray:

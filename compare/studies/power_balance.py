@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.accuracy import refined
+from compare.accuracy import ROUNDING, refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
-from compare.paper import CENTRED, FIG4, FIG5, FIG5_STARTS
+from compare.paper import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
 from compare.report.style import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from compare.studies.common import parameters_of
 from compare.study import Data, Findings, Study
 from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.pin_formulas import whirl_radius
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,13 +34,14 @@ DRAWN = "the way to the whirl, with stick phases"
 
 @dataclass(frozen=True)
 class Motion:
-    """A kind of motion: parameters, start, length in s, and where they come from."""
+    """A kind of motion: parameters, start, length and distance of samples in s, and where they come from."""
 
-    pin: PinOnDisc
+    system: System
     start: tuple[float, ...]
     until: float
     source: str
     tolerance: float = 1e-9
+    step: float = SAMPLE_DISTANCE
 
 
 SENTENCE = "What the drive puts in is heat and stored energy: {}"
@@ -48,6 +49,11 @@ SENTENCE = "What the drive puts in is heat and stored energy: {}"
 
 def all_motions() -> dict[str, Motion]:
     """Return the motions by the words in which the claims name them."""
+    return motions_of_the_pin() | motions_of_the_disc()
+
+
+def motions_of_the_pin() -> dict[str, Motion]:
+    """Return the motions of a pin; one of them is drawn."""
     radius = whirl_radius(CENTRED)
     sticky = FIG4
     stuck = 0.98 * sticking_radius(sticky)
@@ -83,29 +89,77 @@ def all_motions() -> dict[str, Motion]:
     }
 
 
+def motions_of_the_disc() -> dict[str, Motion]:
+    """Return the motions of a friction disc, on the continuous ring and on six points."""
+    near_axis, thrown = (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), (0.0, 0.0, 0.0, 0.5, 0.2, 3.0)
+    sticky = replace(FIG11, friction_force=0.1)
+    table = replace(
+        FIG11,
+        stiffness=0.0,
+        damping=0.0,
+        shaft_damping=0.0,
+        disc_speed=0.0,
+        friction_force=0.1,
+        polar_inertia=FIG11.mass * FIG11.contact_radius**2,
+    )
+    on_table = "nothing but friction on a disc at rest, μN = 0.1 N, J = mR², start by choice"
+    return {
+        "a disc on its way to the modulated cycle": Motion(
+            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, start by choice"
+        ),
+        "a disc on six points": Motion(
+            replace(FIG11, contact_points=6), near_axis, 40.0, "Fig. 11 with X0 = 0, start by choice"
+        ),
+        "a disc with an offset, turning the other way": Motion(
+            replace(FIG11, disc_speed=-FIG11.disc_speed, shaft_speed=-FIG11.shaft_speed, offset=0.02),
+            (0.02, 0.0, 0.0, 0.0, 0.0, -1.3),
+            40.0,
+            "Fig. 11 with −ω, −Ω and X0 = 0.02 m, start by choice",
+        ),
+        "a disc that sticks all the time": Motion(
+            sticky,
+            (0.05, 0.0, 0.0, 0.0, 0.05 * sticky.disc_speed, sticky.disc_speed),
+            2.0,
+            "Fig. 11, μN = 0.1 N",
+        ),
+        "a ring thrown on a table, to rest": Motion(table, thrown, 10.0, on_table),
+        "six points thrown on a table, to rest": Motion(
+            # One of the points rests before the others, where the quadrature is worse.
+            replace(table, contact_points=6),
+            thrown,
+            10.0,
+            on_table,
+            step=0.1 * SAMPLE_DISTANCE,
+        ),
+    }
+
+
 def measure(engine: Engine, motions: Mapping[str, Motion] | None = None) -> Findings:
     """Check the balance of every motion; keep that of Fig. 5's second start for the figure."""
     motions = motions or all_motions()
+    mine = {name: motion for name, motion in motions.items() if engine.simulates(motion.system)}
     run = functools.cache(functools.partial(_run, engine))
-    claims = tuple(balance_claim(engine, run, name, motion) for name, motion in motions.items())
-    balance = power_balance(run(motions[DRAWN], motions[DRAWN].tolerance))
-    return Findings(
-        claims,
-        {
-            "times": balance.times,
-            "drive work": balance.drive_work,
-            "friction heat": balance.friction_heat,
-            "damper heat": balance.damper_heat,
-            "stored energy": balance.stored_energy,
-            "residual": balance.residual / balance.turned_over,
-        },
-    )
+    claims = tuple(balance_claim(engine, run, name, motion) for name, motion in mine.items())
+    drawn = _drawn(power_balance(run(mine[DRAWN], mine[DRAWN].tolerance))) if DRAWN in mine else {}
+    lacking = engine.lacking(motion.system for motion in motions.values())
+    return Findings(claims, drawn, not_simulated=lacking)
+
+
+def _drawn(balance: PowerBalance) -> Data:
+    return {
+        "times": balance.times,
+        "drive work": balance.drive_work,
+        "friction heat": balance.friction_heat,
+        "damper heat": balance.damper_heat,
+        "stored energy": balance.stored_energy,
+        "residual": balance.residual / balance.turned_over,
+    }
 
 
 def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    intervals = 2 * round(motion.until / (2.0 * SAMPLE_DISTANCE))  # every second sample has the last one too
+    intervals = 2 * round(motion.until / (2.0 * motion.step))  # every second sample has the last one too
     times = np.linspace(0.0, motion.until, intervals + 1)
-    return engine.simulate(motion.pin, motion.start, times, tolerance=tolerance)
+    return engine.simulate(motion.system, motion.start, times, tolerance=tolerance)
 
 
 def _relative_residual(balance: PowerBalance) -> float:
@@ -127,16 +181,18 @@ def balance_claim(
     (largest, _), errors = refined(residual_at_ends, motion.tolerance)
     return Claim(
         SENTENCE.format(name),
-        equation="(1)",
+        equation="(1)" if isinstance(motion.system, PinOnDisc) else "(19)",
         engine=engine.name,
         predicted=0.0,
         measured=largest,
-        budget=ErrorBudget(float(np.max(errors)) + min(quadrature.values()), resolution=RESOLUTION),
-        parameters=parameters_of(motion.pin),
+        budget=ErrorBudget(
+            float(np.max(errors)) + min(quadrature.values()) + ROUNDING, resolution=RESOLUTION
+        ),
+        parameters=parameters_of(motion.system),
         source=motion.source,
         note="Largest residual at any time, as a fraction of the energy turned over (heat, and the most that was "
         "stored). Error: change with the engine's tolerance, and with every second sample left out of the "
-        "balance's quadrature.",
+        "balance's quadrature, and the rounding of the energies.",
     )
 
 
@@ -173,10 +229,10 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 STUDY = Study(
     name="power-balance",
     title="Power balance of every kind of motion",
-    paper="Not in the paper, but implied by (1): what the drive of the disc puts in is friction heat, heat of the "
-    "dampers and stored energy. The drive's work is taken from the angular momentum of the pin's motion and "
-    "the heat from the slip, so the balance checks friction, damping, springs and integrator of an engine "
-    "without any reference solution.",
+    paper="Not in the paper, but implied by (1) and (19): what the drive of the disc puts in is friction heat, heat "
+    "of the dampers, work on the shaft of a friction disc and stored energy. The drive's work is taken from the "
+    "angular momentum of the motion and the heat from the slip, so the balance checks friction, damping, springs "
+    "and integrator of an engine without any reference solution.",
     measure=measure,
     draw=draw,
     figures={

@@ -1,20 +1,23 @@
 """An engine of its own kind, and the same engine broken on purpose: a check is worth what it fails on.
 
-The model is eq. 1 with a friction law that is viscous below a small slip speed ε, in plain real coordinates and
+The model is eq. 1 or 19 with a friction law that is viscous below a small slip speed ε, in plain coordinates and
 with LSODA, which copes with the stiffness of stick. ε falls with the tolerance, so that the error of both can be
 estimated. Nothing is shared with the two engines of the project.
 """
 
 from __future__ import annotations
 
+import cmath
 import functools
 import math
 from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import LSODA
+from scipy.special import ellipe, ellipkm1
 
-from compare.engines import Engine
+from compare.engines import EVERY_KIND, Engine
+from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 TIGHTEST = 1e-13
@@ -42,27 +45,86 @@ def square(ux, uy, epsilon):
     return -ux / math.hypot(ux, epsilon), -uy / math.hypot(uy, epsilon)
 
 
-def simulate(system, initial_state, times, *, tolerance=1e-9, law=circle, damping_factor=1.0):
+def ring(slip, relative_spin, radius, epsilon):
+    """Return force and moment of (20) per newton of μN, viscous below a mean slip speed ε."""
+    u, w = abs(slip), radius * abs(relative_spin)
+    if u + w == 0.0:
+        return 0j, 0.0
+    m = min(4.0 * (u / (u + w)) * (w / (u + w)), 1.0)  # rounding
+    complement = ((u - w) / (u + w)) ** 2
+    first, second = (ellipkm1(complement) if u != w else 0.0), ellipe(m)
+    mean = 2.0 / math.pi * (u + w) * second
+    by_slip = ((u + w) * second + (u - w) * first) / (math.pi * u) if u > 1e-9 * w else u / (2.0 * w)
+    by_rim = ((u + w) * second - (u - w) * first) / (math.pi * w) if w > 1e-9 * u else w / (2.0 * u)
+    full = min(1.0, mean / epsilon)
+    force = -full * by_slip * slip / u if u > 0.0 else 0j
+    return force, full * math.copysign(radius * by_rim, relative_spin)
+
+
+def on_points(slip, relative_spin, angle, radius, points, law, epsilon):
+    """Return force and moment of points on a circle, each with its share of μN."""
+    force, moment = 0j, 0.0
+    for i in range(points):
+        arm = radius * cmath.exp(1j * (angle + 2.0 * math.pi * i / points))
+        velocity = slip - 1j * relative_spin * arm
+        friction = complex(*law(velocity.real, velocity.imag, epsilon)) / points
+        force += friction
+        moment += (arm.conjugate() * friction).imag
+    return force, moment
+
+
+def simulate(
+    system,
+    initial_state,
+    times,
+    *,
+    tolerance=1e-9,
+    law=circle,
+    damping_factor=1.0,
+    moment_factor=1.0,
+    points=None,
+    turning=1.0,
+):
     m, C, X0, omega = system.mass, system.stiffness, system.offset, system.disc_speed
     beta, friction = damping_factor * system.damping, system.friction_force
     epsilon = 100.0 * tolerance
     times = np.asarray(times, dtype=float)
+    is_disc = isinstance(system, DiscOnDisc)
+    if is_disc:
+        points = points or system.contact_points or (None if law is circle else 12)
     evaluations = 0
+
+    def contact(slip, relative_spin, angle):
+        if not is_disc:
+            return complex(*law(slip.real, slip.imag, epsilon)), 0.0
+        if points is None:
+            return ring(slip, relative_spin, system.contact_radius, epsilon)
+        return on_points(slip, relative_spin, angle, system.contact_radius, points, law, epsilon)
 
     def rates(_, state):
         nonlocal evaluations
         evaluations += 1
-        x, y, vx, vy = state
-        fx, fy = law(vx + omega * y, vy - omega * x, epsilon)
-        return (
-            vx,
-            vy,
-            (friction * fx - beta * vx - C * (x - X0)) / m,
-            (friction * fy - beta * vy - C * y) / m,
-        )
+        places, velocities = state[: len(state) // 2], state[len(state) // 2 :]
+        (x, y), (vx, vy) = places[:2], velocities[:2]
+        angle, spin = (places[2], velocities[2]) if is_disc else (0.0, 0.0)
+        force, moment = contact(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
+        forces = [
+            (friction * force.real - beta * vx - C * (x - X0)) / m,
+            (friction * force.imag - beta * vy - C * y) / m,
+        ]
+        if not is_disc:
+            return (vx, vy, *forces)
+        shaft = -system.shaft_damping * (spin - system.shaft_speed)
+        torsion = (moment_factor * friction * moment + shaft) / system.polar_inertia
+        return (vx, vy, turning * spin, *forces, torsion)
 
     def slip_and_margin(state):
-        """Return the slip speed, and by how much friction exceeds what holds the pin (eq. 6)."""
+        """Return the slip speed, and by how much friction exceeds what holds the pin (eq. 6).
+
+        A disc is said to slip all the time: where it rests, friction is viscous.
+        """
+        if is_disc:
+            return math.inf, -1.0
         x, y, vx, vy = state
         needed = complex(C - m * omega**2, beta * omega) * complex(x, y) - C * X0
         return math.hypot(vx + omega * y, vy - omega * x), friction - abs(needed)
@@ -71,7 +133,7 @@ def simulate(system, initial_state, times, *, tolerance=1e-9, law=circle, dampin
     local = max(0.01 * tolerance, TIGHTEST)
     start = np.array(initial_state, dtype=float)
     solver = LSODA(rates, times[0], start, times[-1], rtol=local, atol=0.1 * local, first_step=1e-6)
-    states = np.empty((len(times), 4))
+    states = np.empty((len(times), len(start)))
     states[0], recorded, steps = start, 1, 0
     stuck = slip_and_margin(start)[0] < epsilon and slip_and_margin(start)[1] > 0.0
     phases = [("stick" if stuck else "slip", float(times[0]), start)]
@@ -108,11 +170,27 @@ def simulate(system, initial_state, times, *, tolerance=1e-9, law=circle, dampin
     )
 
 
+def broken(name, **fault):
+    return Engine(name, functools.partial(simulate, **fault), EVERY_KIND)
+
+
 def broken_engines() -> dict[str, Engine]:
     """Return the unbroken engine ("intact") and those with one fault each."""
-    return {
-        "intact": Engine("intact", simulate),
-        "wrong sign": Engine("wrong sign", functools.partial(simulate, law=wrong_sign)),
-        "square": Engine("square", functools.partial(simulate, law=square)),
-        "half the damping": Engine("half the damping", functools.partial(simulate, damping_factor=0.5)),
-    }
+    engines = (
+        Engine("intact", simulate, EVERY_KIND),
+        broken("wrong sign", law=wrong_sign),
+        broken("square", law=square),
+        broken("half the damping", damping_factor=0.5),
+    )
+    return {engine.name: engine for engine in engines}
+
+
+def broken_on_discs() -> dict[str, Engine]:
+    """Return engines with faults that only a friction disc can have."""
+    engines = (
+        broken("moment of the wrong sign", moment_factor=-1.0),
+        broken("moment 1 % off", moment_factor=1.01),
+        broken("five points", points=5),
+        broken("angle of half the spin", turning=0.5),
+    )
+    return {engine.name: engine for engine in engines}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from compare import cli
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine, register
+from compare.paper import FIG5, FIG11
 from compare.report.animation import gif
 from compare.report.style import axis, curve, engines_in, new_figure, points
 from compare.study import Findings, Study
@@ -25,9 +27,9 @@ LOADS = np.linspace(0.0, 0.1, 21)
 
 def straight(system, initial_state, times, *, tolerance=1e-9):
     """Return a motion at constant velocity: no physics, but a trajectory."""
-    x, y, vx, vy = initial_state
-    elapsed = np.asarray(times) - times[0]
-    states = np.column_stack((x + vx * elapsed, y + vy * elapsed, 0 * elapsed + vx, 0 * elapsed + vy))
+    positions, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
+    elapsed = (np.asarray(times) - times[0])[:, np.newaxis]
+    states = np.hstack((positions + velocities * elapsed, velocities + 0.0 * elapsed))
     phases = (Phase("slip", float(times[0]), float(times[-1]), np.array(initial_state, dtype=float)),)
     return Trajectory(system, np.array(times), states, phases, Solution("exact", tolerance, 1, 1, 0.0))
 
@@ -65,7 +67,7 @@ def radius():
 
 
 def measure_verdicts(engine):
-    engine.simulate(None, (0.0, 0.0, 1.0, 0.0), LOADS)  # a failing engine fails here
+    engine.simulate(FIG5, (0.0, 0.0, 1.0, 0.0), LOADS)  # a failing engine fails here
     exact = radius()
     claims = (
         claim("The pin comes to rest at the point of eq. (3)", engine.name, 0.08, 0.08 + 3e-11, 1e-10),
@@ -192,6 +194,40 @@ def measure_unending(engine):
 UNENDING = Study("unending", "A study that takes too long", "A minute.", measure_unending, draw_nothing)
 
 
+PIN, POINTS, RING = (
+    "The pin moves on straight lines",
+    "Six points move on straight lines",
+    "The ring moves on straight lines",
+)
+SYSTEMS = {PIN: FIG5, POINTS: replace(FIG11, contact_points=6), RING: FIG11}
+
+
+def measure_what_is_promised(engine):
+    """A claim for each kind of system that the engine simulates."""
+    mine = {sentence: system for sentence, system in SYSTEMS.items() if engine.simulates(system)}
+    claims = tuple(
+        claim(
+            sentence,
+            engine.name,
+            0.0,
+            engine.simulate(system, [0.0] * system.state_size, [0.0, 1.0]).at_end[0],
+            0.0,
+        )
+        for sentence, system in mine.items()
+    )
+    return Findings(claims, {sentence: np.zeros(2) for sentence in mine}, engine.lacking(SYSTEMS.values()))
+
+
+def measure_a_ring(engine):
+    """A study that is all about the ring does not have to ask."""
+    moved = engine.simulate(FIG11, [0.0] * 6, [0.0, 1.0]).at_end[0]
+    return Findings((claim(RING, engine.name, 0.0, moved, 0.0),), {"moved": np.array([moved])})
+
+
+PARTLY = Study("partly", "Pin, points and ring", "Zero.", measure_what_is_promised, draw_nothing)
+RING_ONLY = Study("ring-only", "The ring", "Zero.", measure_a_ring, draw_nothing)
+
+
 def draw_wrongly(data):
     raise KeyError("radius")
 
@@ -199,7 +235,7 @@ def draw_wrongly(data):
 UNDRAWABLE = Study("undrawable", "A figure that fails", "None.", measure_agreement, draw_wrongly)
 NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", lambda engine: None, draw_nothing)
 
-ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE)
+ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE, PARTLY, RING_ONLY)
 
 if __name__ == "__main__":
     import fake_studies  # by its name, for the other processes

@@ -3,7 +3,9 @@ import errno
 import io
 import json
 import os
+import re
 import subprocess
+from dataclasses import asdict, replace
 
 import fake_studies
 import numpy as np
@@ -11,14 +13,23 @@ import pytest
 from processes import FAKE, REAL, environment
 
 from compare import cli
+from compare.engines import EVERY_KIND
 from compare.errata import ERRATA
+from compare.paper import FIG5, FIG11
 
 
 def test_help_of_every_command_has_an_example(command, capsys):
     assert command("--help").returncode == 0
-    for name in ("list", "report", "simulate", "errata"):
-        assert cli.status([name, "--help"]) == 0
+    for name in ("list", "report", "simulate", "simulate pin", "simulate disc", "errata"):
+        assert cli.status([*name.split(), "--help"]) == 0
         assert f"friction-discs {name}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("name", "figure"), [("pin", FIG5), ("disc", FIG11)])
+def test_help_of_simulate_has_the_parameters_of_the_figure(name, figure, capsys):
+    assert cli.status(["simulate", name, "--help"]) == 0
+    found = dict(re.findall(r"(\w+)=(\S+)", capsys.readouterr().out.partition("Examples:")[0]))
+    assert {k: None if v == "none" else float(v) for k, v in found.items()} == asdict(figure)
 
 
 def test_without_a_command_there_is_help(capsys):
@@ -98,6 +109,26 @@ def test_status_of_a_report(study, engine, status, totals, tmp_path, capsys):
     assert f"\n{totals} (" in capsys.readouterr().out
 
 
+def test_a_system_that_an_engine_is_not_made_for_is_no_failure(tmp_path, capsys):
+    arguments = [
+        "report",
+        "partly",
+        "--engine",
+        "fake_studies:straight",
+        "--output",
+        str(tmp_path),
+        "--jobs",
+        "1",
+    ]
+    assert cli.status(arguments, fake_studies.ALL) == 0
+    lines = capsys.readouterr().out.splitlines()
+    lacking = "fake_studies:straight does not simulate a disc on single points or a disc on a continuous ring"
+    assert lines == [
+        f"partly fake_studies:straight not simulated: {lacking}",
+        f"1 agrees, 0 differ, 0 inconclusive, 1 not simulated ({tmp_path / 'index.html'})",
+    ]
+
+
 def test_a_figure_that_fails_ends_with_status_1(tmp_path, capsys):
     arguments = ["report", "undrawable", "--engine", "reference", "--output", str(tmp_path), "--jobs", "1"]
     assert cli.status(arguments, fake_studies.ALL) == 1
@@ -147,6 +178,44 @@ def test_simulate_without_settings_is_the_second_case_of_fig_5(command):
     assert rows[-1].startswith("400.0,")
 
 
+SIMULATE_DISC = [*SIMULATE[:1], "disc", *SIMULATE[2:-4], "--until", "1", "--samples", "2"]
+DISC_STATE = ["--start", "0.1", "0", "-0.5", "0.25", "0", "1.25"]
+
+
+@pytest.fixture
+def straight_discs(monkeypatch):
+    """The fake engine that moves everything on straight lines promises discs too."""
+    monkeypatch.setattr(fake_studies.straight, "kinds", EVERY_KIND, raising=False)
+
+
+@pytest.mark.usefixtures("straight_discs")
+def test_simulate_disc_writes_six_states_with_their_units(tmp_path, capsys):
+    assert cli.status([*SIMULATE_DISC, *DISC_STATE]) == 0
+    rows = list(csv.reader(io.StringIO(capsys.readouterr().out)))
+    units = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "spin": "rad/s"}
+    assert rows[0] == ["t [s]", *(f"{name} [{unit}]" for name, unit in units.items())]
+    numbers = [[0.0, 0.1, 0.0, -0.5, 0.25, 0.0, 1.25], [1.0, 0.35, 0.0, 0.75, 0.25, 0.0, 1.25]]
+    np.testing.assert_array_equal(np.array(rows[1:], dtype=float), numbers)
+
+    assert cli.status([*SIMULATE_DISC, *DISC_STATE, "--output", str(tmp_path / "disc.json")]) == 0
+    content = json.loads((tmp_path / "disc.json").read_text())
+    assert content["system"] == "DiscOnDisc"
+    assert content["units"] == {"t": "s"} | units
+    assert content["columns"] == list(units)
+    assert content["parameters"] == asdict(FIG11)
+    assert content["states"] == [row[1:] for row in numbers]
+
+
+@pytest.mark.usefixtures("straight_discs")
+@pytest.mark.parametrize(("text", "points"), [("6", 6), ("24", 24), ("none", None), (" None", None)])
+def test_contact_points_are_a_number_or_the_ring(text, points, tmp_path):
+    path = tmp_path / "disc.json"
+    changes = ["--set", f"contact_points={text}", "--set", "shaft_speed=-1"]
+    assert cli.status([*SIMULATE_DISC, *changes, "--output", str(path)]) == 0
+    changed = replace(FIG11, contact_points=points, shaft_speed=-1.0)
+    assert json.loads(path.read_text())["parameters"] == asdict(changed)
+
+
 def test_a_reader_that_stops_early_is_no_error(tmp_path):
     process = subprocess.Popen(
         [*REAL, "simulate", "pin", "--until", "50", "--samples", "20001"],
@@ -166,13 +235,12 @@ def test_an_engine_that_gives_up_ends_in_its_sentence(capsys):
     assert capsys.readouterr().err == "the step size became too small at t = 3.2 s: try a larger tolerance\n"
 
 
-PIN = ("simulate", "pin")
+PIN, DISC = ("simulate", "pin"), ("simulate", "disc")
 BAD = [
     (("report", "verdict"), "unknown study 'verdict': did you mean 'verdicts'?"),
     (("report", "--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
     (("report", "--jobs", "0"), "jobs = 0: it must be at least 1"),
     (("report", "--jobs", "two"), "jobs = 'two': it must be a whole number"),
-    (("simulate", "pim"), "unknown system 'pim': did you mean 'pin'?"),
     ((*PIN, "--engine", "referense"), "unknown engine 'referense': did you mean 'reference'?"),
     ((*PIN, "--set", "disk_speed=1"), "unknown parameter 'disk_speed': did you mean 'disc_speed'?"),
     ((*PIN, "--set", "mass"), "--set 'mass': write it as NAME=VALUE"),
@@ -193,6 +261,30 @@ BAD = [
     ((*PIN, "--samples", "1"), "samples = 1: it must be at least 2"),
     ((*PIN, "--samples", "2.5"), "samples = '2.5': it must be a whole number"),
     ((*PIN, "--tolerance", "1"), "tolerance = 1: it must lie between 1e-14 and 1e-2"),
+    ((*PIN, "--set", "shaft_speed=1"), "unknown parameter 'shaft_speed': did you mean 'disc_speed'?"),
+    ((*DISC, "--set", "shaft_spede=1"), "unknown parameter 'shaft_spede': did you mean 'shaft_speed'?"),
+    ((*DISC, "--set", "polar_inertia=0"), "polar_inertia = 0 kg m²: it must be > 0"),
+    ((*DISC, "--set", "contact_radius=-1"), "contact_radius = -1 m: it must be > 0"),
+    ((*DISC, "--set", "shaft_damping=-1"), "shaft_damping = -1 N m s/rad: it must be >= 0"),
+    ((*DISC, "--set", "shaft_damping=none"), "shaft_damping = 'none': it must be a number"),
+    *(
+        (
+            (*DISC, "--set", f"contact_points={points}"),
+            f"contact_points = {points}: it must be a whole number >= 3, or None for the continuous ring; "
+            "a single point is a PinOnDisc",
+        )
+        for points in ("1", "2", "2.5", "-6")
+    ),
+    ((*DISC, "--set", "contact_points=six"), "contact_points = 'six': it must be a number"),
+    ((*DISC, "--start", "0", "0", "0", "0", "0", "nan"), "start = nan: it must be finite"),
+    (
+        (*DISC, "--engine", "fake_studies:failing"),
+        "fake_studies:failing does not simulate a disc on a continuous ring",
+    ),
+    (
+        (*DISC, "--engine", "fake_studies:failing", "--set", "contact_points=6"),
+        "fake_studies:failing does not simulate a disc on single points",
+    ),
     ((*PIN, "--output", "pin.txt"), "can't tell the format of 'pin.txt': it must end in .csv or .json"),
 ]
 
@@ -206,7 +298,17 @@ def test_bad_input_ends_in_one_sentence(arguments, sentence, tmp_path, monkeypat
 
 
 @pytest.mark.parametrize(
-    "arguments", [("reprot",), ("simulate",), (*PIN, "--start", "0", "0"), (*PIN, "--sett", "a=1")]
+    "arguments",
+    [
+        ("reprot",),
+        ("simulate",),
+        ("simulate", "pim"),
+        (*PIN, "--start", "0", "0"),
+        (*PIN, "--start", "0", "0", "0", "0", "0", "0"),
+        (*DISC, "--start", "0", "0", "0", "0"),
+        (*DISC, "--start", "0", "0", "0", "0", "0", "0", "0"),
+        (*PIN, "--sett", "a=1"),
+    ],
 )
 def test_wrong_usage_ends_in_one_sentence(arguments, capsys):
     assert cli.status(list(arguments)) == 2

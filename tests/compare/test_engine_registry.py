@@ -1,9 +1,12 @@
+import pickle
 import sys
+from dataclasses import replace
 
 import fake_studies
 import pytest
 
-from compare.engines import Engine, engines, known, register
+from compare.engines import EVERY_KIND, Engine, UnsupportedSystemError, engines, known, register
+from compare.paper import FIG5, FIG11
 from compare.studies import studies
 
 
@@ -35,13 +38,73 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function(tmp_path, monkeyp
     monkeypatch.setattr(sys, "path", list(sys.path))
     (engine,) = engines(["solver_of_mine:simulate"])
     assert engine.name == "solver_of_mine:simulate"
-    assert engine.simulate(None, None, None) == 42
+    assert engine.simulate(FIG5, None, None) == 42
+    assert engine.kinds == ("pin",)
 
 
 @pytest.mark.parametrize("name", ["no_such_module:simulate", "math:no_such_function", ":simulate", "math:pi"])
 def test_an_engine_that_is_none_is_refused_in_a_sentence(name):
     with pytest.raises(ValueError, match=f"^engine '{name}' "):
         engines([name])
+
+
+POINTS, RING = replace(FIG11, contact_points=6), FIG11
+
+
+@pytest.mark.parametrize(
+    ("kinds", "lacking"),
+    [
+        (("pin",), "mine does not simulate a disc on a continuous ring or a disc on single points"),
+        (("pin", "points"), "mine does not simulate a disc on a continuous ring"),
+        (("points", "ring"), "mine does not simulate a pin"),
+        (EVERY_KIND, ""),
+    ],
+)
+def test_an_engine_simulates_what_it_promises_and_says_what_it_lacks(kinds, lacking):
+    engine = Engine("mine", fake_studies.straight, kinds)
+    systems = {"pin": FIG5, "ring": RING, "points": POINTS}
+    assert engine.lacking([*systems.values(), RING]) == lacking
+    for kind, system in systems.items():
+        state = [0.0] * system.state_size
+        assert engine.simulates(system) == (kind in kinds)
+        if kind in kinds:
+            assert engine.simulate(system, state, [0.0, 1.0], tolerance=1e-3).solution.tolerance == 1e-3
+        else:
+            with pytest.raises(UnsupportedSystemError, match=r"^mine does not simulate a "):
+                engine.simulate(system, state, [0.0, 1.0])
+
+
+def test_an_engine_goes_to_other_processes_with_its_promise():
+    engine = Engine("mine", fake_studies.straight, ("points",))
+    simulate = pickle.loads(pickle.dumps(engine)).simulate
+    with pytest.raises(UnsupportedSystemError):
+        simulate(RING, [0.0] * 6, [0.0, 1.0])
+    assert simulate(POINTS, [0.0] * 6, [0.0, 1.0]).system == POINTS
+
+
+@pytest.mark.parametrize(
+    ("kinds", "expected"), [('("pin", "ring")', ("pin", "ring")), ('["points"]', ("points",)), ("()", ())]
+)
+def test_a_function_of_ones_own_says_what_it_is_for(kinds, expected, tmp_path, monkeypatch):
+    (tmp_path / "promising.py").write_text(f"def simulate(): pass\nsimulate.kinds = {kinds}\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "promising", raising=False)
+    (engine,) = engines(["promising:simulate"])
+    assert engine.kinds == expected
+
+
+@pytest.mark.parametrize(
+    ("kinds", "hint"), [('("rings",)', "did you mean 'ring'"), ('"ring"', "'r'"), ("7", "not iterable")]
+)
+def test_a_promise_of_what_there_is_not_is_refused(kinds, hint, tmp_path, monkeypatch):
+    (tmp_path / "overpromising.py").write_text(f"def simulate(): pass\nsimulate.kinds = {kinds}\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "overpromising", raising=False)
+    with pytest.raises(ValueError, match=r"^engine 'overpromising:simulate', attribute kinds = ") as error:
+        engines(["overpromising:simulate"])
+    assert hint in str(error.value)
 
 
 def test_studies_come_in_report_order_whatever_the_order_of_their_names():

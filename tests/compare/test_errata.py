@@ -4,23 +4,33 @@ import functools
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from compare import errata
 from compare.errata import ERRATA
-from compare.paper import CENTRED
+from compare.paper import CENTRED, FIG8
 from reference_model import whirl_orbit
+from reference_model.contact import ThreeTermRing
+from reference_model.disc_formulas import places_by_26
 from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift
+from reference_model.steady_states import self_centred_equilibria
 
 ROUNDING = 1e-14
 """A few dozen operations on numbers of the order one, each good to 1.1e-16."""
 
-ALWAYS_EXISTS, COEFFICIENT, SHIFT = ERRATA
+ALWAYS_EXISTS, COEFFICIENT, SHIFT, EXPANSION, BRACKET = ERRATA
 
 THIRD_ORDER = 30.0 * 1e-3**2
 """Of (18), relative: (w·X0/ρ)², w = ω/(ω − k) = 6, ρ = 1.2 m, is 25·X0²; X0 = 1 mm."""
 
-TOLERANCES = {ALWAYS_EXISTS: ROUNDING, COEFFICIENT: ROUNDING, SHIFT: THIRD_ORDER}
+TOLERANCES = {
+    ALWAYS_EXISTS: ROUNDING,
+    COEFFICIENT: ROUNDING,
+    SHIFT: THIRD_ORDER,
+    EXPANSION: ROUNDING,
+    BRACKET: 100.0 * ROUNDING,  # a root of one variable each
+}
 
 
 @functools.cache
@@ -28,8 +38,8 @@ def evidence_of(erratum):
     return erratum.evidence()
 
 
-def test_the_errata_are_those_of_11_and_13_and_18():
-    assert [erratum.equation.split(",")[0] for erratum in ERRATA] == ["(11)", "(13)", "(18)"]
+def test_the_errata_are_in_the_order_of_the_equations():
+    assert [erratum.equation.split(",")[0] for erratum in ERRATA] == ["(11)", "(13)", "(18)", "(22)", "(26)"]
 
 
 @pytest.mark.parametrize("erratum", ERRATA, ids=lambda erratum: erratum.equation)
@@ -88,3 +98,41 @@ def test_the_error_of_the_printed_18_stays_as_the_offset_falls_and_that_of_the_c
     growth = (6.0 * 0.02 / 1.2) ** 2  # the next order, relatively
     assert printed[0] == pytest.approx(printed[1], rel=growth)
     assert corrected[0] / corrected[1] == pytest.approx(4.0, rel=2.0 * growth)
+
+
+def test_the_printed_22_gives_a_moment_that_does_not_depend_on_the_slip_of_the_centre():
+    """By hand at U = W: (23) gives (1 − ½·½ + ¾·¼)/√2; the average of the printed line is 1."""
+    evidence = evidence_of(EXPANSION)
+    assert evidence.exact == pytest.approx(0.9375 / math.sqrt(2.0), rel=ROUNDING)
+    assert evidence.printed_value == pytest.approx(1.0, rel=ROUNDING)
+
+
+def test_the_exact_spin_balances_the_equations_of_motion_with_23():
+    """(19) with (23), written out for the place and spin that the evidence is about."""
+    (disc,) = self_centred_equilibria(FIG8, ThreeTermRing(FIG8.contact_radius))
+    assert disc.spin == evidence_of(BRACKET).exact
+    slip = FIG8.disc_speed * np.array([disc.y, -disc.x])
+    rim = FIG8.contact_radius * (FIG8.disc_speed - disc.spin)
+    square = slip @ slip + rim**2
+    both = 0.75 * rim**2 * (slip @ slip) / square**2
+    force = -FIG8.friction_force * slip / math.sqrt(square) * (1.0 - rim**2 / (2.0 * square) + both)
+    moment = FIG8.friction_force * FIG8.contact_radius * rim / math.sqrt(square)
+    moment *= 1.0 - (slip @ slip) / (2.0 * square) + both
+    springs = FIG8.stiffness * np.array([disc.x - FIG8.offset, disc.y])
+    assert springs == pytest.approx(force, abs=ROUNDING)
+    assert FIG8.shaft_damping * (disc.spin - FIG8.shaft_speed) == pytest.approx(moment, abs=ROUNDING)
+    assert disc.x**2 + disc.y**2 == pytest.approx(disc.x * FIG8.offset, abs=ROUNDING)  # (4)
+
+
+def test_the_error_of_the_printed_26_does_not_go_with_the_load_and_that_of_the_corrected_one_is_rounding():
+    """Without friction both are right; their difference is of first order in the load, as friction itself is."""
+    moved, wrong = [], []
+    for load in (1e-3, 5e-4):
+        disc = replace(FIG8, friction_force=load)
+        (exact,) = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
+        (printed,), (corrected,) = places_by_26(disc, as_printed=True), places_by_26(disc)
+        assert corrected == pytest.approx((exact.x, exact.y, exact.spin), abs=1e-12)
+        moved.append(exact.y)
+        wrong.append(printed.y - exact.y)
+    assert np.divide(wrong, moved) == pytest.approx([wrong[0] / moved[0]] * 2, rel=0.02)
+    assert wrong[0] < -0.3 * moved[0]

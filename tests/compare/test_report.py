@@ -5,10 +5,13 @@ import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 
 import pytest
+from fake_studies import PARTLY, PIN, POINTS, RING, RING_ONLY, straight
 from processes import ROOT
 
+from compare.engines import EVERY_KIND, Engine
 from compare.errata import Erratum, Evidence
 from compare.report.matrix import WORST_FIRST, State
+from compare.report.page import summary
 from compare.report.write import write_report
 from compare.runner import run
 
@@ -61,7 +64,8 @@ def results(reported):
 
 
 def test_the_totals_are_those_of_the_claims(results, page):
-    assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1, "failed": 4, "missing": 0}
+    gaps = {"failed": 4, "missing": 0, "not simulated": 0}
+    assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
     assert "5 agree, 1 differs, 1 inconclusive, 4 failed." in page
     verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
     for verdict in ("agrees", "differs", "inconclusive"):
@@ -181,6 +185,75 @@ def test_junit_has_a_case_for_each_claim_and_engine(reported, results):
         "verdicts.good",
         "agreement.failing",
     }
+
+
+@pytest.fixture(scope="module", params=["first", "resumed"])
+def partly_reported(request, tmp_path_factory):
+    """Matrix and folder of a report with engines that simulate all, some, and a pin only."""
+    folder = tmp_path_factory.mktemp("partly")
+    engines = (
+        Engine("all", straight, EVERY_KIND),
+        Engine("some", straight, ("pin", "points")),
+        Engine("pins", straight),
+    )
+    for resume in (False, True) if request.param == "resumed" else (False,):
+        result = run((PARTLY, RING_ONLY), engines, folder=folder / "data", resume=resume)
+    return result, write_report(result, folder), folder
+
+
+def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported):
+    result, matrix, _ = partly_reported
+    states = {
+        row.sentence: {column: cell.state for column, cell in row.cells.items()}
+        for row in matrix.groups[0].rows
+    }
+    yes, no = State.AGREES, State.NOT_SIMULATED
+    assert states == {
+        PIN: {"all": yes, "some": yes, "pins": yes},
+        POINTS: {"all": yes, "some": yes, "pins": no},
+        RING: {"all": yes, "some": no, "pins": no},
+    }
+    (row,) = matrix.groups[1].rows
+    assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
+    assert row.cells["pins"].state is State.NOT_SIMULATED
+    assert matrix.totals == {yes: 7, no: 5}
+    assert summary(matrix) == "7 agree, 0 differ, 0 inconclusive, 5 not simulated"
+    assert set(result.data(RING_ONLY)) == {"all"}  # the others have nothing to draw
+
+
+def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
+    page = (partly_reported[2] / "index.html").read_text(encoding="utf-8")
+    (table,) = re.findall(r'<table class="matrix">(.*?)</table>', page, flags=re.DOTALL)
+    assert table.count("pins does not simulate a disc on single points or a disc on a continuous ring") == 1
+    assert table.count("some does not simulate a disc on a continuous ring") == 2  # one a study
+    said = [" ".join(c[3].split()) for c in Cells(page).cells if c[0] == "matrix" and c[2] == "some"]
+    assert said[0] == "2 of 2 agree,2 not simulated"
+    assert said[-2] == "1 not simulated"
+    assert said[-1] == "∅ not simulatedsome does not simulate a disc on a continuous ring"
+    assert "the engine is not made for this system" in page
+    assert '<ul class="exceptions">' not in page
+
+
+def test_programs_see_what_is_not_simulated(partly_reported):
+    _, _, folder = partly_reported
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert results["totals"]["not simulated"] == 5
+    units = results["studies"][1]["units"]
+    assert {name: unit["state"] for name, unit in units.items()} == {
+        "all": "finished",
+        "some": "not simulated",
+        "pins": "not simulated",
+    }
+    assert units["some"]["reason"] == "some does not simulate a disc on a continuous ring"
+    root = ET.parse(folder / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
+
+
+def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
+    matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
+    (row,) = matrix.groups[0].rows
+    assert row.cells["pins"].state is State.NOT_SIMULATED
+    assert summary(matrix) == "0 agree, 0 differ, 0 inconclusive, 1 not simulated"
 
 
 def test_every_state_has_its_place_among_the_worst():

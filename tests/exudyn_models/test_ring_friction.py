@@ -4,6 +4,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 import pytest
+from free_bodies import coordinates, momenta, planar_body, rotor, run_explicitly
 
 from exudyn_models import add_ring_friction, build_pin_on_disc
 from reference_model.systems import PinOnDisc
@@ -11,58 +12,7 @@ from reference_model.systems import PinOnDisc
 items: Any = exudyn.itemInterface
 
 
-@pytest.fixture(autouse=True)
-def _quiet():
-    before = exu.config.printToConsole
-    exu.config.printToConsole = False
-    yield
-    exu.config.printToConsole = before
-
-
-def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], velocity: list[float]) -> Any:
-    # Half of the position is the reference, so that a connector that forgets it is found out.
-    half = [value / 2.0 for value in position]
-    node = mbs.AddNode(
-        items.NodeRigidBody2D(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity)
-    )
-    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=mass, inertia=inertia))
-    return node
-
-
-def rotor(mbs: Any, inertia: float, speed: float) -> Any:
-    node = mbs.AddNode(
-        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
-    )
-    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-    return node
-
-
-def run_explicitly(mbs: Any, end: float) -> None:
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, 6000, 0
-    options.solverType = exu.DynamicSolverType.RK67
-    assert exu.MainSolverExplicit().SolveSystem(mbs, settings)
-
-
-def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:
-    kinds = exu.OutputVariableType
-    position = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates))
-    velocity = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates_t))
-    return position + mbs.GetNodeParameter(node, "referenceCoordinates"), velocity
-
-
-def momenta(mbs: Any, bodies: list[tuple[Any, float, float]]) -> np.ndarray:
-    """Momentum in x, y and angular momentum about the origin."""
-    total = np.zeros(3)
-    for node, mass, inertia in bodies:
-        (x, y, _), (vx, vy, spin) = coordinates(mbs, node)
-        total += [mass * vx, mass * vy, mass * (x * vy - y * vx) + inertia * spin]
-    return total
-
-
-@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 3), (0.12, 6), (0.3, 24)])
+@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 3), (0.12, 6), (0.3, 24), (0.12, None)])
 def test_two_free_bodies_keep_their_momentum_and_angular_momentum(radius, points):
     mbs = exu.SystemContainer().AddSystem()
     master = planar_body(mbs, 2.0, 0.7, [0.3, -0.2, 0.1], [0.1, 0.05, 2.0])
@@ -104,8 +54,17 @@ def test_rotor_takes_up_the_angular_momentum_about_its_axis_that_a_free_disc_los
 
 
 @pytest.mark.parametrize("planar_master", [False, True])
-@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6)])
-@pytest.mark.parametrize("regularisation", [1e-4, 10.0])  # Coulomb friction, viscous friction
+@pytest.mark.parametrize(
+    ("radius", "points", "regularisation"),
+    [
+        *[
+            (radius, points, 1e-4) for radius, points in ((0.0, 1), (0.12, 6), (0.12, None))
+        ],  # Coulomb friction
+        *[
+            (radius, points, 10.0) for radius, points in ((0.0, 1), (0.12, 1), (0.12, None))
+        ],  # viscous friction
+    ],
+)
 def test_jacobian_is_the_derivative_of_the_force(planar_master, radius, points, regularisation):
     mbs = exu.SystemContainer().AddSystem()
     state = [0.3, -0.2, 0.1], [0.1, 0.05, 2.0]
@@ -183,6 +142,10 @@ def test_exudyns_linearisation_has_the_eigenvalues_of_the_self_centred_equilibri
         ({"contact_radius": -0.1}, "contact_radius = -0.1 m"),
         ({"contact_points": 0}, "contact_points = 0"),
         ({"contact_points": 2.5}, "contact_points = 2.5"),
+        ({"contact_points": None}, "contact_radius = 0 m: it must be > 0 for the continuous ring"),
+        ({"held": 2}, "held = 2: it must be from 1 to the number of points, 1"),
+        ({"held": 0}, "held = 0: it must be from 1 to the number of points, 1"),
+        ({"held": 1, "contact_points": None, "contact_radius": 0.1}, "held = 1: it must be from 1"),
         ({"regularisation": 0.0}, "regularisation = 0 m/s"),
     ],
 )

@@ -1,0 +1,388 @@
+"""Coulomb friction of a pin, of points on a ring and of the continuous ring, compiled for Exudyn's user functions.
+
+All are gradients of a mean slip speed. With u the slip of the disc's centre and w = R·(φ̇ − ω) the speed of its rim
+relative to the master disc, a point at the angle α slips with u + w·(−sin α, cos α), and the mean of its magnitude
+over the contact is P(u, w). The friction on the disc is −μN·∂P/∂u and the moment −μN·R·∂P/∂w: they work against
+the slip with the power μN·P.
+
+Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
+release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
+
+- *The contact as a whole* is viscous where P < ε: force and moment are those in the same direction of (u, w) at
+  P = ε, times P/ε. As these are on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if
+  Coulomb friction could hold it.
+- *One of n points* on the way through rest, because alone it can jump. Where the slowest of them slips with v below
+  4δ/3, the others slip as if the disc turned about a place nearer to it: with their own slip less v, where v < δ, and
+  less v·(4 − 3v/δ) beyond. Its own friction is viscous below δ. So its force grows from nothing to its share of μN,
+  while the others have the directions that they have when the disc pivots about it: again those of the limit surface.
+  δ = (3/4)·ε/(1 + (4/π)/sin(π/n)) makes sure that at P = ε no two points are slower than 4δ/3: they are 2R·sin(π/n)
+  apart, and if the slip of one is v, then P <= v + (4/π)|w|.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from reference_model.systems import FloatArray
+
+CONTINUOUS = 0
+"""Number of contact points by which the compiled functions know the continuous ring."""
+
+NONE_HELD = -1
+"""In place of the number of a point: none is held."""
+
+Contact = tuple[float, int, float, float, int]
+"""R in m, number of points, μN in N, ε in m/s, and the point whose friction is viscous at any slip or ``NONE_HELD``.
+
+That point models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
+linear, and can not throw off Newton's iteration.
+"""
+
+NEAREST = 1e-15
+"""Relative distance from U = W below which the slope of the ring's friction grows no more.
+
+It is infinite there, like a logarithm: the slope at this distance is a secant over what a step can't resolve.
+"""
+
+
+SECANT = 0.3
+"""Share of the secant in the derivatives of points that creep as a whole.
+
+F there is of degree 1 in the slip, F = K·slip with the secant K. Newton's iteration starts from the slip that the
+disc would have without acceleration, thousands of times its creep: with the derivative alone it goes round in circles
+for one load in ten on six points, one in six on three. With 0.3 of K it found all of them in 7 turns.
+"""
+
+
+@numba.njit(cache=True, error_model="numpy")
+def ring_friction(
+    dx: float,
+    dy: float,
+    angle: float,
+    dvx: float,
+    dvy: float,
+    master_spin: float,
+    disc_spin: float,
+    contact: Contact,
+) -> tuple[float, float, float, float]:
+    """Return force and moment on the disc and moment on the master: F_x, F_y (N), M, M_master (N m).
+
+    ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
+    ``angle`` (rad) is φ, the spins are in rad/s. The force on the master is −F.
+    """
+    radius, points, friction, epsilon, _ = contact
+    ux = dvx + master_spin * dy  # slip of the disc's centre
+    uy = dvy - master_spin * dx
+    if radius == 0.0:
+        slip = math.sqrt(ux * ux + uy * uy)
+        factor = -friction / (slip if slip > epsilon else epsilon)
+        fx = factor * ux
+        fy = factor * uy
+        return fx, fy, 0.0, dy * fx - dx * fy
+    rim = radius * (disc_spin - master_spin)
+    fx = fy = moment = 0.0
+    if points == CONTINUOUS:
+        speed = math.sqrt(ux * ux + uy * uy)
+        if speed > 0.0 or rim != 0.0:
+            by_speed, by_rim = mean_slip_slopes(speed, abs(rim))
+            mean = by_speed * speed + by_rim * abs(rim)
+            factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
+            if speed > 0.0:
+                push = factor * by_speed / speed
+                fx = push * ux
+                fy = push * uy
+            moment = math.copysign(radius * by_rim, rim) * factor
+        return fx, fy, moment, dy * fx - dx * fy - moment
+    fx, fy, moment = _force_of_points(ux, uy, rim, angle, contact)
+    return fx, fy, moment, dy * fx - dx * fy - moment
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _force_of_points(
+    ux: float, uy: float, rim: float, angle: float, contact: Contact
+) -> tuple[float, float, float]:
+    """Return F_x, F_y and M."""
+    radius, points, friction, epsilon, held = contact
+    share = friction / points
+    turn = complex(math.cos(2.0 * math.pi / points), math.sin(2.0 * math.pi / points))
+    arm = complex(math.cos(angle), math.sin(angle))
+    slip_of_centre = complex(ux, uy)
+    force, moment, mean, slowest, lowest = 0j, 0.0, 0.0, 0, math.inf
+    for i in range(points):
+        slip = slip_of_centre + 1j * rim * arm
+        speed = abs(slip)
+        push = slip * (-share / speed) if speed > 0.0 else 0j
+        force += push
+        moment += (arm.conjugate() * push).imag
+        mean += speed / points
+        if speed < lowest:
+            slowest, lowest = i, speed
+        arm *= turn  # on to the next point
+    delta = point_regularisation(epsilon, points)
+    if held == NONE_HELD and mean >= epsilon and lowest >= BEND * delta:
+        return force.real, force.imag, radius * moment
+    creep = min(1.0, mean / epsilon)
+    slow = slowest if held == NONE_HELD else held
+    slow_arm = complex(math.cos(angle), math.sin(angle)) * turn**slow
+    slow_slip = slip_of_centre + 1j * rim * slow_arm
+    drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
+    force, moment = 0j, 0.0
+    arm = complex(math.cos(angle), math.sin(angle))
+    for i in range(points):
+        slip = slip_of_centre + 1j * rim * arm - (drawn * slow_slip if i != slow else 0j)
+        speed = abs(slip)
+        if i == slow and viscous:
+            push = slip * (-share / delta)
+        else:
+            push = slip * (-share * creep / speed) if speed > 0.0 else 0j
+        force += push
+        moment += (arm.conjugate() * push).imag
+        arm *= turn
+    return force.real, force.imag, radius * moment
+
+
+BEND = 4.0 / 3.0
+"""Slip of the slowest point, over δ, from which on it acts as all others."""
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
+    """Return which part of the slowest point's slip the others lose, and whether its own friction is viscous."""
+    if held != NONE_HELD or speed <= delta:
+        return 1.0, True
+    return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
+
+
+@numba.njit(cache=True, error_model="numpy")
+def point_regularisation(epsilon: float, points: int) -> float:
+    """Return δ in m/s, below which a single point's friction is viscous."""
+    if points == 1:
+        return epsilon
+    return epsilon / BEND / (1.0 + 4.0 / (math.pi * math.sin(math.pi / points)))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def ring_friction_derivatives(
+    dx: float,
+    dy: float,
+    angle: float,
+    dvx: float,
+    dvy: float,
+    master_spin: float,
+    disc_spin: float,
+    contact: Contact,
+) -> FloatArray:
+    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
+
+    For points that creep as a whole they hold a ``SECANT`` share, which lets Newton's iteration converge.
+    """
+    ux = dvx + master_spin * dy
+    uy = dvy - master_spin * dx
+    spin = disc_spin - master_spin
+    if contact[1] == CONTINUOUS:
+        fx, fy, by_slip = _derivatives_of_ring(ux, uy, spin, contact)
+    else:
+        fx, fy, by_slip = _derivatives_of_points(ux, uy, spin, angle, contact)
+    result = np.zeros((4, 7))
+    for i in range(3):
+        by_ux, by_uy, by_spin, by_angle = by_slip[i]
+        result[i, 0] = -master_spin * by_uy
+        result[i, 1] = master_spin * by_ux
+        result[i, 2] = by_angle
+        result[i, 3] = by_ux
+        result[i, 4] = by_uy
+        result[i, 5] = dy * by_ux - dx * by_uy - by_spin
+        result[i, 6] = by_spin
+    for j in range(7):
+        result[3, j] = dy * result[0, j] - dx * result[1, j] - result[2, j]
+    result[3, 0] -= fy
+    result[3, 1] += fx
+    return result
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _derivatives_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    radius, points, friction, epsilon, held = contact
+    share = friction / points
+    delta = point_regularisation(epsilon, points)
+    # P and its derivatives, which count where the contact creeps as a whole, and the slowest point.
+    mean, lowest, slow = 0.0, math.inf, held
+    by_mean = np.zeros(4)
+    for i in range(points):
+        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        speed = abs(slip)
+        mean += speed / points
+        for j in range(4):
+            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
+        if held == NONE_HELD and speed < lowest:
+            slow, lowest = i, speed
+    creeps = mean < epsilon
+    creep = mean / epsilon if creeps else 1.0
+    # What the others lose of the slip of the slowest point, and its derivatives.
+    _, slow_slip, by_slow = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * slow / points, radius)
+    drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
+    loss = drawn * slow_slip
+    by_loss = np.zeros(4, dtype=np.complex128)
+    for j in range(4):
+        by_loss[j] = drawn * by_slow[j]
+        if 0.0 < drawn < 1.0:
+            growth = (by_slow[j] * slow_slip.conjugate()).real / abs(slow_slip) ** 2
+            if creeps:
+                growth -= by_mean[j] / mean
+            by_loss[j] -= abs(slow_slip) / (delta * creep) * growth / (BEND - 1.0) * slow_slip
+    force = 0j
+    result = np.zeros((3, 4))
+    for i in range(points):
+        arm, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        softly = (i == slow and viscous) or creep == 0.0
+        resistance = share / delta if softly else share / max(abs(slip) / creep, delta)
+        remaining = slip if i == slow else slip - loss
+        speed = abs(remaining)
+        if softly or speed == 0.0:
+            direction, push = 0j, -share / delta * slip
+        else:  # dF/dv = −(μN/n)·(1 − e⊗e)/|v|: only the direction changes
+            direction = remaining / speed
+            push = -share * creep * direction
+        for j in range(4):
+            if direction == 0.0:
+                change = -share / delta * by_arguments[j]
+            else:
+                by_remaining = by_arguments[j] - (by_loss[j] if i != slow else 0.0)
+                turning = (by_remaining * direction.conjugate()).imag * 1j * direction
+                change = -share * creep / speed * turning
+                if creeps:
+                    change -= share * by_mean[j] / epsilon * direction
+            if creeps and j < 3:
+                change += SECANT * (-resistance * by_arguments[j] - change)
+            result[0, j] += change.real
+            result[1, j] += change.imag
+            result[2, j] += (arm.conjugate() * change).imag
+        result[2, 3] += ((1j * arm).conjugate() * push).imag  # the arm turns with the disc
+        force += push
+    return force.real, force.imag, result
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _slip_of_point(
+    ux: float, uy: float, spin: float, alpha: float, radius: float
+) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
+    """Return arm and slip of the point at ``alpha``, and the derivatives of the slip by u_x, u_y, φ̇ − ω and φ."""
+    arm = radius * complex(math.cos(alpha), math.sin(alpha))
+    return arm, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _derivatives_of_ring(
+    ux: float, uy: float, spin: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """Return what ``_derivatives_of_points`` does, which does not depend on the angle here."""
+    radius, _, friction, epsilon, _ = contact
+    rim = radius * spin
+    speed = math.sqrt(ux * ux + uy * uy)
+    ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
+    # At rest the slope depends on the direction in which slip starts: take one without spin.
+    size = speed if speed > 0.0 or rim != 0.0 else 1.0
+    by_speed, by_rim = mean_slip_slopes(size, abs(rim))
+    by_speed_twice, mixed, by_rim_twice = mean_slip_curvatures(size, abs(rim))
+    across = by_speed / size if size > 0.0 else by_speed_twice
+    by_rim, mixed = math.copysign(by_rim, rim), math.copysign(mixed, -rim)
+    mean = by_speed * speed + by_rim * rim
+    sliding = mean > epsilon
+    # The potential is P, or P²/(2ε) near rest; the direction of the slip counts in both.
+    factor = 1.0 if sliding else by_speed * size / epsilon if mean == 0.0 else mean / epsilon
+    tip = 0.0 if sliding else 1.0 / epsilon
+    along = -friction * (factor * by_speed_twice + tip * by_speed * by_speed)
+    turning = -friction * factor * across
+    coupling = -friction * radius * (factor * mixed + tip * by_speed * by_rim)
+    result = np.zeros((3, 4))
+    result[0, 0] = along * ex * ex + turning * ey * ey
+    result[1, 1] = along * ey * ey + turning * ex * ex
+    result[0, 1] = result[1, 0] = (along - turning) * ex * ey
+    result[0, 2] = result[2, 0] = coupling * ex
+    result[1, 2] = result[2, 1] = coupling * ey
+    result[2, 2] = -friction * radius * radius * (factor * by_rim_twice + tip * by_rim * by_rim)
+    push = -friction * (1.0 if sliding else mean / epsilon) * by_speed
+    return push * ex, push * ey, result
+
+
+@numba.njit(cache=True, error_model="numpy")
+def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
+    """Return ∂P/∂U and ∂P/∂W of a ring whose centre slips with U >= 0 and whose rim turns with W >= 0, not both zero.
+
+    With k = W/U <= 1, a₀ = 1, b₀ = √(1 − k²) and c₀ = k, the arithmetic-geometric mean A and
+    T = Σ 2^(n−1)·c_n²/k² over n >= 1 give the complete elliptic integrals (DLMF 19.8.6), and with them::
+
+        ∂P/∂U = [(1/2 − T) + (1 − k²)(1/2 + T)]/A,   ∂P/∂W = k(1/2 − T)/A,   ∂²P/∂W² = (1/2 + T)/(A·U)
+
+    P is symmetric in U and W, which gives W > U.
+    """
+    if speed >= rim:
+        return _slopes(speed, rim)
+    by_larger, by_smaller = _slopes(rim, speed)
+    return by_smaller, by_larger
+
+
+@numba.njit(cache=True, error_model="numpy")
+def mean_slip_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
+    """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² at U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
+    larger, smaller = max(speed, rim), min(speed, rim)
+    ratio = smaller / larger
+    complement = max((larger - smaller) / larger, NEAREST) * (1.0 + ratio)
+    mean, t = _mean(ratio, complement)
+    curvature = (0.5 + t) / (mean * larger)
+    mixed = -ratio * curvature  # the slopes are of degree 0
+    by_larger = ratio * ratio * curvature
+    if speed >= rim:
+        return by_larger, mixed, curvature
+    return curvature, mixed, by_larger
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _slopes(larger: float, smaller: float) -> tuple[float, float]:
+    """Return the derivatives of P by its larger and by its smaller argument."""
+    ratio = smaller / larger
+    complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without its cancellation
+    if complement == 0.0:
+        return 2.0 / math.pi, 2.0 / math.pi
+    mean, t = _mean(ratio, complement)
+    scale = 1.0 / mean
+    return (0.5 - t + complement * (0.5 + t)) * scale, ratio * (0.5 - t) * scale
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _mean(ratio: float, complement: float) -> tuple[float, float]:
+    """Return A and T of ``mean_slip_slopes`` for k and 1 − k² > 0."""
+    m = ratio * ratio
+    b = math.sqrt(complement)
+    a = 0.5 * (1.0 + b)
+    b = math.sqrt(b)
+    share = 0.25 / a
+    c = m * share  # (1 − b₀)/2 without its cancellation
+    t = c * share
+    if c > 1e-5:  # the next c is less than its square, and enters as a square
+        weight, total = 1.0, 0.0
+        while c > 1e-5:
+            c = 0.5 * (a - b)  # its rounding error is small beside the terms before
+            a, b = 0.5 * (a + b), math.sqrt(a * b)
+            weight *= 2.0
+            total += weight * c * c
+        t += total / m
+    return 0.5 * (a + b), t
+
+
+@numba.njit(cache=True, error_model="numpy")
+def mean_slip_speeds(speeds: FloatArray, rims: FloatArray) -> FloatArray:
+    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
+    result = np.zeros(len(speeds))
+    for i in range(len(speeds)):
+        speed, rim = speeds[i], abs(rims[i])
+        if speed > 0.0 or rim > 0.0:
+            by_speed, by_rim = mean_slip_slopes(speed, rim)
+            result[i] = by_speed * speed + by_rim * rim
+    return result

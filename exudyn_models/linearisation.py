@@ -1,0 +1,71 @@
+"""Small motions about a state, by Exudyn's own linearisation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from exudyn_models.creep import creep_ratios
+from exudyn_models.models import build
+from exudyn_models.solving import quiet
+from reference_model.systems import DiscOnDisc, System, checked_state
+
+REGULARISATION = 1e-12
+"""ε in m/s: friction is Coulomb's wherever the contact slips by more."""
+
+ANGLE = 2
+"""Position of a disc's angle in its state."""
+
+
+def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
+    """Return the eigenvalues in 1/s of the motion about ``state``, in which the contact slides.
+
+    Four of a pin, five of a disc on a continuous ring, where nothing depends on the angle, and six of one on points.
+    Exudyn gives the mass matrix M and the derivatives −K and −D of its forces by coordinates and velocities: they are
+    the λ of (λ²M + λD + K)v = 0. (Exudyn's ``ComputeODE2Eigenvalues`` adds those of the master disc and of what else
+    moves freely, and can not leave coordinates out of complex ones.)
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    state : array of shape (4,) or (6,)
+        As ``simulate`` takes it: usually that of an equilibrium.
+
+    Raises
+    ------
+    ValueError
+        If the state is none of the system, or the contact or a point of it is at rest.
+
+    """
+    start = checked_state(system, state)
+    if system.friction_force > 0.0 and creep_ratios(system, start[None, :], REGULARISATION).min() < 1.0:
+        raise ValueError(
+            f"state = {start.tolist()}: the contact, or a point of it, is at rest, where friction has no derivative"
+        )
+    model = build(system, start, regularisation=REGULARISATION)
+    own = slice(model.first, model.first + model.size)
+    solver: Any = exu.MainSolverStatic()  # its Jacobian holds no terms of a time integration
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+
+    def jacobian(**factors: float) -> NDArray[np.float64]:
+        zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
+        solver.ComputeJacobianODE2RHS(model.mbs, **(zero | factors))
+        return np.array(solver.GetSystemJacobian())[own, own]
+
+    with quiet():
+        solver.InitializeSolver(model.mbs, settings)
+        solver.ComputeMassMatrix(model.mbs)
+        mass = np.array(solver.GetSystemMassMatrix())[own, own]
+        stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
+        solver.FinalizeSolver(model.mbs, settings)
+    lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
+    upper = np.hstack((np.zeros_like(mass), np.eye(model.size)))
+    matrix = np.vstack((upper, lower))
+    if isinstance(system, DiscOnDisc) and system.contact_points is None:
+        matrix = np.delete(np.delete(matrix, ANGLE, 0), ANGLE, 1)
+    return np.asarray(np.linalg.eigvals(matrix), dtype=complex)

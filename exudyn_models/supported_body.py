@@ -1,0 +1,101 @@
+"""What pin and friction disc share in Exudyn: the master disc, the body on its support, what is recorded of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+
+from reference_model.systems import FloatArray, System
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+MASTER_INERTIA = 1e30
+"""kg m². The master disc's speed is prescribed: it is a body that no torque of the contact can slow down.
+
+With this inertia a torque of 1 N m changes ω by 1e-30 rad/s in a second, so that ω stays what it is to the last bit.
+Constraints would do the same for implicit solvers only; explicit ones ignore them without a word.
+"""
+
+
+@dataclass(frozen=True)
+class Model:
+    """An assembled model of a system, of which the state of one body is recorded.
+
+    Parameters
+    ----------
+    container, mbs : SystemContainer, MainSystem
+        ``container`` owns ``mbs`` and must live as long.
+    first, size : int
+        The body's coordinates that belong to the state: ``mbs``'s coordinates first, ..., first + size − 1.
+    sensors : tuple
+        They store the coordinates of the body's node and their first and second time derivatives at every step.
+
+    """
+
+    container: Any
+    mbs: Any
+    first: int
+    size: int
+    sensors: tuple[Any, Any, Any]
+
+
+def add_master(mbs: Any, speed: float) -> Any:
+    """Add the master disc, which turns about (0, 0) with ``speed`` (rad/s) for good; return its ``NodeIndex``."""
+    node = mbs.AddNode(
+        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
+    )
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=MASTER_INERTIA))
+    return node
+
+
+def add_supported_body(mbs: Any, system: System, initial_state: FloatArray, polar_inertia: float) -> Any:
+    """Add a planar body on springs and dampers to a support at (X0, 0); return its ``NodeIndex``.
+
+    ``initial_state`` is a state of ``system``; the body of a pin starts at the angle 0 without spin.
+    """
+    position, velocity = initial_state.reshape(2, -1).tolist()
+    turn = [0.0] * (3 - len(position))
+    node = mbs.AddNode(
+        items.NodeRigidBody2D(
+            referenceCoordinates=[0.0, 0.0, 0.0],
+            initialCoordinates=position + turn,
+            initialVelocities=velocity + turn,
+        )
+    )
+    body = mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=polar_inertia))
+    support = mbs.AddObject(items.ObjectGround(referencePosition=[system.offset, 0.0, 0.0]))
+    mbs.AddObject(
+        items.CartesianSpringDamper(
+            markerNumbers=[
+                mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=support)),
+                mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body)),
+            ],
+            stiffness=[system.stiffness, system.stiffness, 0.0],
+            damping=[system.damping, system.damping, 0.0],
+        )
+    )
+    return node
+
+
+def assembled(container: Any, mbs: Any, node: Any, system: System) -> Model:
+    """Assemble ``mbs`` so that the motion of ``node`` is recorded as that of ``system``."""
+    variables = exu.OutputVariableType
+    position, velocity, acceleration = (
+        mbs.AddSensor(
+            items.SensorNode(
+                nodeNumber=node, outputVariableType=variable, storeInternal=True, writeToFile=False
+            )
+        )
+        for variable in (variables.Coordinates, variables.Coordinates_t, variables.Coordinates_tt)
+    )
+    mbs.Assemble()
+    return Model(
+        container,
+        mbs,
+        mbs.GetNodeODE2Index(node),
+        system.state_size // 2,
+        (position, velocity, acceleration),
+    )

@@ -1,0 +1,52 @@
+"""Discs and rotors without support, and the momenta that friction between them must keep."""
+
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+
+items: Any = exudyn.itemInterface
+
+
+def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], velocity: list[float]) -> Any:
+    # Half of the position is the reference, so that a connector that forgets it is found out.
+    half = [value / 2.0 for value in position]
+    node = mbs.AddNode(
+        items.NodeRigidBody2D(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity)
+    )
+    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=mass, inertia=inertia))
+    return node
+
+
+def rotor(mbs: Any, inertia: float, speed: float) -> Any:
+    node = mbs.AddNode(
+        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
+    )
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+    return node
+
+
+def run_explicitly(mbs: Any, end: float) -> None:
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = end, 6000, 0
+    options.solverType = exu.DynamicSolverType.RK67
+    assert exu.MainSolverExplicit().SolveSystem(mbs, settings)
+
+
+def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:
+    kinds = exu.OutputVariableType
+    position = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates))
+    velocity = np.atleast_1d(mbs.GetNodeOutput(node, kinds.Coordinates_t))
+    return position + mbs.GetNodeParameter(node, "referenceCoordinates"), velocity
+
+
+def momenta(mbs: Any, bodies: list[tuple[Any, float, float]]) -> np.ndarray:
+    """Momentum in x, y and angular momentum about the origin."""
+    total = np.zeros(3)
+    for node, mass, inertia in bodies:
+        (x, y, _), (vx, vy, spin) = coordinates(mbs, node)
+        total += [mass * vx, mass * vy, mass * (x * vy - y * vx) + inertia * spin]
+    return total

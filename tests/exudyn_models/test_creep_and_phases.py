@@ -1,0 +1,104 @@
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
+from exudyn_models.friction_laws import point_regularisation
+from exudyn_models.phases import phases
+from exudyn_models.scales import settling_time
+from exudyn_models.solving import Steps
+from reference_model.systems import DiscOnDisc, PinOnDisc
+
+EPSILON = 1e-6
+PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=0.0, offset=0.0)
+RING = DiscOnDisc(
+    mass=1.0,
+    polar_inertia=0.5,
+    stiffness=1.0,
+    damping=0.5,
+    friction_force=0.0225,
+    disc_speed=1.5,
+    contact_radius=0.12,
+    shaft_damping=0.015,
+    shaft_speed=1.25,
+)
+SYSTEMS = [
+    replace(PIN, disc_speed=1.5),
+    RING,
+    replace(RING, contact_points=3),
+    replace(RING, contact_points=6),
+]
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        state, acceleration = rng.normal(size=system.state_size), rng.normal(size=system.state_size // 2)
+        change = np.concatenate((state[len(acceleration) :], acceleration))
+        later, before = (state + sign * 1e-6 * change for sign in (1.0, -1.0))
+        ratios = creep_ratios(system, np.array([later, before]), EPSILON)
+        expected = (ratios[0] - ratios[1]) / 2e-6
+        found = creep_ratio_rates(system, state, acceleration, EPSILON)
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_a_contact_at_rest_creeps_as_a_whole_and_one_that_slips_does_not(system):
+    x, y, omega = 0.3, -0.2, system.disc_speed
+    at_rest = [x, y, -omega * y, omega * x]
+    if isinstance(system, DiscOnDisc):
+        at_rest = [x, y, 0.4, -omega * y, omega * x, omega]
+    assert creeping(system, at_rest, EPSILON) == WHOLE
+    fast = np.array(at_rest)
+    fast[system.state_size // 2] += 1.01 * EPSILON
+    assert creeping(system, fast.tolist(), EPSILON) is None
+
+
+def test_a_point_about_which_the_disc_turns_creeps_alone():
+    disc = replace(RING, contact_points=6, disc_speed=0.0)
+    for i in range(6):
+        arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
+        spin = 0.7
+        v = -1j * spin * arm + 0.99 * point_regularisation(EPSILON, 6)
+        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) == 1 + i
+        v += 0.02 * point_regularisation(EPSILON, 6)
+        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) is None
+
+
+def motion_of_slip(speeds, durations):
+    """A pin on a resting disc along x, with slip ``speeds`` (over ε) at the ends of spans of ``durations`` (s)."""
+    times = np.concatenate(([0.0], np.cumsum(durations)))
+    speeds = EPSILON * np.array(speeds)
+    states = np.zeros((len(times), 4))
+    states[:, 2] = speeds
+    accelerations = np.zeros((len(times), 2))
+    accelerations[:-1, 0] = np.diff(speeds) / durations
+    return Steps(times, states, accelerations, 0)
+
+
+def test_slip_that_hesitates_at_the_bend_of_the_law_is_one_release():
+    short = 0.1 * settling_time(PIN, EPSILON)
+    speeds = [1e5, 3.0, 0.5, 0.5, 1.001, 0.999, 1.001, 0.998, 1.002, 3.0, 1e5]
+    steps = motion_of_slip(speeds, [1.0, short, short, 1.0, *[short] * 5, 1.0])
+    found = phases(PIN, steps, EPSILON)
+    assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
+    assert found[1].end == pytest.approx(2.0 + 2.0 * short, abs=0.01)
+    assert all(before.end == after.start for before, after in pairwise(found))
+
+
+def test_slip_that_only_passes_through_zero_is_no_sticking():
+    short = 0.1 * settling_time(PIN, EPSILON)
+    steps = motion_of_slip([1e5, 1.5, 0.1, 1.5, 1e5], [1.0, short, short, 1.0])
+    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip"]
+
+
+def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_of_the_bend():
+    steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
+    steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero after 4e-4 s more
+    found = phases(PIN, steps, EPSILON)
+    assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
+    assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
+    assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + 0.5, rel=1e-12)
