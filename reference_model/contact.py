@@ -281,18 +281,29 @@ class PointsOnRing:
         return result / self.points
 
 
-def contact_of(system: System) -> Contact:
-    """Return the law of friction that the parameters of ``system`` stand for."""
+def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | PointsOnRing:
+    """Return ``contact``, or the law of friction that the parameters of ``system`` stand for without it.
+
+    Raises ``ValueError`` for a law that the system can't have.
+    """
     if isinstance(system, PinOnDisc):
+        if contact is not None:
+            raise ValueError(f"contact = {contact}: a pin touches in one point, only a disc takes other laws")
         return Pin()
-    if system.contact_points is None:
-        return Ring(system.contact_radius)
-    return PointsOnRing(system.contact_radius, system.contact_points)
+    if contact is None:
+        if system.contact_points is None:
+            return Ring(system.contact_radius)
+        return PointsOnRing(system.contact_radius, system.contact_points)
+    if not isinstance(contact, IsotropicContact | PointsOnRing):
+        raise ValueError(
+            f"contact = {contact}: it must be an isotropic law, like Ring(radius), or PointsOnRing(radius, points)"
+        )
+    return contact
 
 
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
     """Return ``contact`` or the law of ``system``; raise ``ValueError`` if that is of points, naming ``what``."""
-    law = contact_of(system) if contact is None else contact
+    law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):
         raise ValueError(
             f"contact_points = {system.contact_points}: {what} of a disc on single points turn with its angle; "

@@ -53,13 +53,7 @@ class DiscMotion:
         """Return the equations of motion of ``disc`` with friction by ``contact``."""
         gyration = math.sqrt(disc.polar_inertia / disc.mass)
         return cls(
-            SlipMotion(
-                disc.damping / disc.mass,
-                disc.stiffness / disc.mass,
-                disc.friction_force / disc.mass,
-                disc.disc_speed,
-                disc.offset,
-            ),
+            SlipMotion.of(disc),
             gyration,
             disc.shaft_damping / disc.polar_inertia,
             gyration * (disc.disc_speed - disc.shaft_speed),

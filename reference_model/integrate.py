@@ -94,7 +94,7 @@ def simulate_with(
     state = checked_state(system, initial_state)
     times = checked_times(times)
     tolerance = checked_tolerance(tolerance)
-    law = _checked_contact(system, contact)
+    law = contact_of(system, contact)
     unit = Units.of(system, state)
     run = Run(
         (times - times[0]) / unit.time,
@@ -128,29 +128,14 @@ def simulate_with(
     return Trajectory(system, times, states, phases, solution)
 
 
-def _checked_contact(system: System, contact: Contact | None) -> IsotropicContact | PointsOnRing:
-    """Return the law of friction; raise ``ValueError`` for one that the system can't have."""
-    if isinstance(system, PinOnDisc):
-        if contact is None:
-            return Pin()
-        raise ValueError(
-            f"contact = {contact}: a pin has one point of contact, only a disc takes another law"
-        )
-    law = contact_of(system) if contact is None else contact
-    if isinstance(law, Pin) or not isinstance(law, IsotropicContact | PointsOnRing):
-        raise ValueError(
-            f"contact = {contact}: it must be a law of a circle, like Ring(radius), or "
-            "PointsOnRing(radius, points); a single point is a PinOnDisc"
-        )
-    return law
-
-
 def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, unit: Units) -> Body:
     if isinstance(system, PinOnDisc):
         return PinBody(run, unit.of_pin(SlipMotion.of(system)))
     motion = unit.of_disc(DiscMotion.of(system, contact))
     if isinstance(contact, PointsOnRing):
         return PointsBody(run, motion, contact)
+    if isinstance(contact, Pin):
+        raise ValueError(f"contact = {contact}: a disc that touches in one point never rests; take a PinOnDisc")
     return RingBody(run, motion, contact)
 
 

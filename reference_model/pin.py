@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import FloatArray, PinOnDisc, System
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class SlipMotion:
     offset: float
 
     @classmethod
-    def of(cls, pin: PinOnDisc) -> SlipMotion:
-        """Return the equations of motion of ``pin``."""
+    def of(cls, system: System) -> SlipMotion:
+        """Return the equations of motion of a pin, or of the centre of a disc."""
         return cls(
-            pin.damping / pin.mass,
-            pin.stiffness / pin.mass,
-            pin.friction_force / pin.mass,
-            pin.disc_speed,
-            pin.offset,
+            system.damping / system.mass,
+            system.stiffness / system.mass,
+            system.friction_force / system.mass,
+            system.disc_speed,
+            system.offset,
         )
 
     def pull(self, z: complex, w: complex) -> complex:

@@ -95,7 +95,7 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     if len(trajectory.times) < 2:
         raise ValueError("the trajectory has one time only: a power balance takes at least two")
     body = trajectory.system
-    law = contact_of(body) if contact is None else contact
+    law = contact_of(body, contact)
     m, C, beta, omega, X0 = body.mass, body.stiffness, body.damping, body.disc_speed, body.offset
     inertia, b, Omega = 0.0, 0.0, 0.0
     if isinstance(body, DiscOnDisc):

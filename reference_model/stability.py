@@ -56,12 +56,10 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     if isinstance(system, DiscOnDisc):
         angle, spin = state[ANGLE], state[-1]
         inertia[ANGLE], stiffness[ANGLE], damping[ANGLE] = system.polar_inertia, 0.0, system.shaft_damping
-    else:
-        require_no_contact(contact)
 
     by_place, by_rates = -np.diag(stiffness), -np.diag(damping)
+    law = contact_of(system, contact)
     if system.friction_force > 0.0:
-        law = contact_of(system) if contact is None else contact
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
@@ -221,12 +219,6 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     against_slip = disc.shaft_damping * law.slopes(0.0, 1.0).resistance_by_slip * (speed - k)
     damped = disc.damping * k
     return damped * torque / (against_slip + damped * law.shares(0.0, 1.0).moment)
-
-
-def require_no_contact(contact: Contact | None) -> None:
-    """Raise ``ValueError`` if a pin is given a law of contact."""
-    if contact is not None:
-        raise ValueError(f"contact = {contact}: a pin touches in one point, only a disc takes other contacts")
 
 
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:

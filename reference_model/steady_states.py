@@ -8,7 +8,7 @@ from typing import overload
 
 import numpy as np
 
-from reference_model.contact import IsotropicContact, isotropic_contact_of
+from reference_model.contact import IsotropicContact, contact_of, isotropic_contact_of
 from reference_model.disc_balance import circles, least_load_with_whirl, resting_places
 from reference_model.disc_formulas import held_pin, pin_of, shaft_torque
 from reference_model.pin_formulas import (
@@ -17,7 +17,7 @@ from reference_model.pin_formulas import (
     whirl_frequency,
     whirl_radius,
 )
-from reference_model.stability import equilibrium_eigenvalues, require_no_contact, whirl_eigenvalues
+from reference_model.stability import equilibrium_eigenvalues, whirl_eigenvalues
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 
@@ -167,7 +167,7 @@ def self_centred_equilibria(
 
     """
     if isinstance(system, PinOnDisc):
-        require_no_contact(contact)
+        contact_of(system, contact)  # refuses any
         if _why_no_equilibrium_of_pin(system) is not None:
             return ()
         x, y = equilibrium_position(system)
@@ -223,7 +223,7 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     """
     _require_centred(system)
     if isinstance(system, PinOnDisc):
-        require_no_contact(contact)
+        contact_of(system, contact)  # refuses any
         if _why_no_whirl_of_pin(system) is not None:
             return ()
         eigenvalues = whirl_eigenvalues(system)

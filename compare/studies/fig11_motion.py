@@ -28,7 +28,7 @@ def rates(disc: DiscOnDisc, state: FloatArray, contact: Contact | None = None) -
     """Return the right side of (19) at ``state``, shape (6,), with (20) or another law of ``contact``."""
     x, y, angle, vx, vy, spin = state.tolist()
     omega, load = disc.disc_speed, disc.friction_force
-    law = contact_of(disc) if contact is None else contact
+    law = contact_of(disc, contact)
     force, moment = law.force_and_moment(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
     return [
         vx,

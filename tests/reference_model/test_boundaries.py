@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compare.paper import FIG11
 from reference_model import boundaries as module
 from reference_model.boundaries import Plane, boundaries, crossings
 from reference_model.characteristic import characteristic_coefficients
@@ -16,26 +17,15 @@ from reference_model.stability import onset_load, whirl_eigenvalues
 from reference_model.steady_states import whirls
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
-DISC = DiscOnDisc(  # Fig. 11
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 LAWS = pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
-SPEED_LOAD = Plane(DISC, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+SPEED_LOAD = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
 PLANES = (
     SPEED_LOAD,
-    Plane(DISC, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
-    Plane(DISC, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
-    Plane(DISC, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
-    Plane(DISC, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
+    Plane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    Plane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    Plane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+    Plane(FIG11, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
 )
 
 traced = functools.cache(boundaries)
@@ -82,8 +72,8 @@ def test_the_characteristic_equation_has_the_eigenvalues_of_the_jacobian(law):
 
 def test_without_moment_of_friction_the_characteristic_equation_is_that_of_the_pin_times_the_torsion():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5)
-    expected = np.polymul(coefficients_of_pin(pin), [1.0, DISC.shaft_damping / DISC.polar_inertia])
-    assert [1.0, *characteristic_coefficients(DISC, 1.0, 0.3, Pin())] == pytest.approx(expected, rel=1e-14)
+    expected = np.polymul(coefficients_of_pin(pin), [1.0, FIG11.shaft_damping / FIG11.polar_inertia])
+    assert [1.0, *characteristic_coefficients(FIG11, 1.0, 0.3, Pin())] == pytest.approx(expected, rel=1e-14)
 
 
 @LAWS
@@ -119,7 +109,7 @@ def test_on_a_fold_curve_the_load_over_alpha_is_stationary(law):
 @LAWS
 def test_across_a_hopf_curve_a_whirl_changes_its_stability_and_across_a_fold_two_appear(law):
     def unstable(load):
-        found = whirls(replace(DISC, disc_speed=1.5, friction_force=load), law)
+        found = whirls(replace(FIG11, disc_speed=1.5, friction_force=load), law)
         return len(found), sum(value.real > 0.0 for whirl in found for value in whirl.eigenvalues)
 
     for kind, change in (("Hopf", 0), ("fold", 2)):
@@ -162,7 +152,7 @@ def test_more_lines_and_ratios_find_no_more_curves(plane, monkeypatch):
 
 def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
     mirrored = Plane(
-        replace(DISC, shaft_speed=-1.25),
+        replace(FIG11, shaft_speed=-1.25),
         SPEED_LOAD.names,
         (-3.0, SPEED_LOAD.lower[1]),
         (-1.3, SPEED_LOAD.upper[1]),
@@ -177,9 +167,9 @@ def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
 
 def test_a_line_of_constant_damping_crosses_the_curves_in_the_inertia():
     plane = PLANES[3]
-    (inertia,) = crossings(plane, "Hopf", "shaft_damping", DISC.shaft_damping)
+    (inertia,) = crossings(plane, "Hopf", "shaft_damping", FIG11.shaft_damping)
     dampings = crossings(plane, "Hopf", "polar_inertia", inertia)
-    assert min(abs(damping / DISC.shaft_damping - 1.0) for damping in dampings) < 1e-11
+    assert min(abs(damping / FIG11.shaft_damping - 1.0) for damping in dampings) < 1e-11
 
 
 def test_a_modulation_needs_inertia():
@@ -192,7 +182,7 @@ def test_a_modulation_needs_inertia():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"disc": replace(DISC, offset=0.1)}, "offset = 0.1 m"),
+        ({"disc": replace(FIG11, offset=0.1)}, "offset = 0.1 m"),
         ({"names": ("disc_speed", "disc_speed")}, "two of mass"),
         ({"names": ("disc_speed", "contact_points")}, "two of mass"),
         ({"upper": (1.2, 0.08)}, "disc_speed from 1.3 to 1.2: the range must not be empty"),
@@ -206,7 +196,7 @@ def test_a_modulation_needs_inertia():
     ],
 )
 def test_a_plane_without_whirls_is_refused(changes, message):
-    values = {"disc": DISC, "names": SPEED_LOAD.names, "lower": SPEED_LOAD.lower, "upper": SPEED_LOAD.upper}
+    values = {"disc": FIG11, "names": SPEED_LOAD.names, "lower": SPEED_LOAD.lower, "upper": SPEED_LOAD.upper}
     with pytest.raises(ValueError, match=message):
         Plane(**(values | changes))
 
@@ -218,6 +208,6 @@ def test_bad_questions_are_refused():
         crossings(SPEED_LOAD, "Hopf", "damping", 0.5)
     with pytest.raises(ValueError, match=r"disc_speed = 4: it must lie between 1\.3 and 3"):
         crossings(SPEED_LOAD, "Hopf", "disc_speed", 4.0)
-    points = Plane(replace(DISC, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper)
+    points = Plane(replace(FIG11, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper)
     with pytest.raises(ValueError, match="contact_points = 6"):
         boundaries(points, "Hopf")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
+from compare.paper import FIG11
 from reference_model.contact import (
     Pin,
     PointsOnRing,
@@ -19,17 +20,13 @@ from reference_model.contact import (
     contact_of,
     isotropic_contact_of,
 )
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import PinOnDisc
 
 R = 0.12
 RING, EXPANSION, SIX = Ring(R), ThreeTermRing(R), PointsOnRing(R, 6)
 LAWS = [Pin(), RING, EXPANSION, SIX, PointsOnRing(R, 7)]
 ISOTROPIC = [Pin(), RING, EXPANSION]
 
-FIG_11 = DiscOnDisc(
-    mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5,
-    contact_radius=R, shaft_damping=0.015, shaft_speed=1.25,
-)  # fmt: skip
 
 named = pytest.mark.parametrize("law", LAWS, ids=repr)
 
@@ -366,13 +363,13 @@ def test_what_is_no_number_of_points_is_refused(points):
 def test_system_says_which_law_it_has():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
     assert contact_of(pin) == Pin()
-    assert contact_of(FIG_11) == RING
-    assert contact_of(replace(FIG_11, contact_points=6)) == SIX
+    assert contact_of(FIG11) == RING
+    assert contact_of(replace(FIG11, contact_points=6)) == SIX
 
 
 def test_points_are_refused_where_the_law_must_not_depend_on_the_angle():
-    six = replace(FIG_11, contact_points=6)
-    assert isotropic_contact_of(FIG_11, None, "whirls") == RING
+    six = replace(FIG11, contact_points=6)
+    assert isotropic_contact_of(FIG11, None, "whirls") == RING
     assert isotropic_contact_of(six, EXPANSION, "whirls") == EXPANSION
     with pytest.raises(ValueError, match="contact_points = 6: whirls of a disc on single points"):
         isotropic_contact_of(six, None, "whirls")

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from disc_equations import LARGE, disc_in_units, eq_23, mirrored
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_disc import FIG_8, FIG_11, LARGE, disc_in_units, eq_23, mirrored
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
+from compare.paper import FIG8, FIG11
 from reference_model import disc_formulas as formulas
 from reference_model import pin_formulas
 from reference_model.contact import Ring, ThreeTermRing
@@ -62,7 +63,7 @@ def averaged(expansion, slip, rim_speed):
 def test_23_is_the_average_of_three_terms_of_the_expansion_and_not_of_the_two_that_are_printed(
     slip, rim_speed
 ):
-    unit = replace(FIG_8, friction_force=1.0, contact_radius=1.0)
+    unit = replace(FIG8, friction_force=1.0, contact_radius=1.0)
     expected = eq_23(unit)(slip.real, slip.imag, rim_speed, 0.0)
     assert averaged(formulas.inverse_slip_speed, slip, rim_speed) == pytest.approx(expected, abs=1e-14)
     both = 0.75 * abs(slip * rim_speed) ** 2 / (abs(slip) ** 2 + rim_speed**2) ** 2
@@ -83,10 +84,9 @@ def angles_of(disc, equilibrium):
 
 
 DISCS = [
-    FIG_8,
-    mirrored(FIG_8),
-    replace(FIG_8, offset=-0.1),
-    replace(FIG_8, shaft_speed=3.0),
+    mirrored(FIG8),
+    replace(FIG8, offset=-0.1),
+    replace(FIG8, shaft_speed=3.0),
     LARGE,
     mirrored(LARGE),
 ]
@@ -123,7 +123,7 @@ def test_places_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, s
 def test_26_as_printed_is_right_without_load_only():
     errors = []
     for load in (0.0, 0.001, 0.05, 0.09):
-        disc = replace(FIG_8, friction_force=load)
+        disc = replace(FIG8, friction_force=load)
         (printed,), (corrected,) = formulas.places_by_26(disc, as_printed=True), formulas.places_by_26(disc)
         errors.append(math.dist(printed[:2], corrected[:2]))
     assert errors[0] == 0.0
@@ -133,16 +133,16 @@ def test_26_as_printed_is_right_without_load_only():
 
 
 def test_25_has_two_lengths_and_a_number():
-    load, shaft_damping, difference = formulas.reduced_parameters(FIG_8)
+    load, shaft_damping, difference = formulas.reduced_parameters(FIG8)
     assert load == pytest.approx(0.05, rel=1e-15)
     assert shaft_damping == pytest.approx(0.01 * 0.8 / 0.12, rel=1e-15)
     assert difference == pytest.approx(0.375, rel=1e-15)
-    scaled = formulas.reduced_parameters(disc_in_units(FIG_8, mass=3.0, length=0.2, time=7.0))
+    scaled = formulas.reduced_parameters(disc_in_units(FIG8, mass=3.0, length=0.2, time=7.0))
     assert scaled == pytest.approx((0.2 * load, 0.2 * shaft_damping, difference), rel=1e-14)
 
 
 def test_without_shaft_difference_26_gives_the_equilibrium_of_a_pin():
-    disc = replace(FIG_8, shaft_speed=0.8)
+    disc = replace(FIG8, shaft_speed=0.8)
     (place,) = formulas.places_by_26(disc)
     x, y = pin_formulas.equilibrium_position(formulas.pin_of(disc))
     assert place == pytest.approx((x, y, 0.8), rel=1e-14)
@@ -152,12 +152,12 @@ def test_without_shaft_difference_26_gives_the_equilibrium_of_a_pin():
 @pytest.mark.parametrize("name", ["stiffness", "disc_speed", "shaft_damping", "offset"])
 def test_26_is_refused_where_it_has_no_value(name):
     with pytest.raises(ValueError, match=f"{name} = 0"):
-        formulas.places_by_26(replace(FIG_8, **{name: 0.0}))
+        formulas.places_by_26(replace(FIG8, **{name: 0.0}))
 
 
 def test_angle_of_a_disc_farther_out_than_the_offset_is_refused():
     with pytest.raises(ValueError, match=r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"):
-        formulas.polar_angle(FIG_8, 0.2, 0.0)
+        formulas.polar_angle(FIG8, 0.2, 0.0)
 
 
 # ---------------------------------------------------------------- the whirl
@@ -165,7 +165,7 @@ def test_angle_of_a_disc_farther_out_than_the_offset_is_refused():
 
 @pytest.mark.parametrize("law", [Ring, ThreeTermRing])
 @pytest.mark.parametrize("alpha", [0.05, 0.7, 0.9, 1.5])
-@pytest.mark.parametrize("disc", [FIG_11, mirrored(FIG_11), replace(FIG_11, shaft_speed=1.75, damping=0.03)])
+@pytest.mark.parametrize("disc", [FIG11, mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
 def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
     contact = law(disc.contact_radius)
     load, radius, spin = formulas.whirl_at(disc, alpha, contact)
@@ -176,9 +176,9 @@ def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
 
 @pytest.mark.parametrize("alpha", [0.3, 1.2])
 def test_whirl_at_a_ratio_balances_the_forces_of_23(alpha):
-    load, radius, spin = formulas.whirl_at(FIG_11, alpha, ThreeTermRing(0.12))
+    load, radius, spin = formulas.whirl_at(FIG11, alpha, ThreeTermRing(0.12))
     slip_y = (1.0 - 1.5) * radius  # k = 1, centre on the x axis
-    force_x, force_y, moment = eq_23(replace(FIG_11, friction_force=load))(0.0, slip_y, 1.5 - spin, 0.0)
+    force_x, force_y, moment = eq_23(replace(FIG11, friction_force=load))(0.0, slip_y, 1.5 - spin, 0.0)
     assert force_x == 0.0
     assert force_y == pytest.approx(0.5 * radius, rel=ROUNDING)
     assert moment == pytest.approx(0.015 * (spin - 1.25), rel=ROUNDING)
@@ -187,9 +187,9 @@ def test_whirl_at_a_ratio_balances_the_forces_of_23(alpha):
 
 def test_whirl_of_hardly_any_size_takes_the_onset_load():
     for law in (Ring, ThreeTermRing):
-        load = formulas.whirl_at(FIG_11, math.pi / 2.0 - 1e-7, law(0.12)).load
-        assert load == pytest.approx(onset_load(FIG_11, law(0.12)), rel=1e-13)
-        arm = formulas.whirl_arm(FIG_11, law(0.12))
+        load = formulas.whirl_at(FIG11, math.pi / 2.0 - 1e-7, law(0.12)).load
+        assert load == pytest.approx(onset_load(FIG11, law(0.12)), rel=1e-13)
+        arm = formulas.whirl_arm(FIG11, law(0.12))
         assert arm(0.0, 1.0) == pytest.approx(arm(1e-8, 1.0), rel=ROUNDING)
         assert arm(3.0, 2.0) == pytest.approx(arm(0.3, 0.2), rel=ROUNDING)
 
@@ -208,7 +208,7 @@ def test_whirl_of_hardly_any_size_takes_the_onset_load():
 )
 def test_whirl_at_a_ratio_is_refused_where_there_is_none(changes, alpha, message):
     with pytest.raises(ValueError, match=message):
-        formulas.whirl_at(replace(FIG_11, **changes), alpha)
+        formulas.whirl_at(replace(FIG11, **changes), alpha)
 
 
 # ---------------------------------------------------------------- sticking
@@ -236,7 +236,7 @@ def test_friction_holds_the_forces_inside_of_its_limit_surface(torque_share):
 
 
 def test_sticking_radius_of_a_disc_is_that_of_a_pin_with_less_friction():
-    disc = replace(FIG_8, friction_force=0.3)
+    disc = replace(FIG8, friction_force=0.3)
     free = replace(disc, shaft_speed=0.8)
     assert formulas.held_pin(free) == formulas.pin_of(free)
     radii = [pin_formulas.sticking_radius(formulas.held_pin(d)) for d in (free, disc)]
@@ -245,9 +245,9 @@ def test_sticking_radius_of_a_disc_is_that_of_a_pin_with_less_friction():
 
 def test_disc_whose_shaft_asks_for_too_large_a_moment_never_sticks():
     with pytest.raises(ValueError, match=r"moment of 0\.0024 N m.*the shaft's, 0\.003 N m"):
-        formulas.held_pin(replace(FIG_8, friction_force=0.02))
+        formulas.held_pin(replace(FIG8, friction_force=0.02))
     with pytest.raises(ValueError, match="contact_points = 6"):
-        formulas.held_pin(replace(FIG_8, contact_points=6))
+        formulas.held_pin(replace(FIG8, contact_points=6))
 
 
 # ---------------------------------------------------------------- units
@@ -257,7 +257,7 @@ ratios = st.floats(0.01, 100.0)
 
 @given(st.floats(0.01, 0.99), ratios, ratios, ratios)
 def test_units_of_26_do_not_matter(share, mass, length, time):
-    disc = replace(FIG_8, friction_force=share * 0.1)
+    disc = replace(FIG8, friction_force=share * 0.1)
     (one,), (two,) = (
         formulas.places_by_26(disc),
         formulas.places_by_26(disc_in_units(disc, mass, length, time)),

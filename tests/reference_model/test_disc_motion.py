@@ -7,8 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from plain_discs import friction_of_pivot, just_released_disc, slide_disc, smoothed_disc, stuck_disc
+from plain_disc_engines import friction_of_pivot, just_released_disc, slide_disc, smoothed_disc, stuck_disc
 
+from compare.paper import FIG11
 from reference_model import PinOnDisc, power_balance, simulate
 from reference_model.contact import Pin, PointsOnRing, Ring, ThreeTermRing
 from reference_model.integrate import simulate_with
@@ -17,10 +18,6 @@ from reference_model.stepping import Thresholds
 from reference_model.sticking import release_delay
 from reference_model.systems import DiscOnDisc
 
-FIG_11 = DiscOnDisc(
-    mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5,
-    contact_radius=0.12, shaft_damping=0.015, shaft_speed=1.25,
-)  # fmt: skip
 STICKY = DiscOnDisc(
     mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
     contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
@@ -54,7 +51,7 @@ def of_law(disc, law):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("start", [[0.5, 0.1, 0.3, 0.0, 0.4, 0.2], [0.05, 0.0, 0.0, 0.0, 0.05, -1.0]])
 def test_slip_agrees_with_eq_19_integrated_plainly(law, start):
-    disc, contact = of_law(FIG_11, law)
+    disc, contact = of_law(FIG11, law)
     times = np.linspace(0.0, 10.0, 21)
     plain = slide_disc(disc, start, times, contact)
     assert kinds(simulate(disc, start, times, contact=contact)) == ["slip"]
@@ -87,7 +84,7 @@ def test_crossing_the_logarithm_of_the_ring_at_equal_speeds_keeps_the_tolerance(
 
 
 def test_without_friction_the_disc_is_a_damped_oscillator_and_a_spin_that_decays():
-    disc = replace(FIG_11, friction_force=0.0, offset=0.1, shaft_damping=0.3)
+    disc = replace(FIG11, friction_force=0.0, offset=0.1, shaft_damping=0.3)
     times = np.linspace(0.0, 20.0, 41)
     trajectory = simulate(disc, [0.3, -0.2, 0.4, -0.1, 0.4, -2.0], times)
     spin = 1.25 + (-2.0 - 1.25) * np.exp(-0.3 * times)
@@ -108,9 +105,9 @@ def test_without_any_force_the_disc_goes_straight_on_and_turns_evenly(points):
 
 def test_many_points_tend_to_the_continuous_ring():
     times, start = np.linspace(0.0, 20.0, 41), [0.5, 0.1, 0.3, 0.0, 0.4, 0.2]
-    ring = simulate(FIG_11, start, times).states
+    ring = simulate(FIG11, start, times).states
     errors = [
-        np.abs(simulate(replace(FIG_11, contact_points=n), start, times).states - ring).max()
+        np.abs(simulate(replace(FIG11, contact_points=n), start, times).states - ring).max()
         for n in (6, 12, 24, 48)
     ]
     # U ≠ R|S| but for moments, in which one point in n is wrong: the sum falls faster than 1/n.
@@ -418,9 +415,11 @@ def test_free_ring_slides_longer_when_it_spins_and_turns_the_heat_of_all_its_ene
 
 def test_contact_that_the_system_cannot_have_is_refused():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5)
-    with pytest.raises(ValueError, match=r"contact = Ring\(radius=0.1\): a pin has one point"):
+    with pytest.raises(ValueError, match=r"contact = Ring\(radius=0.1\): a pin touches in one point"):
         simulate(pin, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0], contact=Ring(0.1))
-    with pytest.raises(ValueError, match=r"contact = Pin\(\): it must be a law of a circle"):
-        simulate(FIG_11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact=Pin())
+    with pytest.raises(ValueError, match=r"contact = Pin\(\): a disc that touches in one point"):
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact=Pin())
+    with pytest.raises(ValueError, match=r"contact = ring: it must be an isotropic law"):
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact="ring")
     with pytest.raises(ValueError, match="DiscOnDisc takes 6 numbers"):
-        simulate(FIG_11, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])

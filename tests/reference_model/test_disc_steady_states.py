@@ -5,12 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from plain_disc import (
-    FIG_8,
+from disc_equations import (
     FIG_9,
-    FIG_11,
     disc_in_units,
     eq_23,
     mirrored,
@@ -18,9 +14,12 @@ from plain_disc import (
     rates,
     rates_in_turning_axes,
 )
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
+from compare.paper import FIG8, FIG11
 from reference_model.annulus import Annulus
 from reference_model.contact import Ring, ThreeTermRing
 from reference_model.disc_formulas import held_pin, pin_of, semicircle_residual, shaft_torque
@@ -55,7 +54,7 @@ def friction_of(disc, law):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("load", [1e-5, 0.02, 0.08, 0.1])
 @pytest.mark.parametrize(
-    "disc", [FIG_8, mirrored(FIG_8), replace(FIG_8, offset=-0.1), replace(FIG_8, shaft_speed=2.0), FIG_9]
+    "disc", [FIG8, mirrored(FIG8), replace(FIG8, offset=-0.1), replace(FIG8, shaft_speed=2.0), FIG_9]
 )
 def test_equilibrium_is_one_of_the_equations_of_motion(disc, load, law):
     disc = replace(disc, friction_force=0.15 * load if disc is FIG_9 else load)
@@ -239,13 +238,13 @@ def test_whirl_grows_out_of_the_centred_rotation_without_a_jump_below_a_limit_of
 
 
 def test_whirl_at_the_smallest_load_of_the_ring_of_fig_11_is_the_onset_and_for_23_a_fold():
-    assert smallest_load_with_whirl(FIG_11) == pytest.approx(onset_load(FIG_11), rel=1e-14)
-    assert smallest_load_with_whirl(FIG_11, ThreeTermRing(0.12)) < 0.97 * onset_load(FIG_11)
+    assert smallest_load_with_whirl(FIG11) == pytest.approx(onset_load(FIG11), rel=1e-14)
+    assert smallest_load_with_whirl(FIG11, ThreeTermRing(0.12)) < 0.97 * onset_load(FIG11)
 
 
 def test_whirl_of_fig_11_grows_on_the_ring_and_decays_by_23():
     """The paper's own simplified equations miss the instability that its figure shows."""
-    (on_ring,), (by_23,) = whirls(FIG_11), whirls(FIG_11, ThreeTermRing(0.12))
+    (on_ring,), (by_23,) = whirls(FIG11), whirls(FIG11, ThreeTermRing(0.12))
     assert not on_ring.stable
     assert on_ring.eigenvalues[1].imag > 0.0
     assert by_23.stable
@@ -279,13 +278,13 @@ def test_equilibrium_comes_to_rest_in_proportion_to_the_load_that_is_missing(law
     contact = law(0.12)
 
     def spare(load):
-        return held_pin(replace(FIG_8, friction_force=load), contact).friction_force - 0.1
+        return held_pin(replace(FIG8, friction_force=load), contact).friction_force - 0.1
 
     limit = brentq(spare, 0.05, 0.2, xtol=1e-17, rtol=1e-15)
     sizes = []
     for missing in (4e-9, 2e-9):
         (equilibrium,) = self_centred_equilibria(
-            replace(FIG_8, friction_force=limit * (1.0 - missing)), contact
+            replace(FIG8, friction_force=limit * (1.0 - missing)), contact
         )
         sizes.append((math.hypot(equilibrium.x, equilibrium.y), 0.8 - equilibrium.spin))
     # The limit is known to 1e-15 of it, these loads to 1e-16.
@@ -295,7 +294,7 @@ def test_equilibrium_comes_to_rest_in_proportion_to_the_load_that_is_missing(law
 @pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 0.8}])
 @pytest.mark.parametrize("load", [0.01, 0.0999])
 def test_disc_that_does_not_spin_against_the_master_disc_rests_where_a_pin_does(changes, load):
-    disc = replace(FIG_8, friction_force=load, **changes)
+    disc = replace(FIG8, friction_force=load, **changes)
     (equilibrium,) = self_centred_equilibria(disc)
     (of_pin,) = self_centred_equilibria(pin_of(disc))
     assert (equilibrium.x, equilibrium.y) == pytest.approx((of_pin.x, of_pin.y), rel=1e-14)
@@ -305,7 +304,7 @@ def test_disc_that_does_not_spin_against_the_master_disc_rests_where_a_pin_does(
 
 @pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 1.5}])
 def test_disc_that_does_not_spin_against_the_master_disc_whirls_like_a_pin(changes):
-    disc = replace(FIG_11, friction_force=1e-6, **changes)
+    disc = replace(FIG11, friction_force=1e-6, **changes)
     (whirl,) = whirls(disc)
     (of_pin,) = whirls(pin_of(disc))
     assert (whirl.radius, whirl.frequency, whirl.spin) == (of_pin.radius, of_pin.frequency, 1.5)
@@ -315,7 +314,7 @@ def test_disc_that_does_not_spin_against_the_master_disc_whirls_like_a_pin(chang
 @pytest.mark.parametrize("size", [1e-3, 1e-8, 1e-14])
 def test_weak_shaft_lets_the_disc_turn_almost_with_the_master_disc(size):
     """To first order M = R·W/(2U) gives S = b(ω − Ω)/(μN·R²/(2U) + b); U stays a pin's up to S²."""
-    disc = replace(FIG_8, shaft_damping=size * 0.01)
+    disc = replace(FIG8, shaft_damping=size * 0.01)
     (equilibrium,) = self_centred_equilibria(disc)
     (of_pin,) = self_centred_equilibria(pin_of(disc))
     slip = 0.8 * math.hypot(of_pin.x, of_pin.y)
@@ -325,14 +324,14 @@ def test_weak_shaft_lets_the_disc_turn_almost_with_the_master_disc(size):
 
 
 def test_stiff_shaft_leaves_the_disc_its_speed():
-    (equilibrium,) = self_centred_equilibria(replace(FIG_8, shaft_damping=1e6))
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, shaft_damping=1e6))
     assert equilibrium.spin == pytest.approx(0.5, abs=0.05 * 0.12 / 1e6)
 
 
 @pytest.mark.parametrize("offset", [1e-3, 1e-9, 1e-15])
 def test_small_offset_moves_the_centre_along_a_straight_line(offset):
     """Near the axis friction is the damper μN/(2W) that turns with ω: (C − iω·μN/(2W))·z = C·X0."""
-    disc = replace(FIG_8, friction_force=0.01, offset=offset)
+    disc = replace(FIG8, friction_force=0.01, offset=offset)
     (equilibrium,) = self_centred_equilibria(disc)
     rim = 0.12 * 0.3 - 0.01 * 0.12**2 / 0.01
     expected = offset / complex(1.0, -0.8 * 0.01 / (2.0 * rim))
@@ -350,7 +349,7 @@ def test_disc_without_an_offset_only_spins(law):
 
 
 def test_disc_on_a_master_disc_at_rest_spins_where_its_springs_relax():
-    disc = replace(FIG_8, disc_speed=0.0)
+    disc = replace(FIG8, disc_speed=0.0)
     (equilibrium,) = self_centred_equilibria(replace(disc, friction_force=0.02))
     assert (equilibrium.x, equilibrium.y) == (0.1, 0.0)
     assert equilibrium.spin == pytest.approx(0.5 - 0.02 * 0.12 / 0.01, rel=1e-14)
@@ -360,16 +359,14 @@ def test_disc_on_a_master_disc_at_rest_spins_where_its_springs_relax():
 
 @pytest.mark.parametrize("offset", [0.1, 0.0])
 def test_without_springs_the_axis_is_an_equilibrium_and_not_a_stable_one(offset):
-    (equilibrium,) = self_centred_equilibria(
-        replace(FIG_8, stiffness=0.0, friction_force=0.01, offset=offset)
-    )
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, stiffness=0.0, friction_force=0.01, offset=offset))
     assert (equilibrium.x, equilibrium.y) == (0.0, 0.0)
     assert not equilibrium.stable
 
 
 @pytest.mark.parametrize("disc_speed", [0.8, 0.0])
 def test_without_friction_the_disc_turns_with_the_shaft_where_its_springs_relax(disc_speed):
-    (equilibrium,) = self_centred_equilibria(replace(FIG_8, friction_force=0.0, disc_speed=disc_speed))
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, friction_force=0.0, disc_speed=disc_speed))
     assert (equilibrium.x, equilibrium.y, equilibrium.spin) == (0.1, 0.0, 0.5)
     assert equilibrium.stable
 
@@ -390,7 +387,7 @@ NO_EQUILIBRIUM = [
 
 @pytest.mark.parametrize(("changes", "reason"), NO_EQUILIBRIUM)
 def test_missing_equilibrium_is_explained(changes, reason):
-    disc = replace(FIG_8, **changes)
+    disc = replace(FIG8, **changes)
     assert self_centred_equilibria(disc) == ()
     with pytest.raises(AssertionError, match=reason):
         raise AssertionError(why_no_equilibrium(disc))
@@ -408,19 +405,19 @@ NO_WHIRL = [
 
 @pytest.mark.parametrize(("changes", "reason"), NO_WHIRL)
 def test_missing_whirl_is_explained(changes, reason):
-    disc = replace(FIG_11, **changes)
+    disc = replace(FIG11, **changes)
     assert whirls(disc) == ()
     with pytest.raises(AssertionError, match=reason):
         raise AssertionError(why_no_whirl(disc))
 
 
 def test_what_exists_needs_no_explanation():
-    assert why_no_equilibrium(FIG_8) is None
-    assert why_no_whirl(FIG_11) is None
+    assert why_no_equilibrium(FIG8) is None
+    assert why_no_whirl(FIG11) is None
 
 
 def test_missing_motions_of_a_pin_are_explained_by_its_formulas():
-    pin = pin_of(FIG_8)
+    pin = pin_of(FIG8)
     assert why_no_equilibrium(pin) is None
     assert "(eq. 5)" in why_no_equilibrium(replace(pin, friction_force=0.2))
     assert "sticks on the axis" in why_no_equilibrium(replace(pin, friction_force=0.1))
@@ -431,22 +428,22 @@ def test_missing_motions_of_a_pin_are_explained_by_its_formulas():
 @pytest.mark.parametrize("function", [self_centred_equilibria, whirls, why_no_equilibrium, why_no_whirl])
 def test_bad_input_is_refused(function):
     with pytest.raises(ValueError, match="contact_points = 6"):
-        function(replace(FIG_11, contact_points=6))
+        function(replace(FIG11, contact_points=6))
     with pytest.raises(ValueError, match="a pin touches in one point"):
-        function(pin_of(FIG_11), Ring(0.1))
+        function(pin_of(FIG11), Ring(0.1))
 
 
 @pytest.mark.parametrize("function", [whirls, why_no_whirl, smallest_load_with_whirl])
 def test_whirl_of_a_disc_with_an_offset_is_left_to_shooting(function):
     with pytest.raises(ValueError, match=r"offset = 0\.1 m.*whirl_orbit"):
-        function(FIG_8)
+        function(FIG8)
 
 
 @pytest.mark.parametrize("changes", [{"damping": 0.0}, {"stiffness": 0.0}, {"disc_speed": 1.0}])
 def test_smallest_load_is_refused_where_no_load_makes_a_whirl(changes):
     (name,) = changes
     with pytest.raises(ValueError, match=name):
-        smallest_load_with_whirl(replace(FIG_11, friction_force=0.0, **changes))
+        smallest_load_with_whirl(replace(FIG11, friction_force=0.0, **changes))
 
 
 # ---------------------------------------------------------------- symmetries and units
@@ -499,8 +496,8 @@ def test_units_do_not_matter(disc, mass, length, time):
 
 
 def test_steady_motions_of_a_disc_are_immutable_values():
-    (whirl,), (equilibrium,) = whirls(FIG_11), self_centred_equilibria(FIG_8)
-    assert whirls(FIG_11) == (whirl,)
+    (whirl,), (equilibrium,) = whirls(FIG11), self_centred_equilibria(FIG8)
+    assert whirls(FIG11) == (whirl,)
     assert len({whirl, equilibrium}) == 2
     with pytest.raises(AttributeError):
         whirl.spin = 1.0

@@ -5,32 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compare.paper import FIG11
 from reference_model.boundaries import Plane, crossings
 from reference_model.contact import Ring, ThreeTermRing
 from reference_model.integrate import simulate
 from reference_model.modulation import growth_by_amplitude, polar_rates
 from reference_model.stability import turning_frame_jacobian
 from reference_model.steady_states import whirls
-from reference_model.systems import DiscOnDisc
 
-DISC = DiscOnDisc(  # Fig. 11
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
-PLANE = Plane(DISC, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+PLANE = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 
 
 def marginal_whirl(law, which):
     """Return a disc at ω = 1.5 rad/s on a Hopf curve, and its whirl."""
-    disc = replace(DISC, friction_force=crossings(PLANE, "Hopf", "disc_speed", 1.5, law)[which])
+    disc = replace(FIG11, friction_force=crossings(PLANE, "Hopf", "disc_speed", 1.5, law)[which])
     return disc, min(whirls(disc, law), key=lambda whirl: abs(whirl.eigenvalues[1].real))
 
 
@@ -78,7 +67,7 @@ def test_with_23_the_growth_changes_its_sign_along_the_curve():
     signs = []
     for speed in (1.28, 2.0):
         (load,) = crossings(replace(PLANE, lower=(1.27, 1e-3)), "Hopf", "disc_speed", speed, THREE_TERMS)
-        disc = replace(DISC, disc_speed=speed, friction_force=load)
+        disc = replace(FIG11, disc_speed=speed, friction_force=load)
         whirl = min(whirls(disc, THREE_TERMS), key=lambda whirl: abs(whirl.eigenvalues[1].real))
         signs.append(np.sign(growth_by_amplitude(disc, whirl.state, THREE_TERMS)))
     assert signs == [-1.0, 1.0]
@@ -86,13 +75,13 @@ def test_with_23_the_growth_changes_its_sign_along_the_curve():
 
 @pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
 def test_the_whirl_is_at_rest_in_polar_coordinates(law):
-    (whirl,) = whirls(DISC, law)
-    state = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, DISC.disc_speed - whirl.spin])
-    assert polar_rates(DISC, law)(state) == pytest.approx(np.zeros(4), abs=1e-15)
+    (whirl,) = whirls(FIG11, law)
+    state = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, FIG11.disc_speed - whirl.spin])
+    assert polar_rates(FIG11, law)(state) == pytest.approx(np.zeros(4), abs=1e-15)
 
 
 def test_a_whirl_with_real_eigenvalues_next_to_the_axis_is_refused():
-    disc = replace(DISC, friction_force=0.0206)  # just above the onset
+    disc = replace(FIG11, friction_force=0.0206)  # just above the onset
     (whirl,) = whirls(disc)
     with pytest.raises(ValueError, match="no pair is next to the imaginary axis"):
         growth_by_amplitude(disc, whirl.state)

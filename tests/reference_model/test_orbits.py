@@ -7,6 +7,7 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
+from compare.paper import FIG11
 from reference_model import PinOnDisc, last_whirl, simulate, whirl_orbit, whirls
 from reference_model import pin_formulas as formulas
 from reference_model.contact import ThreeTermRing
@@ -16,18 +17,7 @@ from reference_model.systems import DiscOnDisc
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
-FIG_11 = DiscOnDisc(
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
-MIRRORED = replace(FIG_11, disc_speed=-1.5, shaft_speed=-1.25)
+MIRRORED = replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)
 ROUNDING = 1e-12  # of an orbit at a tolerance of 1e-12 whose errors die out
 
 
@@ -199,7 +189,7 @@ def test_branch_goes_round_the_fold_in_steps_of_any_size(fold):
 # ---------------------------------------------------------------- the disc
 
 
-@pytest.mark.parametrize("disc", [FIG_11, replace(FIG_11, friction_force=0.08), MIRRORED], ids=str)
+@pytest.mark.parametrize("disc", [FIG11, replace(FIG11, friction_force=0.08), MIRRORED], ids=str)
 @pytest.mark.parametrize("law", [None, ThreeTermRing(0.12)], ids=["ring", "(23)"])
 def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame(disc, law):
     (whirl,) = whirls(disc, law)
@@ -215,12 +205,12 @@ def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame
 
 
 def test_the_approximation_23_makes_a_stable_whirl_of_one_that_is_not():
-    ring, approximate = whirls(FIG_11)[0], whirls(FIG_11, ThreeTermRing(0.12))[0]
+    ring, approximate = whirls(FIG11)[0], whirls(FIG11, ThreeTermRing(0.12))[0]
     assert (ring.stable, approximate.stable) == (False, True)
 
 
 def test_whirl_of_a_disc_with_an_offset_is_periodic_but_for_its_angle():
-    disc = replace(FIG_11, friction_force=0.08, offset=0.02)
+    disc = replace(FIG11, friction_force=0.08, offset=0.02)
     orbit = whirl_orbit(disc)
     assert orbit.residual <= 1e-12
     assert orbit.state[[1, 2]].tolist() == [0.0, 0.0]
@@ -266,12 +256,12 @@ def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
 @pytest.fixture(scope="module")
 def settled():
     """Fig. 11's disc from near the axis, after it has come to its modulated cycle."""
-    return simulate(FIG_11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
+    return simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
 
 
 @pytest.fixture(scope="module")
 def cycle(settled):
-    return modulated_cycle(FIG_11, settled)
+    return modulated_cycle(FIG11, settled)
 
 
 def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
@@ -280,7 +270,7 @@ def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
     assert (y, vx) == (0.0, 0.0)
     turns = 2.0
     start = np.array([*turned(complex(x, y), 0.4), 5.0, *turned(complex(vx, vy), 0.4), spin])
-    later = simulate(FIG_11, start, [0.0, turns * cycle.period], tolerance=1e-13).at_end
+    later = simulate(FIG11, start, [0.0, turns * cycle.period], tolerance=1e-13).at_end
     angle = 0.4 + turns * cycle.turn
     expected = [*turned(complex(x, y), angle), *turned(complex(vx, vy), angle), spin]
     assert later[[0, 1, 3, 4, 5]] == pytest.approx(expected, abs=1e-10)
@@ -289,7 +279,7 @@ def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
 
 
 def test_modulated_cycle_is_where_motions_end_from_inside_and_outside(cycle, settled):
-    outside = simulate(FIG_11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], np.linspace(0.0, 1200.0, 12001))
+    outside = simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], np.linspace(0.0, 1200.0, 12001))
     radius, spin = cycle.trajectory.radius, cycle.trajectory.states[:, 5]
     for trajectory in (settled, outside):
         late = trajectory.times > trajectory.times[-1] - 1.2 * cycle.period
@@ -297,7 +287,7 @@ def test_modulated_cycle_is_where_motions_end_from_inside_and_outside(cycle, set
         assert trajectory.radius[late].max() == pytest.approx(radius.max(), rel=1e-5)
         assert trajectory.radius[late].min() == pytest.approx(radius.min(), rel=1e-4)
         assert np.ptp(trajectory.states[late, 5]) == pytest.approx(np.ptp(spin), rel=1e-4)
-    assert radius.min() < 0.25 * whirls(FIG_11)[0].radius < whirls(FIG_11)[0].radius < 0.6 * radius.max()
+    assert radius.min() < 0.25 * whirls(FIG11)[0].radius < whirls(FIG11)[0].radius < 0.6 * radius.max()
 
 
 def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
@@ -306,7 +296,7 @@ def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
     assert abs(turn - 1.0) < 1e-5
     assert all(abs(other) < 0.01 for other in others)
     assert cycle.stable
-    assert cycle.carrier == pytest.approx(FIG_11.natural_frequency, rel=0.005)
+    assert cycle.carrier == pytest.approx(FIG11.natural_frequency, rel=0.005)
 
 
 def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
@@ -320,9 +310,9 @@ def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
 
 def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle):
     load = 0.02247
-    held = modulated_cycle(replace(FIG_11, friction_force=load), cycle, tolerance=1e-9, samples=64)
-    sought = modulated_cycle(FIG_11, cycle, at_crossing=float(held.state[0]), tolerance=1e-9, samples=64)
-    assert abs(load - FIG_11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
+    held = modulated_cycle(replace(FIG11, friction_force=load), cycle, tolerance=1e-9, samples=64)
+    sought = modulated_cycle(FIG11, cycle, at_crossing=float(held.state[0]), tolerance=1e-9, samples=64)
+    assert abs(load - FIG11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
     assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
     assert sought.period == pytest.approx(held.period, rel=1e-6)
 
@@ -331,7 +321,7 @@ def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle)
 
 
 def test_no_orbit_of_a_disc_on_single_points_is_sought(cycle):
-    six = replace(FIG_11, contact_points=6)
+    six = replace(FIG11, contact_points=6)
     for seek in (whirl_orbit, functools.partial(modulated_cycle, guess=cycle)):
         with pytest.raises(ValueError, match=r"contact_points = 6: periodic orbits"):
             seek(six)
@@ -339,18 +329,18 @@ def test_no_orbit_of_a_disc_on_single_points_is_sought(cycle):
 
 def test_no_modulated_cycle_is_sought_with_an_offset(cycle):
     with pytest.raises(ValueError, match=r"offset = 0\.01 m: a modulated cycle"):
-        modulated_cycle(replace(FIG_11, offset=0.01), cycle)
+        modulated_cycle(replace(FIG11, offset=0.01), cycle)
 
 
 @pytest.mark.parametrize("until", [1.0, 200.0])
 def test_a_guess_that_does_not_come_round_is_refused(until):
-    short = simulate(FIG_11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, until, 2001))
+    short = simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, until, 2001))
     with pytest.raises(ValueError, match=rf"does not come round by t = {until:g} s: no two of [01] maxima"):
-        modulated_cycle(FIG_11, short)
+        modulated_cycle(FIG11, short)
 
 
 def test_a_whirl_of_constant_radius_is_no_modulated_cycle():
-    steady = replace(FIG_11, friction_force=0.03)
+    steady = replace(FIG11, friction_force=0.03)
     spiral = simulate(steady, [0.052, 0.0, 0.0, 0.0, 0.05, 1.345], np.linspace(0.0, 300.0, 6001))
     with pytest.raises(
         (RuntimeError, ValueError), match=r"no modulated cycle near the guess|does not come round"
@@ -360,7 +350,7 @@ def test_a_whirl_of_constant_radius_is_no_modulated_cycle():
 
 def test_no_whirl_of_a_disc_is_sought_below_its_least_load():
     with pytest.raises(ValueError, match=r"friction_force = 0\.018 N: a whirl exists only above 0\.020"):
-        whirl_orbit(replace(FIG_11, friction_force=0.018))
+        whirl_orbit(replace(FIG11, friction_force=0.018))
 
 
 @pytest.mark.parametrize("load", [0.05, 0.078])

@@ -5,11 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from plain_disc import (
-    FIG_8,
-    FIG_11,
+from disc_equations import (
     LARGE,
     disc_in_units,
     eq_23,
@@ -18,8 +14,11 @@ from plain_disc import (
     rates,
     rates_in_turning_axes,
 )
+from hypothesis import given
+from hypothesis import strategies as st
 from plain_engines import in_units
 
+from compare.paper import FIG8, FIG11
 from reference_model import pin_formulas as formulas
 from reference_model.annulus import Annulus
 from reference_model.contact import Pin, Ring, ThreeTermRing
@@ -158,22 +157,22 @@ def test_jacobian_of_a_disc_on_another_contact_is_the_derivative_of_eq_23(state)
 
 
 def test_without_friction_a_disc_has_a_jacobian_at_rest_too():
-    jacobian = sliding_jacobian(replace(FIG_11, friction_force=0.0), [0.0, 0.0, 0.0, 0.0, 0.0, 1.5])
+    jacobian = sliding_jacobian(replace(FIG11, friction_force=0.0), [0.0, 0.0, 0.0, 0.0, 0.0, 1.5])
     assert jacobian[3:, 3:] == pytest.approx(-np.diag([0.5, 0.5, 0.015]), abs=1e-15)
 
 
 @pytest.mark.parametrize("contact_points", [None, 6])
 def test_stuck_disc_has_no_jacobian(contact_points):
     with pytest.raises(ValueError, match="at rest"):
-        sliding_jacobian(replace(FIG_11, contact_points=contact_points), [0.25, 0.0, 0.0, 0.0, 0.375, 1.5])
+        sliding_jacobian(replace(FIG11, contact_points=contact_points), [0.25, 0.0, 0.0, 0.0, 0.375, 1.5])
 
 
 @pytest.mark.parametrize(
     ("disc", "contact", "friction"),
     [
-        (FIG_11, None, points_on_ring(FIG_11, 4096)),
-        (mirrored(FIG_11), None, points_on_ring(mirrored(FIG_11), 4096)),
-        (FIG_11, ThreeTermRing(0.12), eq_23(FIG_11)),
+        (FIG11, None, points_on_ring(FIG11, 4096)),
+        (mirrored(FIG11), None, points_on_ring(mirrored(FIG11), 4096)),
+        (FIG11, ThreeTermRing(0.12), eq_23(FIG11)),
         (WHIRLING, ThreeTermRing(0.5), eq_23(WHIRLING)),
     ],
 )
@@ -194,23 +193,23 @@ def test_whirl_of_a_disc_is_a_fixed_point_of_the_turning_frame_and_has_the_jacob
 
 
 def test_whirl_does_not_depend_on_where_its_centre_starts():
-    (whirl,) = whirls(FIG_11)
+    (whirl,) = whirls(FIG11)
     opposite = whirl.state * [-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]
-    assert_same_eigenvalues(whirl_eigenvalues(FIG_11, opposite), whirl.eigenvalues)
+    assert_same_eigenvalues(whirl_eigenvalues(FIG11, opposite), whirl.eigenvalues)
 
 
 def test_states_that_are_none_of_a_steady_motion_are_refused():
     for function in (turning_frame_jacobian, whirl_eigenvalues):
         with pytest.raises(ValueError, match="state = None: a disc may have several whirls"):
-            function(FIG_11)
+            function(FIG11)
         with pytest.raises(ValueError, match=r"x = 0\.1 m, y = 0\.2 m"):
-            function(FIG_11, [0.1, 0.2, 0.0, 0.0, 0.1, 1.0])
+            function(FIG11, [0.1, 0.2, 0.0, 0.0, 0.1, 1.0])
         with pytest.raises(ValueError, match="contact_points = 6"):
-            function(replace(FIG_11, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.1, 1.0])
+            function(replace(FIG11, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.1, 1.0])
     with pytest.raises(ValueError, match="state = None"):
-        equilibrium_eigenvalues(FIG_8)
+        equilibrium_eigenvalues(FIG8)
     with pytest.raises(ValueError, match="contact_points = 6"):
-        equilibrium_eigenvalues(replace(FIG_8, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.0, 0.6])
+        equilibrium_eigenvalues(replace(FIG8, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.0, 0.6])
     with pytest.raises(ValueError, match="a pin touches in one point"):
         sliding_jacobian(FIG_5, [0.1, 0.0, 0.0, 0.0], Pin())
 
@@ -286,9 +285,9 @@ def test_eigenvalues_scale_with_the_unit_of_time_alone(mass, length, time):
 @pytest.mark.parametrize(
     ("motions", "disc"),
     [
-        (self_centred_equilibria, FIG_8),
+        (self_centred_equilibria, FIG8),
         (self_centred_equilibria, LARGE),
-        (whirls, FIG_11),
+        (whirls, FIG11),
         (whirls, WHIRLING),
     ],
 )
@@ -298,7 +297,7 @@ def test_eigenvalues_of_a_disc_scale_with_the_unit_of_time_alone(motions, disc):
     assert_same_eigenvalues(same.eigenvalues, np.array(motion.eigenvalues) / 0.2, tolerance=1e-10)
 
 
-@pytest.mark.parametrize("disc", [FIG_8, replace(FIG_8, disc_speed=-0.8), LARGE])
+@pytest.mark.parametrize("disc", [FIG8, replace(FIG8, disc_speed=-0.8), LARGE])
 def test_disc_that_does_not_spin_against_the_master_disc_has_the_eigenvalues_of_a_pin_and_one_of_the_spin(
     disc,
 ):
@@ -318,7 +317,7 @@ def test_disc_that_does_not_spin_against_the_master_disc_has_the_eigenvalues_of_
 # ---------------------------------------------------------------- the onset
 
 TURNING = [
-    replace(FIG_11, disc_speed=speed, shaft_speed=shaft)
+    replace(FIG11, disc_speed=speed, shaft_speed=shaft)
     for speed in (1.5, -1.5, 4.0)
     for shaft in (1.25, -1.25, 9.0)
 ]
@@ -347,11 +346,11 @@ def test_centred_rotation_loses_its_stability_at_the_onset_with_the_natural_freq
 
 def test_onset_on_the_ring_is_that_of_rotating_damping():
     """By hand: W = 0.12·0.25 − μN·0.0144/0.015 and μN·0.5/(2W) = 0.5 give μN = 0.03/1.46."""
-    assert onset_load(FIG_11) == pytest.approx(0.03 / 1.46, rel=1e-14)
+    assert onset_load(FIG11) == pytest.approx(0.03 / 1.46, rel=1e-14)
 
 
 def test_without_damping_any_friction_makes_a_fast_disc_unstable():
-    disc = replace(FIG_11, damping=0.0)
+    disc = replace(FIG11, damping=0.0)
     assert onset_load(disc) == 0.0
     assert not self_centred_equilibria(replace(disc, friction_force=1e-6))[0].stable
 
@@ -359,7 +358,7 @@ def test_without_damping_any_friction_makes_a_fast_disc_unstable():
 @pytest.mark.parametrize("speed", [0.0, 0.5, 1.0, -1.0])
 @pytest.mark.parametrize("share", [0.01, 0.5, 0.999])
 def test_centred_rotation_over_a_slow_master_disc_is_stable_at_every_load(speed, share):
-    disc = replace(FIG_11, disc_speed=speed, shaft_speed=speed - 0.25)
+    disc = replace(FIG11, disc_speed=speed, shaft_speed=speed - 0.25)
     with pytest.raises(ValueError, match=f"disc_speed = {speed:g} rad/s.*natural frequency 1 rad/s"):
         onset_load(disc)
     disc = replace(disc, friction_force=share * 0.015 * 0.25 / 0.12)  # of the load at which it sticks
@@ -377,7 +376,7 @@ def test_centred_rotation_over_a_slow_master_disc_is_stable_at_every_load(speed,
 )
 def test_onset_is_refused_where_there_is_none(changes, message):
     with pytest.raises(ValueError, match=message):
-        onset_load(replace(FIG_11, **changes))
+        onset_load(replace(FIG11, **changes))
 
 
 # ---------------------------------------------------------------- which equilibria exist

@@ -25,7 +25,7 @@ def forces_of_support(disc, z, v, spin):
 
 def slide_disc(disc, state, times, contact=None, **options):
     """States at ``times`` of pure slip."""
-    law = contact_of(disc) if contact is None else contact
+    law = contact_of(disc, contact)
 
     def rates(_, y):
         z, v = complex(y[0], y[1]), complex(y[3], y[4])

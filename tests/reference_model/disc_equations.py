@@ -4,14 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from compare.paper import FIG9
 from reference_model.systems import DiscOnDisc
 
-FIG_8 = DiscOnDisc(
-    mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=0.003, friction_force=0.05, disc_speed=0.8, offset=0.1,
-    contact_radius=0.12, shaft_damping=0.01, shaft_speed=0.5,
-)  # fmt: skip
-FIG_9 = replace(FIG_8, disc_speed=1.5, shaft_speed=1.25, offset=0.0)
-FIG_11 = replace(FIG_9, damping=0.5, friction_force=0.0225, shaft_damping=0.015)
+FIG_9 = replace(FIG9, offset=0.0)
 LARGE = DiscOnDisc(
     mass=2.3, polar_inertia=0.6, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15,
     contact_radius=0.5, shaft_damping=0.3, shaft_speed=-0.9,
