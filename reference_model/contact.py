@@ -131,7 +131,17 @@ class Pin(IsotropicContact):
 
 
 @dataclass(frozen=True)
-class Ring(IsotropicContact):
+class _OnCircle:
+    radius: float
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size."""
+        if finite_number("radius", self.radius) <= 0.0:
+            raise ValueError(f"radius = {self.radius:g} m: it must be > 0")
+
+
+@dataclass(frozen=True)
+class Ring(_OnCircle, IsotropicContact):
     """Contact on the whole circle of radius R (20), in closed form.
 
     With the mean slip speed P(U, W) on the circle, W = R·|S|, it is F = ∂P/∂U and M = R·∂P/∂W·sign(S): see
@@ -143,12 +153,6 @@ class Ring(IsotropicContact):
         R in m, > 0.
 
     """
-
-    radius: float
-
-    def __post_init__(self) -> None:
-        """Refuse a circle of no size."""
-        _require_radius("radius", self.radius)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         """As :meth:`IsotropicContact.shares`."""
@@ -170,7 +174,7 @@ class Ring(IsotropicContact):
 
 
 @dataclass(frozen=True)
-class ThreeTermRing(IsotropicContact):
+class ThreeTermRing(_OnCircle, IsotropicContact):
     """The paper's approximation (23) of the ring: three terms of the expansion (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α it is F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and
@@ -184,12 +188,6 @@ class ThreeTermRing(IsotropicContact):
         R in m, > 0.
 
     """
-
-    radius: float
-
-    def __post_init__(self) -> None:
-        """Refuse a circle of no size."""
-        _require_radius("radius", self.radius)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         """As :meth:`IsotropicContact.shares`."""
@@ -214,7 +212,7 @@ class ThreeTermRing(IsotropicContact):
 
 
 @dataclass(frozen=True)
-class PointsOnRing:
+class PointsOnRing(_OnCircle):
     """Contact in n points on a circle, each with 1/n of the load: the paper's own discretisation with n = 6.
 
     Point i is at φ + 2πi/n, so that the law keeps the angle.
@@ -228,12 +226,11 @@ class PointsOnRing:
 
     """
 
-    radius: float
     points: int
 
     def __post_init__(self) -> None:
         """Refuse a circle of no size and what is no number of points."""
-        _require_radius("radius", self.radius)
+        super().__post_init__()
         require_whole("points", self.points, least=3)
 
     @cached_property
@@ -316,8 +313,3 @@ def require_whole(name: str, value: int, *, least: int) -> None:
     """Raise ``ValueError`` naming ``value`` unless it is an integer of at least ``least``."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         raise ValueError(f"{name} = {value!r}: it must be a whole number >= {least}")
-
-
-def _require_radius(name: str, value: float) -> None:
-    if finite_number(name, value) <= 0.0:
-        raise ValueError(f"{name} = {value:g} m: it must be > 0")

@@ -135,7 +135,9 @@ def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, un
     if isinstance(contact, PointsOnRing):
         return PointsBody(run, motion, contact)
     if isinstance(contact, Pin):
-        raise ValueError(f"contact = {contact}: a disc that touches in one point never rests; take a PinOnDisc")
+        raise ValueError(
+            f"contact = {contact}: a disc that touches in one point never rests; take a PinOnDisc"
+        )
     return RingBody(run, motion, contact)
 
 
