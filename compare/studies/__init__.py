@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compare.engines import known
+from compare.studies.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.fig03_self_centring import STUDY as FIG03
 from compare.studies.fig04_whirl_shift import STUDY as FIG04
 from compare.studies.fig05_coexistence import STUDY as FIG05
 from compare.studies.fig06_branches import STUDY as FIG06
+from compare.studies.fig08_disc_spin import STUDY as FIG08
+from compare.studies.fig09_disc_branches import STUDY as FIG09
+from compare.studies.fig11_modulated_cycle import STUDY as FIG11
+from compare.studies.free_ring import STUDY as FREE_RING
 from compare.studies.power_balance import STUDY as POWER_BALANCE
+from compare.studies.stability_map import STUDY as STABILITY_MAP
 from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
 from compare.studies.whirl_stability import STUDY as WHIRL_STABILITY
 from compare.study import Study
@@ -20,8 +26,14 @@ STUDIES: tuple[Study, ...] = (
     FIG04,
     FIG05,
     FIG06,
+    FIG08,
+    FIG09,
+    FIG11,
     STICKING_DOMAIN,
     WHIRL_STABILITY,
+    CONTACT_LAWS,
+    STABILITY_MAP,
+    FREE_RING,
     POWER_BALANCE,
     ENGINE_CONVERGENCE,
 )
