@@ -1,6 +1,6 @@
 """What friction costs in Exudyn, and what a smaller regularisation costs and brings.
 
-Run as ``python benchmarks/exudyn_contact.py``; prints two tables. Figures of one run compare with each other: the
+Run as ``python benchmarks/exudyn_contact.py``; prints tables. Figures of one run compare with each other: the
 least of several repetitions, interleaved so that a busy machine hits all rows alike.
 """
 
@@ -9,18 +9,32 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface
+import numba
 import numpy as np
 
 import reference_model
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
-from exudyn_models.ring_friction import _force_on_rotor, ring_friction
-from reference_model.systems import PinOnDisc
+from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
+from exudyn_models.ring_friction import _force_on_rotor
+from reference_model.systems import DiscOnDisc, PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+DISC = DiscOnDisc(
+    mass=1.0,
+    polar_inertia=1.0,
+    stiffness=1.0,
+    damping=0.5,
+    friction_force=0.0225,
+    disc_speed=1.5,
+    contact_radius=0.12,
+    shaft_damping=0.015,
+    shaft_speed=1.25,
+)
 STEPS = 20_000
 EVALUATIONS_PER_STEP = 5  # four stages of RK44, and the acceleration at the end of the step
 REPETITIONS = 7
@@ -28,7 +42,7 @@ REPETITIONS = 7
 AddContact = Callable[[Any, Any, Any], None]
 
 
-def ours(radius: float, points: int) -> AddContact:
+def ours(radius: float, points: int | None) -> AddContact:
     """Add the connector as it is used."""
 
     def add(mbs: Any, master: Any, disc: Any) -> None:
@@ -60,7 +74,7 @@ def with_force(force: Callable[..., list[float]]) -> AddContact:
 
 def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
     """Add the connector with its force evaluated by a given kernel."""
-    contact = (radius, points, PIN.friction_force, 1e-6)
+    contact = (radius, points, PIN.friction_force, 1e-6, NONE_HELD)
     return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, contact))
 
 
@@ -75,16 +89,46 @@ CONTACTS: dict[str, AddContact | None] = {
     "pin, connector as used": ours(0.0, 1),
     "pin, numba": kernel(ring_friction, 0.0, 1),
     "six points, connector as used": ours(0.12, 6),
-    "six points, plain Python": kernel(ring_friction.py_func, 0.12, 6),
     "24 points, connector as used": ours(0.12, 24),
+    "continuous ring, connector as used": ours(0.12, None),
 }
+
+
+@numba.njit
+def evaluations_in_a_loop(count: int, contact: Contact, fastest: float) -> float:
+    """Evaluate force and moment ``count`` times, with slip speeds of the centre up to ``fastest`` (m/s)."""
+    total = 0.0
+    for i in range(count):
+        fx, _, moment, _ = ring_friction(
+            0.0, 0.0, 0.3, fastest * (i % 1000) / 1000.0, 0.001, 0.0, 0.2, contact
+        )
+        total += fx + moment
+    return total
+
+
+def cost_of_kernels() -> None:
+    """Print the time of one evaluation of the compiled law, without Exudyn and without a call from Python."""
+    count = 5_000
+    print(f"{'compiled law, force and moment':<42}{'ns/evaluation':>15}")
+    for name, radius, points in (
+        ("pin", 0.0, 1),
+        ("six points", 0.12, 6),
+        ("24 points", 0.12, 24),
+        ("continuous ring", 0.12, CONTINUOUS),
+    ):
+        contact = (radius, points, PIN.friction_force, 1e-7, NONE_HELD)
+        for where, fastest in (("around U = W", 0.048), ("U up to 20 W", 0.48)):
+            best = math.inf
+            for _ in range(200):
+                began = time.perf_counter()
+                evaluations_in_a_loop(count, contact, fastest)
+                best = min(best, time.perf_counter() - began)
+            print(f"{name + ', ' + where:<42}{best / count * 1e9:>15.1f}")
 
 
 def seconds(add_contact: AddContact | None) -> float:
     """Return the time that ``STEPS`` steps of RK44 take."""
-    without = PinOnDisc(
-        **{name: getattr(PIN, name) for name in PIN.__dataclass_fields__} | {"friction_force": 0}
-    )
+    without = replace(PIN, friction_force=0.0)
     model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
     if add_contact is not None:
         add_contact(model.mbs, exu.NodeIndex(0), exu.NodeIndex(1))
@@ -109,7 +153,7 @@ def cost_of_contacts() -> None:
         for name, contact in CONTACTS.items():
             best[name] = min(best[name], seconds(contact))
     bare = best["no friction, native springs only"]
-    print(f"{'RK44, fixed step':<42}{'us/step':>9}{'ratio':>8}{'ns/evaluation of the contact':>30}")
+    print(f"\n{'RK44, fixed step':<42}{'us/step':>9}{'ratio':>8}{'ns/evaluation of the contact':>30}")
     for name, value in best.items():
         extra = (value - bare) / STEPS / EVALUATIONS_PER_STEP * 1e9
         print(f"{name:<42}{value / STEPS * 1e6:>9.2f}{value / bare:>8.2f}{extra:>30.0f}")
@@ -135,7 +179,25 @@ def choice_of_regularisation() -> None:
         )
 
 
+def slip_of_discs() -> None:
+    """Print error and cost of Fig. 11's disc to t = 100 s, the ground for DOPRI5's tolerance."""
+    print(f"\n{'disc, t = 100 s':<18}{'tolerance':>10}{'evaluations':>13}{'s':>7}{'error at the end':>18}")
+    for points in (None, 6):
+        disc = replace(DISC, contact_points=points)
+        start, times = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3], [0.0, 100.0]
+        exact = reference_model.simulate(disc, start, times, tolerance=1e-13)
+        for tolerance in (1e-6, 1e-8, 1e-9, 1e-10):
+            found = simulate(disc, start, times, tolerance=tolerance)
+            name = "continuous ring" if points is None else f"{points} points"
+            print(
+                f"{name:<18}{tolerance:>10.0e}{found.solution.evaluations:>13,}"
+                f"{found.solution.wall_time:>7.2f}{np.abs(found.at_end - exact.at_end).max():>18.1e}"
+            )
+
+
 if __name__ == "__main__":
     exu.config.printToConsole = False
+    cost_of_kernels()
     cost_of_contacts()
     choice_of_regularisation()
+    slip_of_discs()

@@ -8,10 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compare.paper import CENTRED, FIG8
+from compare.engines import reference
+from compare.paper import CENTRED, FIG8, FIG9
+from compare.studies.common import measured_eigenvalues
 from reference_model import whirl_orbit
 from reference_model.contact import ThreeTermRing
-from reference_model.disc_formulas import inverse_slip_speed, inverse_slip_speed_as_printed, places_by_26
+from reference_model.disc_formulas import (
+    inverse_slip_speed,
+    inverse_slip_speed_as_printed,
+    pin_of,
+    places_by_26,
+)
 from reference_model.pin_formulas import (
     characteristic_coefficients,
     characteristic_coefficients_as_printed,
@@ -19,6 +26,7 @@ from reference_model.pin_formulas import (
     variational_matrix,
     whirl_shift,
 )
+from reference_model.stability import equilibrium_eigenvalues
 from reference_model.steady_states import self_centred_equilibria
 
 
@@ -138,6 +146,19 @@ def _spin_of_the_self_centred_disc() -> Evidence:
     )
 
 
+def _growth_beside_the_equilibrium() -> Evidence:
+    """Return how fast the slowest deviation from the self-centred equilibrium of Fig. 9's disc grows."""
+    (equilibrium,) = self_centred_equilibria(FIG9)
+    simulated, _ = measured_eigenvalues(reference, FIG9, equilibrium.state, duration=1.0)
+    return Evidence(
+        f"growth rate in 1/s of the slowest deviation from the self-centred equilibrium of Fig. 9's disc at μN = "
+        f"{FIG9.friction_force:g} N, X0 = {FIG9.offset:g} m; exact: from simulated deviations; printed: of a pin",
+        exact=float(np.max(simulated.real)),
+        printed_value=equilibrium_eigenvalues(pin_of(FIG9))[0].real,
+        corrected_value=equilibrium.eigenvalues[0].real,
+    )
+
+
 ERRATA: tuple[Erratum, ...] = (
     Erratum(
         '(11), "always exists"',
@@ -183,5 +204,14 @@ ERRATA: tuple[Erratum, ...] = (
         "C²A²cos²α + F² = C²X0². The δ and θ lines of (26) are right as printed.",
         evidence=_spin_of_the_self_centred_disc,
     ),
+    Erratum(
+        'Section 5, "still remains stable"',
+        printed="the self-centred equilibrium of the disc is stable at high speeds too",
+        correct="for ω > k only up to a load: 0.0210 N at Fig. 9's parameters with X0 = 0.1 m",
+        explanation="Friction on a ring grows with the slip of the centre along its direction, by μN·∂F/∂U > 0, "
+        "which for a pin is zero. That couples the radial motion back to the tangential one, and beyond the natural "
+        "frequency it feeds a circular motion, as on the axis, where the rotation loses its stability.",
+        evidence=_growth_beside_the_equilibrium,
+    ),
 )
-"""In the order of the equations."""
+"""In the order of the paper."""

@@ -55,6 +55,27 @@ def creep_ratio_rates(
     return np.asarray([growths.mean() / epsilon, *(growths / delta)])
 
 
+def load_ratios(system: System, states: FloatArray, accelerations: FloatArray, epsilon: float) -> FloatArray:
+    """Return the load on friction over what it can take, shape (n,), for a system that creeps as a whole.
+
+    It is the load at rest. The viscous friction of the creep, P/ε of the limit, lacks what changes the creep and what
+    damps it. Along the slip (u, φ̇ − ω), which is normal to the limit surface, that is the power that goes into both
+    over μN·P.
+    """
+    if system.friction_force == 0.0:
+        return np.full(len(states), np.inf)
+    omega, size = system.disc_speed, accelerations.shape[1]
+    z, v, a = (array[:, 0] + 1j * array[:, 1] for array in (states, states[:, size:], accelerations))
+    slip, rate = v - 1j * omega * z, a - 1j * omega * v
+    power = (slip.conjugate() * (system.mass * rate + system.damping * slip)).real
+    if isinstance(system, DiscOnDisc):
+        spin = states[:, 5] - omega
+        power = power + spin * (system.polar_inertia * accelerations[:, 2] + system.shaft_damping * spin)
+    ratios = creep_ratios(system, states, epsilon)[:, WHOLE]
+    limit = system.friction_force * epsilon * np.where(ratios > 0.0, ratios, 1.0)
+    return np.asarray(ratios + power / limit)
+
+
 def creeping(system: System, state: list[float], epsilon: float) -> int | None:
     """Return the column of ``creep_ratios`` that is below 1, or None; of several, ``WHOLE``."""
     size = len(state) // 2

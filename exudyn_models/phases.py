@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios
+from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios, load_ratios
 from exudyn_models.dense_output import states_at
 from exudyn_models.scales import settling_time
 from exudyn_models.solving import Steps
@@ -24,26 +24,43 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
     """Return the phases from the first to the last step, without gaps.
 
     Under the regularised law what sticks creeps, with less than ε as long as Coulomb friction can hold it. While the
-    contact creeps as a whole, the system sticks; while one of several points does, the disc pivots about it. Creep
-    that ends before it has settled is none: at release the slip speed stays near ε for a while and may pass it
-    several times by the errors of single steps.
+    contact creeps as a whole, the system sticks; while one of several points does, the disc pivots about it.
+    It does not where friction can't hold the load, which is slip that passes through zero; where a point's creep ends
+    before it has settled; and after a release until the slip speed has reached 2ε, because it stays near ε for a
+    while and may pass it several times by the errors of single steps.
 
     A phase *starts* where the slip speed, which falls linearly until it is ε, would be zero if it went on falling
-    like that. It *ends* where the slip speed reaches ε. Both times have errors of first order in ε.
+    like that. Sticking *ends* where the load reaches what friction can hold, and a pivot where the slip speed of the
+    point reaches its δ. All these times have errors of first order in ε.
     """
     ratios = creep_ratios(system, steps.states, regularisation)
     below = ratios < 1.0
     creeping = np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
+    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
+    settling = settling_time(system, regularisation)
+    released = 0
     for first, beyond in _runs(creeping):
-        end = steps.times[min(beyond, len(creeping) - 1)]
-        if end - steps.times[first] <= settling_time(system, regularisation):
+        if creeping[first] == NOTHING:
+            continue
+        settled = steps.times[min(beyond, len(creeping) - 1)] - steps.times[first] > settling
+        if creeping[first] == WHOLE:
+            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
+            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
+        else:
+            kept = settled
+        if kept:
+            released = beyond
+        else:
             creeping[first:beyond] = NOTHING
     last = float(steps.times[-1])
-    changes = [first for first, _ in _runs(creeping)][1:]
+    runs_before = {beyond: first for first, beyond in _runs(creeping)[:-1]}
+    changes = list(runs_before)
     times = [float(steps.times[0])]
     for i in changes:
         before, after = creeping[i - 1], creeping[i]
-        if after == NOTHING or (before == WHOLE):
+        if before == WHOLE:
+            time = _release(steps.times, load - 1.0, runs_before[i], i)
+        elif after == NOTHING:
             time = _crossing(steps.times, ratios[:, before] - 1.0, i - 1)
         else:
             time = _time_of_rest(system, steps, ratios[:, after], after, i - 1, regularisation)
@@ -83,6 +100,24 @@ def _time_of_rest(
     rates = creep_ratio_rates(system, steps.states[left], steps.accelerations[left], regularisation)
     falls = rates[part] < 0.0 and ratio[left] > ratio[left + 1]
     return float(start - ratio[left] / rates[part]) if falls else float(end)
+
+
+def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
+    """Return whether friction is able to hold a system that creeps, by all steps but those of perfect rest.
+
+    On the way through zero the load is first against the slip, then along it; either way it is that which counts
+    together with the friction.
+    """
+    moving = ratio > 0.0
+    if not np.any(moving):
+        return len(load) > 1
+    return bool(np.any((ratio + np.abs(load - ratio))[moving] < 1.0))
+
+
+def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
+    """Return the time at which ``excess`` of load passes zero for the last time between two steps."""
+    held = np.flatnonzero(excess[first:beyond] < 0.0)
+    return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
 
 
 def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:

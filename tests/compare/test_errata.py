@@ -9,7 +9,7 @@ import pytest
 
 from compare import errata
 from compare.errata import ERRATA
-from compare.paper import CENTRED, FIG8
+from compare.paper import CENTRED, FIG8, FIG9
 from reference_model import whirl_orbit
 from reference_model.contact import ThreeTermRing
 from reference_model.disc_formulas import places_by_26
@@ -19,7 +19,7 @@ from reference_model.steady_states import self_centred_equilibria
 ROUNDING = 1e-14
 """A few dozen operations on numbers of the order one, each good to 1.1e-16."""
 
-ALWAYS_EXISTS, COEFFICIENT, SHIFT, EXPANSION, BRACKET = ERRATA
+ALWAYS_EXISTS, COEFFICIENT, SHIFT, EXPANSION, BRACKET, STABLE = ERRATA
 
 THIRD_ORDER = 30.0 * 1e-3**2
 """Of (18), relative: (w·X0/ρ)², w = ω/(ω − k) = 6, ρ = 1.2 m, is 25·X0²; X0 = 1 mm."""
@@ -30,6 +30,7 @@ TOLERANCES = {
     SHIFT: THIRD_ORDER,
     EXPANSION: ROUNDING,
     BRACKET: 100.0 * ROUNDING,  # a root of one variable each
+    STABLE: 1e-7,  # of differences of the flow with relative steps of 4e-3, extrapolated twice
 }
 
 
@@ -38,8 +39,9 @@ def evidence_of(erratum):
     return erratum.evidence()
 
 
-def test_the_errata_are_in_the_order_of_the_equations():
-    assert [erratum.equation.split(",")[0] for erratum in ERRATA] == ["(11)", "(13)", "(18)", "(22)", "(26)"]
+def test_the_errata_are_in_the_order_of_the_paper():
+    places = [erratum.equation.split(",")[0] for erratum in ERRATA]
+    assert places == ["(11)", "(13)", "(18)", "(22)", "(26)", "Section 5"]
 
 
 @pytest.mark.parametrize("erratum", ERRATA, ids=lambda erratum: erratum.equation)
@@ -105,6 +107,22 @@ def test_the_printed_22_gives_a_moment_that_does_not_depend_on_the_slip_of_the_c
     evidence = evidence_of(EXPANSION)
     assert evidence.exact == pytest.approx(0.9375 / math.sqrt(2.0), rel=ROUNDING)
     assert evidence.printed_value == pytest.approx(1.0, rel=ROUNDING)
+
+
+def test_deviations_from_the_equilibrium_of_the_disc_grow_and_those_of_the_pin_do_not():
+    evidence = evidence_of(STABLE)
+    assert evidence.exact > 1e-3
+    # By hand for a pin: mλ² + βλ + C, with β = 0.003.
+    assert evidence.printed_value == pytest.approx(-0.0015, rel=ROUNDING)
+
+
+def test_the_load_of_the_erratum_is_the_one_at_which_the_equilibrium_loses_its_stability():
+    growth = [
+        self_centred_equilibria(replace(FIG9, friction_force=load))[0].eigenvalues[0].real
+        for load in (0.02095, 0.02105)
+    ]
+    assert growth[0] < 0.0 < growth[1]
+    assert "0.0210 N" in STABLE.correct
 
 
 def test_the_exact_spin_balances_the_equations_of_motion_with_23():
