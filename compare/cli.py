@@ -347,7 +347,7 @@ def errata() -> None:
     for erratum in ERRATA:
         evidence = erratum.evidence()
         nearest = abs(evidence.corrected_value - evidence.exact)
-        print(erratum.equation if erratum.equation[0] != "(" else f"Equation {erratum.equation}")
+        print(erratum.heading)
         print(f"  printed    {erratum.printed}")
         print(f"  correct    {erratum.correct}")
         print(f"  {erratum.explanation}")

@@ -58,7 +58,7 @@ class Erratum:
     Parameters
     ----------
     equation : str
-        Number and place: "(13), coefficient of λ²".
+        Number and place: "(13), coefficient of λ²"; or a section and its words.
     printed, correct : str
         Both formulas as plain text.
     explanation : str
@@ -73,6 +73,11 @@ class Erratum:
     correct: str
     explanation: str
     evidence: Callable[[], Evidence]
+
+    @property
+    def heading(self) -> str:
+        """The place as a heading: "Equation (13), coefficient of λ²"."""
+        return f"Equation {self.equation}" if self.equation.startswith("(") else self.equation
 
 
 def _characteristic_coefficient() -> Evidence:

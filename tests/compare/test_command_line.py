@@ -61,7 +61,7 @@ def test_errata_prints_both_forms_and_both_errors(capsys):
     assert cli.status(["errata"]) == 0
     out = capsys.readouterr().out
     for erratum in ERRATA:
-        assert f"Equation {erratum.equation}\n  printed    {erratum.printed}\n" in out
+        assert f"{erratum.heading}\n  printed    {erratum.printed}\n" in out
     assert out.count(", error ") == 2 * len(ERRATA)
 
 
