@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compare.engines import known
+from compare.studies.connector import STUDY as CONNECTOR
 from compare.studies.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.fig03_self_centring import STUDY as FIG03
@@ -26,15 +27,16 @@ STUDIES: tuple[Study, ...] = (
     FIG04,
     FIG05,
     FIG06,
+    STICKING_DOMAIN,
+    WHIRL_STABILITY,
     FIG08,
     FIG09,
     FIG11,
-    STICKING_DOMAIN,
-    WHIRL_STABILITY,
-    CONTACT_LAWS,
     STABILITY_MAP,
+    CONTACT_LAWS,
     FREE_RING,
     POWER_BALANCE,
+    CONNECTOR,
     ENGINE_CONVERGENCE,
 )
 
