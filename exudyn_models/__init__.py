@@ -1,4 +1,9 @@
-"""The paper's systems as multibody models in Exudyn."""
+"""The paper's systems as multibody models in Exudyn.
+
+For models of your own: ``ring_friction`` with ``friction_laws``, and ``native_contact``. The paper's systems:
+``pin_on_disc`` and ``disc_on_disc`` on a ``supported_body``, chosen by ``models``. ``simulate`` goes through turns of
+``slip_and_creep`` and reads ``phases`` from the motion; ``linearisation`` gives eigenvalues.
+"""
 
 from exudyn_models.disc_on_disc import build_disc_on_disc
 from exudyn_models.linearisation import eigenvalues

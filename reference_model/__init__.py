@@ -1,4 +1,17 @@
-"""The radial dynamics of friction discs in plain NumPy and SciPy, with exact Coulomb friction."""
+"""The radial dynamics of friction discs in plain NumPy and SciPy, with exact Coulomb friction.
+
+Where to find what:
+
+- parameters and results: ``systems``, ``trajectory``;
+- laws of friction: ``contact`` with ``ring_integrals``, ``annulus``;
+- the paper's closed forms: ``pin_formulas``, ``disc_formulas``;
+- simulation: ``integrate``, which goes through ``phases`` of ``slip`` and ``sticking`` by the equations of motion of
+  ``pin`` and ``disc``; ``points`` with ``pivot`` and ``limit_surface`` for discs on single points, ``growth`` for how
+  slip begins, ``units`` and ``stepping`` below;
+- steady motions: ``steady_states`` with ``disc_balance`` and ``zeros``; ``orbits`` by shooting;
+- stability: ``stability``, ``characteristic``, ``modulation``; ``boundaries`` by ``continuation``;
+- a check of any engine: ``power``.
+"""
 
 from reference_model.annulus import Annulus
 from reference_model.contact import PointsOnRing, Ring, ThreeTermRing
