@@ -18,23 +18,11 @@ import numba
 import numpy as np
 
 import reference_model
+from compare.paper import FIG5, FIG11
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.ring_friction import _force_on_rotor
-from reference_model.systems import DiscOnDisc, PinOnDisc
 
-PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
-DISC = DiscOnDisc(
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
 STEPS = 20_000
 EVALUATIONS_PER_STEP = 5  # four stages of RK44, and the acceleration at the end of the step
 REPETITIONS = 7
@@ -50,7 +38,7 @@ def ours(radius: float, points: int | None) -> AddContact:
             mbs,
             master,
             disc,
-            friction_force=PIN.friction_force,
+            friction_force=FIG5.friction_force,
             regularisation=1e-6,
             contact_radius=radius,
             contact_points=points,
@@ -74,7 +62,7 @@ def with_force(force: Callable[..., list[float]]) -> AddContact:
 
 def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
     """Add the connector with its force evaluated by a given kernel."""
-    contact = (radius, points, PIN.friction_force, 1e-6, NONE_HELD)
+    contact = (radius, points, FIG5.friction_force, 1e-6, NONE_HELD)
     return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, contact))
 
 
@@ -116,7 +104,7 @@ def cost_of_kernels() -> None:
         ("24 points", 0.12, 24),
         ("continuous ring", 0.12, CONTINUOUS),
     ):
-        contact = (radius, points, PIN.friction_force, 1e-7, NONE_HELD)
+        contact = (radius, points, FIG5.friction_force, 1e-7, NONE_HELD)
         for where, fastest in (("around U = W", 0.048), ("U up to 20 W", 0.48)):
             best = math.inf
             for _ in range(200):
@@ -128,7 +116,7 @@ def cost_of_kernels() -> None:
 
 def seconds(add_contact: AddContact | None) -> float:
     """Return the time that ``STEPS`` steps of RK44 take."""
-    without = replace(PIN, friction_force=0.0)
+    without = replace(FIG5, friction_force=0.0)
     model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
     if add_contact is not None:
         add_contact(model.mbs, exu.NodeIndex(0), exu.NodeIndex(1))
@@ -162,14 +150,14 @@ def cost_of_contacts() -> None:
 def choice_of_regularisation() -> None:
     """Print error and cost of Fig. 5's second run over ε, the ground for ε = 100·tolerance."""
     start, times = [0.1, 0.0, 0.03, 0.0], [0.0, 400.0]
-    exact = reference_model.simulate(PIN, start, times, tolerance=1e-11)
+    exact = reference_model.simulate(FIG5, start, times, tolerance=1e-11)
     events = np.array([(phase.start, phase.end) for phase in exact.stick_phases])
     print(
         f"\n{'ε in m/s':>9}{'evaluations':>13}{'s':>7}{'state at 400 s':>16}{'/ε':>7}"
         f"{'1st stick':>11}{'1st release':>13}{'worst event':>13}{'/ε':>7}"
     )
     for epsilon in (1e-5, 1e-6, 1e-7, 1e-8):
-        found = simulate(PIN, start, times, regularisation=epsilon)
+        found = simulate(FIG5, start, times, regularisation=epsilon)
         error = np.abs(found.at_end - exact.at_end).max()
         late = np.abs(np.array([(phase.start, phase.end) for phase in found.stick_phases]) - events)
         print(
@@ -183,7 +171,7 @@ def slip_of_discs() -> None:
     """Print error and cost of Fig. 11's disc to t = 100 s, the ground for DOPRI5's tolerance."""
     print(f"\n{'disc, t = 100 s':<18}{'tolerance':>10}{'evaluations':>13}{'s':>7}{'error at the end':>18}")
     for points in (None, 6):
-        disc = replace(DISC, contact_points=points)
+        disc = replace(FIG11, contact_points=points)
         start, times = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3], [0.0, 100.0]
         exact = reference_model.simulate(disc, start, times, tolerance=1e-13)
         for tolerance in (1e-6, 1e-8, 1e-9, 1e-10):

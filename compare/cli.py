@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
+MOST_SAMPLES, MOST_JOBS = 10_000_000, 1000
+"""More would fill the memory of a machine, or its table of processes."""
+
 app = typer.Typer(
     name="friction-discs",
     add_completion=False,
@@ -57,6 +60,8 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
     ``studies`` takes the place of the paper's own, for a project that brings its own studies and engines.
     """
+    if sys.stdout is None:  # closed by the caller
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 
@@ -66,14 +71,23 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
     usage_error: type[Exception] = typer.BadParameter.__mro__[1]
     try:
         result = app(list(arguments), standalone_mode=False, obj=studies, prog_name="friction-discs")
+        sys.stdout.flush()
     except (BadInputError, usage_error) as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
         return _say(" ".join(message.split()), BAD_INPUT)
     except EngineFailedError as error:
         return _say(str(error), SOMETHING_DIFFERS)
+    except OSError as error:
+        _close_output()
+        return _say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
         return _say("Interrupted.", INTERRUPTED)
     return result if isinstance(result, int) else FINE
+
+
+def _close_output() -> None:
+    """Leave nothing behind that would be written once more, and fail again, at the end of the process."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _say(sentence: str, result: int) -> int:
@@ -162,7 +176,7 @@ def report(
     studies = _studies(context, names or [])
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
-        processes = _cores() if jobs is None else _count("jobs", jobs, least=1)
+        processes = _cores() if jobs is None else _count("jobs", jobs, 1, MOST_JOBS)
         _check_folder(output)
 
     from compare.errata import ERRATA
@@ -306,6 +320,7 @@ def _simulate(
     from compare.engines import UnsupportedSystemError, engines
     from compare.export import write_csv, writer
     from reference_model.systems import checked_state, checked_tolerance, finite_number
+    from reference_model.trajectory import Trajectory
 
     with refused():
         (chosen,) = engines([engine])
@@ -314,23 +329,42 @@ def _simulate(
             raise UnsupportedSystemError(missing)
         state = checked_state(system, [finite_number("start", value) for value in start])
         accuracy = checked_tolerance(finite_number("tolerance", tolerance))
-        times = np.linspace(0.0, _positive("until", until, "s"), _count("samples", samples, least=2))
+        times = np.linspace(0.0, _positive("until", until, "s"), _count("samples", samples, 2, MOST_SAMPLES))
         write = write_csv if output is None else writer(output)
         if output is not None:
             _check_file(output)
     try:
         trajectory = chosen.simulate(system, state, times, tolerance=accuracy)
-    except (RuntimeError, ArithmeticError) as error:
-        raise EngineFailedError(str(error)) from error
+        if not isinstance(trajectory, Trajectory):
+            raise TypeError(f"simulate() returned {trajectory!r}: it must be a Trajectory")
+    except Exception as error:  # whatever an engine raises
+        raise EngineFailedError(_failed(chosen.name, error)) from error
     if output is None:
         try:
             write(trajectory, chosen.name, sys.stdout)
             sys.stdout.flush()
         except BrokenPipeError:  # the reader, "head" for instance, has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _close_output()
         return
-    with open(output, "w", encoding="utf-8", newline="\n") as stream:
-        write(trajectory, chosen.name, stream)
+    try:
+        with open(output, "w", encoding="utf-8", newline="\n") as stream:
+            write(trajectory, chosen.name, stream)
+    except OSError as error:
+        raise BadInputError(_unwritable(output, error)) from None
+
+
+def _failed(engine: str, error: Exception) -> str:
+    """Return what an engine raised: a sentence of its own, or which exception and where in its code."""
+    from compare.workers import failure
+
+    if isinstance(error, RuntimeError | ValueError) and str(error):
+        return str(error)
+    failed = failure(error)
+    return f"engine {engine!r} failed: {failed.reason} ({failed.where[-1]})"
+
+
+def _unwritable(path: Path, error: OSError) -> str:
+    return f"can't write the file {str(path)!r}: {error.strerror}"
 
 
 @app.command()
@@ -392,14 +426,14 @@ def _positive(name: str, text: str, unit: str) -> float:
     return value
 
 
-def _count(name: str, text: str, *, least: int) -> int:
-    """Return the whole number >= ``least`` that ``text`` says; raise ``ValueError`` otherwise."""
+def _count(name: str, text: str, least: int, most: int) -> int:
+    """Return the whole number from ``least`` to ``most`` that ``text`` says; raise ``ValueError`` otherwise."""
     try:
         value = int(text)
     except ValueError:
         raise ValueError(f"{name} = {text!r}: it must be a whole number") from None
-    if value < least:
-        raise ValueError(f"{name} = {value}: it must be at least {least}")
+    if not least <= value <= most:
+        raise ValueError(f"{name} = {value}: it must lie between {least} and {most}")
     return value
 
 
@@ -420,7 +454,7 @@ def _check_file(path: Path) -> None:
         with open(path, "ab"):
             pass
     except OSError as error:
-        raise ValueError(f"can't write the file {str(path)!r}: {error.strerror}") from None
+        raise ValueError(_unwritable(path, error)) from None
     if not existed:
         with suppress(OSError):
             path.unlink()

@@ -137,8 +137,9 @@ def imported(name: str) -> Engine:
         sys.path.insert(0, os.getcwd())
     try:
         simulate = getattr(importlib.import_module(module_name), function_name)
-    except (ImportError, AttributeError, ValueError) as error:
-        raise ValueError(f"engine {name!r} can't be imported: {error}") from None
+    except Exception as error:  # whatever a module may do when it is imported
+        kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
+        raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
     if not callable(simulate):
         raise ValueError(f"engine {name!r} is no function")
     kinds = getattr(simulate, "kinds", ("pin",))

@@ -62,6 +62,11 @@ class Study:
         Names of the engines that the study is about; empty for all.
     animations : callable, optional
         ``animations(data) -> {name: GIF}``, ``data`` as in ``draw``; see ``compare.report.animation``.
+    section : str
+        Heading under which the overview lists the study, with its neighbours of the same section.
+    finding : str
+        What the paper leaves open and the study answers, in a sentence or two for the first screen; shown
+        while all claims of the study agree.
     seconds : float
         About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
 
@@ -78,4 +83,6 @@ class Study:
     figures: Mapping[str, str] = field(default_factory=dict)
     only: tuple[str, ...] = ()
     animations: Callable[[Mapping[str, Data]], dict[str, bytes]] | None = None
+    section: str = ""
+    finding: str = ""
     seconds: float = 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from typing import Literal
 
 from numpy.typing import ArrayLike
@@ -99,14 +100,16 @@ def simulate(
     if solver not in ("explicit", "implicit"):
         raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
     began = time.perf_counter()
-    start, end = float(grid[0]), float(grid[-1])
-    scale = time_scale(system, state, end - start)
+    span = float(
+        grid[-1] - grid[0]
+    )  # Exudyn counts from 0: it takes no negative times, and large ones cost digits
+    scale = time_scale(system, state, span)
     if solver == "explicit":
         method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
         step = LARGEST_STEP * tolerance**0.2 * scale
         relative = DISC_STEP_TOLERANCE if isinstance(system, DiscOnDisc) else STEP_TOLERANCE
         local = max(relative * tolerance, SMALLEST_STEP_TOLERANCE) * motion_scale(system, state)
-        local = max(local, 2.0 * angle_rounding(system, state, end - start))  # the same for large angles
+        local = max(local, 2.0 * angle_rounding(system, state, span))  # the same for large angles
     else:
         method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"
         step = 100.0 * math.sqrt(tolerance) * scale
@@ -114,8 +117,7 @@ def simulate(
     steps = solve_in_turns(
         system,
         state,
-        start,
-        end,
+        span,
         epsilon,
         integrator=integrator,
         step=step,
@@ -150,9 +152,8 @@ def simulate_fixed_step(
         raise ValueError(f"integrator = {integrator!r}: it must be one of {', '.join(FIXED_STEP)}")
     began = time.perf_counter()
     model = build(system, state, regularisation=epsilon)
-    start, end = float(grid[0]), float(grid[-1])
     newton = NEWTON_TOLERANCE * force_scale(system, state)
-    steps = solve(model, start, end, integrator=integrator, step=step, tolerance=newton)
+    steps = solve(model, 0.0, float(grid[-1] - grid[0]), integrator=integrator, step=step, tolerance=newton)
     return _trajectory(
         system, grid, steps, f"Exudyn {integrator}, step {step:.3g} s", math.nan, epsilon, began
     )
@@ -171,8 +172,12 @@ def _trajectory(
     epsilon: float,
     began: float,
 ) -> Trajectory:
-    states = states_at(steps, times)
-    found = phases(system, steps, epsilon)
+    counted = phases(system, steps, epsilon)  # from 0 on
+    starts = [float(times[0]) + phase.start for phase in counted]
+    found = tuple(
+        replace(phase, start=start, end=end)
+        for phase, start, end in zip(counted, starts, [*starts[1:], float(times[-1])], strict=True)
+    )
     solution = Solution(
         method=method,
         tolerance=tolerance,
@@ -181,4 +186,4 @@ def _trajectory(
         wall_time=time.perf_counter() - began,
         regularisation=epsilon,
     )
-    return Trajectory(system, times, states, found, solution)
+    return Trajectory(system, times, states_at(steps, times - times[0]), found, solution)

@@ -53,8 +53,7 @@ RING_FRICTION = Friction(add_ring_friction, creeping)
 def solve_in_turns(
     system: System,
     state: FloatArray,
-    start: float,
-    end: float,
+    span: float,
     epsilon: float,
     *,
     integrator: str,
@@ -62,7 +61,7 @@ def solve_in_turns(
     tolerance: float,
     friction: Friction,
 ) -> Steps:
-    """Solve with ``integrator`` where the contact slips, and with generalised-α where some of it creeps.
+    """Solve for ``span`` s with ``integrator`` where the contact slips, generalised-α where some of it creeps.
 
     There an explicit method would need steps of 3·mε/μN. The implicit one is of second order: its step makes its
     error, a phase error of the rotation of (ωh)²/12, one per cent of the creep that the regularisation itself makes,
@@ -82,6 +81,7 @@ def solve_in_turns(
             since, part = (math.inf if now is None else t), now
         return t - since < settling
 
+    start, end = 0.0, span
     runs: list[Steps] = []
     while start < end or not runs:
         settling = settling_time(system, epsilon, min(step, _creep_step(system, state, epsilon, end - start)))

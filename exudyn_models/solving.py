@@ -195,6 +195,6 @@ def quiet() -> Iterator[None]:
 
 def _advice(integrator: str, time: float, what: str) -> str:
     return (
-        f"Exudyn's {integrator} failed at t = {time:.9g} s: {what}; "
+        f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
         "take a smaller step, a larger tolerance or a larger regularisation, or the other solver"
     )

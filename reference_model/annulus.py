@@ -52,7 +52,8 @@ class Annulus(IsotropicContact):
     Raises
     ------
     ValueError
-        If a radius or ``rings`` is out of its range, or the pressure negative, not finite, or zero everywhere.
+        If a radius or ``rings`` is out of its range, or the pressure no function, negative, not finite, or zero
+        everywhere.
 
     """
 
@@ -65,11 +66,17 @@ class Annulus(IsotropicContact):
         """Refuse what is no annulus, and a pressure that is none."""
         inner = finite_number("inner_radius", self.inner_radius)
         outer = finite_number("outer_radius", self.outer_radius)
+        object.__setattr__(self, "inner_radius", inner)
+        object.__setattr__(self, "outer_radius", outer)
         if inner < 0.0:
             raise ValueError(f"inner_radius = {inner:g} m: it must be >= 0")
         if outer <= inner:
             raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
         require_whole("rings", self.rings, least=1)
+        if self.pressure is not None and not callable(self.pressure):
+            raise ValueError(
+                f"pressure = {self.pressure!r}: it must be a function of the radius, or None for a uniform one"
+            )
         self._loads(inner)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:

@@ -23,7 +23,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from reference_model.ring_integrals import mean_curvatures, mean_directions
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, finite_number
+from reference_model.systems import (
+    MOST_POINTS,
+    DiscOnDisc,
+    FloatArray,
+    PinOnDisc,
+    System,
+    finite_number,
+    require_system,
+)
 
 
 class Contact(Protocol):
@@ -136,8 +144,10 @@ class _OnCircle:
 
     def __post_init__(self) -> None:
         """Refuse a circle of no size."""
-        if finite_number("radius", self.radius) <= 0.0:
-            raise ValueError(f"radius = {self.radius:g} m: it must be > 0")
+        radius = finite_number("radius", self.radius)
+        if radius <= 0.0:
+            raise ValueError(f"radius = {radius:g} m: it must be > 0")
+        object.__setattr__(self, "radius", radius)
 
 
 @dataclass(frozen=True)
@@ -222,7 +232,7 @@ class PointsOnRing(_OnCircle):
     radius : float
         R in m, > 0.
     points : int
-        n >= 3.
+        n, from 3 to 1000.
 
     """
 
@@ -231,7 +241,7 @@ class PointsOnRing(_OnCircle):
     def __post_init__(self) -> None:
         """Refuse a circle of no size and what is no number of points."""
         super().__post_init__()
-        require_whole("points", self.points, least=3)
+        require_whole("points", self.points, least=3, most=MOST_POINTS)
 
     @cached_property
     def _around(self) -> tuple[complex, ...]:
@@ -283,6 +293,7 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
 
     Raises ``ValueError`` for a law that the system can't have.
     """
+    require_system(system)
     if isinstance(system, PinOnDisc):
         if contact is not None:
             raise ValueError(f"contact = {contact}: a pin touches in one point, only a disc takes other laws")
@@ -300,16 +311,20 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
 
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
     """Return ``contact`` or the law of ``system``; raise ``ValueError`` if that is of points, naming ``what``."""
+    require_system(system, DiscOnDisc)
     law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):
+        given = f"contact_points = {system.contact_points}" if contact is None else f"contact = {contact}"
         raise ValueError(
-            f"contact_points = {system.contact_points}: {what} of a disc on single points turn with its angle; "
-            "take the continuous ring, contact_points = None"
+            f"{given}: {what} can't be had for a disc on single points, whose friction depends on its angle; take "
+            "the continuous ring, contact_points = None"
         )
     return law
 
 
-def require_whole(name: str, value: int, *, least: int) -> None:
-    """Raise ``ValueError`` naming ``value`` unless it is an integer of at least ``least``."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        raise ValueError(f"{name} = {value!r}: it must be a whole number >= {least}")
+def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
+    """Raise ``ValueError`` naming ``value`` unless it is an integer from ``least`` to ``most``."""
+    whole = isinstance(value, Integral) and not isinstance(value, bool)
+    if not (whole and least <= value <= most):
+        allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
+        raise ValueError(f"{name} = {value!r}: it must be a whole number {allowed}")

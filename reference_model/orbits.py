@@ -15,10 +15,17 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from reference_model.contact import isotropic_contact_of
+from reference_model.contact import isotropic_contact_of, require_whole
 from reference_model.integrate import simulate as reference_simulate
 from reference_model.steady_states import Whirl, whirls, why_no_whirl
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    System,
+    checked_state,
+    finite_number,
+    require_system,
+)
 from reference_model.trajectory import Trajectory
 
 Simulate = Callable[..., Trajectory]
@@ -29,8 +36,14 @@ X, Y, VX, VY, SPIN = range(5)
 PERIOD, LOAD, TURN = -3, -2, -1
 """Places behind that part in the unknowns of shooting: T, μN, and the angle θ of a turn about the axis."""
 
-CENTRAL = 1e-5
-"""Relative step of the central differences that give multipliers."""
+CENTRAL = 3e-4
+"""Relative step of the central differences of fourth order that give multipliers.
+
+Measured against the exponentials of the turning frame's eigenvalues and against the variational equations: the noise
+of the flow over the step, and its fourth power, are alike here for the whirl of Fig. 11 with an offset, the worst
+case. Multipliers are right to 1e-11 for the pin, 1e-9 for the disc without offset; with one to 1e-7 by the reference,
+and to 1e-5 by an engine of which a tolerance of 1e-12 leaves more noise.
+"""
 
 BRANCH_STEP = 0.08
 """Relative step in x along the branch of whirls."""
@@ -88,14 +101,18 @@ class Flow:
         return np.column_stack(columns)
 
     def monodromy(self, unknowns: FloatArray) -> FloatArray:
-        """Return the linearised return map, shape (4, 4) or (5, 5), by central differences."""
-        columns = []
+        """Return the linearised return map, shape (4, 4) or (5, 5), by central differences of fourth order."""
         n = len(unknowns[:PERIOD])
-        for i in range(n):
-            shift = np.zeros_like(unknowns)
-            shift[i] = CENTRAL * self.size(unknowns)[i]
-            columns.append((self.miss(unknowns + shift) - self.miss(unknowns - shift)) / (2.0 * shift[i]))
-        return np.column_stack(columns) + np.eye(n)
+        steps = np.zeros((n, len(unknowns)))
+        steps[:, :n] = CENTRAL * np.diag(self.size(unknowns)[:n])
+        near, far = (
+            np.column_stack(
+                [self.miss(unknowns + step) - self.miss(unknowns - step) for step in reach * steps]
+            )
+            / (2.0 * reach * np.diag(steps))
+            for reach in (1.0, 2.0)
+        )
+        return near + (near - far) / 3.0 + np.eye(n)
 
     def size(self, unknowns: FloatArray) -> FloatArray:
         """Return by what deviations of the unknowns are to be judged."""
@@ -116,7 +133,8 @@ class Orbit:
     system : PinOnDisc or DiscOnDisc
         The parameters.
     state : array of shape (4,) or (6,)
-        Where the orbit crosses the x axis, y = 0; the angle of a disc is zero there.
+        Where the orbit starts: it crosses the x axis there, y = 0, unless it was found from a guess that starts
+        elsewhere. The angle of a disc is zero.
     period : float
         In s.
     residual : float
@@ -154,14 +172,32 @@ class Orbit:
         """Time mean of x and y in m, shape (2,); for a period the trapezoidal rule is exact to rounding."""
         return np.asarray(self.trajectory.states[:-1, :2].mean(axis=0))
 
+    def from_the_right(self) -> Orbit:
+        """Return the same orbit, started at the sample where x is greatest.
+
+        As a guess for the next one it serves whether or not they cross the x axis: it crosses its own y at a right
+        angle there.
+        """
+        states = self.trajectory.states
+        state = self.flow.start(np.array([*_without_angle(states[np.argmax(states[:, 0])]), 0.0, 0.0, 0.0]))
+        trajectory = self.flow.simulate(
+            self.system, state, self.trajectory.times, tolerance=self.flow.tolerance
+        )
+        return replace(self, state=state, trajectory=trajectory)
+
+    @cached_property
+    def monodromy(self) -> FloatArray:
+        """The linearised return map, shape (4, 4) or (5, 5), over x, y, vx, vy and the spin of a disc."""
+        unknowns = self.flow.unknowns(self.state, self.period, self.system.friction_force, self.turn)
+        return self.flow.monodromy(unknowns)
+
     @cached_property
     def multipliers(self) -> tuple[complex, ...]:
         """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
 
         One of them is 1, that of a shift in time; if the motion comes back turned, a turn is another.
         """
-        unknowns = self.flow.unknowns(self.state, self.period, self.system.friction_force, self.turn)
-        multipliers = np.linalg.eigvals(self.flow.monodromy(unknowns))
+        multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
 
     @property
@@ -183,9 +219,9 @@ def whirl_orbit(
 ) -> Orbit:
     """Return the whirl of a pin or disc with an offset, a periodic orbit near to a circle, by shooting.
 
-    Newton's method on x, vx, vy, the spin of a disc and the period T for Φ_T(x, 0, vx, vy) = (x, 0, vx, vy), with
-    the derivatives of the flow Φ from differences. Orbits with stick phases are found as well: nothing but
-    ``simulate`` is asked for.
+    Newton's method on x, vx, vy, the spin of a disc and the period T for Φ_T(x, y, vx, vy) = (x, y, vx, vy), with
+    the derivatives of the flow Φ from differences. The phase is fixed by y, which stays that of the guess: 0 unless
+    the guess starts elsewhere. Orbits with stick phases are found as well: nothing but ``simulate`` is asked for.
 
     Parameters
     ----------
@@ -196,9 +232,10 @@ def whirl_orbit(
         of a disc under another law.
     guess : Orbit or Whirl, optional
         Where to start, such as the orbit for a nearby load; unless told otherwise, the largest circle that there
-        is without offset.
+        is without offset. With a large offset the whirl of a disc no longer crosses the x axis: then it takes that
+        of a nearby offset, :meth:`Orbit.from_the_right`.
     at_crossing : float, optional
-        If given, x is held at this value in m and the load μN is sought in its place. This goes round the
+        If given, x at y = 0 is held at this value in m and the load μN is sought in its place. This goes round the
         folds of the branch, where two whirls of the same load meet.
     tolerance : float
         Handed to ``simulate``.
@@ -213,7 +250,7 @@ def whirl_orbit(
         If Newton's method does not converge: there is no such orbit near the guess.
 
     """
-    _require_isotropic(system)
+    _check(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)
     if guess is None:
         guess = _largest_circle(replace(system, offset=0.0))
     period = guess.period if isinstance(guess, Orbit) else 2.0 * math.pi / abs(guess.frequency)
@@ -259,7 +296,7 @@ def modulated_cycle(
         guess.
 
     """
-    _require_isotropic(system)
+    _check(system, guess, (Orbit, Trajectory), at_crossing, samples)
     if system.offset != 0.0:
         raise ValueError(
             f"offset = {system.offset:g} m: a modulated cycle comes back turned about the axis, which takes an "
@@ -311,7 +348,8 @@ def _shoot(flow: Flow, unknowns: FloatArray, sought: list[int], samples: int, wh
         raise RuntimeError(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
             f"{flow.system.disc_speed:g} rad/s: shooting stopped at a relative miss of {smallest:.1e}; "
-            "start from the orbit of a nearby load"
+            "start from the orbit of a nearby load; one that does not cross "
+            f"y = {unknowns[Y]:g} m takes a guess that starts elsewhere"
         )
     period, load, turn = (float(value) for value in best[PERIOD:])
     system, state = replace(flow.system, friction_force=load), flow.start(best)
@@ -320,16 +358,30 @@ def _shoot(flow: Flow, unknowns: FloatArray, sought: list[int], samples: int, wh
 
 
 def _hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Hold x and seek the load in its place, from that of a ``guess`` that is an orbit."""
-    unknowns[X] = x
+    """Hold x at y = 0 and seek the load in its place, from that of a ``guess`` that is an orbit."""
+    unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):
         unknowns[LOAD] = guess.system.friction_force
 
 
-def _require_isotropic(system: System) -> None:
+def _check(
+    system: System, guess: object, guesses: tuple[type, ...], at_crossing: float | None, samples: int
+) -> None:
+    """Refuse what shooting can't start from."""
+    require_system(system)
     if isinstance(system, DiscOnDisc):
         isotropic_contact_of(system, None, "periodic orbits")
+    require_whole("samples", samples, least=1)
+    if at_crossing is not None:
+        finite_number("at_crossing", at_crossing)
+    if not isinstance(guess, guesses):
+        names = " or ".join("None" if kind is type(None) else kind.__name__ for kind in guesses)
+        raise ValueError(f"guess = {guess!r}: it must be of {names}")
+    if isinstance(guess, Orbit | Whirl):
+        checked_state(system, guess.state)
+    elif isinstance(guess, Trajectory):
+        checked_state(system, guess.at_end)
 
 
 def _largest_circle(system: System) -> Whirl:

@@ -166,8 +166,9 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
     solver = Stepper(run, rates, initial, (0.0, math.inf), relative, edge)
+    t = start
     while True:
-        solver.step(start)
+        solver.step(t)
         lost = _grip_lost(motion, solver, lambda stretched: unknowns(stretched)[0])
         ending = solver.y.tolist() if lost is None else solver.dense_output()(lost).tolist()
         t = start + ending[-1]

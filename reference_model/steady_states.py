@@ -18,7 +18,7 @@ from reference_model.pin_formulas import (
     whirl_radius,
 )
 from reference_model.stability import equilibrium_eigenvalues, whirl_eigenvalues
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, require_system
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +166,7 @@ def self_centred_equilibria(
         rim of a continuous ring, a point of which is then at rest: there are no eigenvalues.
 
     """
+    require_system(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # refuses any
         if _why_no_equilibrium_of_pin(system) is not None:
@@ -320,8 +321,9 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
         If there is no whirl at any load, see :func:`whirls`.
 
     """
+    law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)
-    return least_load_with_whirl(disc, isotropic_contact_of(disc, contact, "steady motions"))
+    return least_load_with_whirl(disc, law)
 
 
 def _why_no_equilibrium_of_pin(pin: PinOnDisc) -> str | None:
@@ -346,6 +348,7 @@ def _refusal(formula: Callable[[PinOnDisc], object], pin: PinOnDisc) -> str | No
 
 
 def _require_centred(system: System) -> None:
+    require_system(system)
     if system.offset != 0.0:
         raise ValueError(
             f"offset = {system.offset:g} m: without an offset of 0 the periodic orbit is no circle about the axis; "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NoReturn
 
 import numpy as np
 from scipy.integrate import DOP853, DenseOutput
@@ -23,6 +23,9 @@ TIGHTEST = 3e-14
 
 MOST_STEPS = 5_000_000
 """Some minutes' work; a motion that takes more is hardly meant."""
+
+LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
+"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,7 @@ class Run:
     evaluations: int = 0
     steps: int = 0
     _recorded: int = 0
+    _looked_back: float = 0.0
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
@@ -110,13 +114,20 @@ class Run:
             )
 
     def count_step(self, since: float) -> None:
-        """Count one step more; raise ``SimulationError`` if there are too many."""
+        """Count one step more, from ``since``; raise ``SimulationError`` if there are, or will be, too many."""
         self.steps += 1
         if self.steps > MOST_STEPS:
-            raise SimulationError(
-                f"more than {MOST_STEPS:,} steps up to t = {self.seconds(since):g} s: the parameters are very "
-                "stiff, or the motion is very long; simulate it in parts, or with a larger tolerance"
-            )
+            self._give_up(f"more than {MOST_STEPS:,} steps", since)
+        if self.steps % LOOK_BACK == 0:
+            passed, self._looked_back = since - self._looked_back, since
+            if (self.end - since) * LOOK_BACK > MOST_AHEAD * passed:
+                self._give_up(f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}", since)
+
+    def _give_up(self, steps: str, since: float) -> NoReturn:
+        raise SimulationError(
+            f"{steps} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is very "
+            "long; simulate it in parts, or with a larger tolerance"
+        )
 
     def pending(self, t: float) -> bool:
         """Tell whether a time that was asked for lies before or at ``t``."""

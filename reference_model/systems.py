@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 
+MOST_POINTS = 1000
+"""Of a contact: an engine's work grows with their number, and a continuous ring is closer to more of them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
@@ -111,8 +114,8 @@ class DiscOnDisc(_SupportedMass):
     offset : float
         X0 in m: the springs are relaxed at (X0, 0), the master disc turns about (0, 0).
     contact_points : int or None
-        Number of points that the contact consists of, >= 3: point i is at the angle φ + 2πi/n and carries N/n. None
-        for the continuous ring of (20).
+        Number of points that the contact consists of, from 3 to 1000: point i is at the angle φ + 2πi/n and carries
+        N/n. None for the continuous ring of (20).
 
     Raises
     ------
@@ -141,10 +144,14 @@ class DiscOnDisc(_SupportedMass):
         super().__post_init__()
         if self.contact_points is not None:
             points = finite_number("contact_points", self.contact_points)
-            if isinstance(self.contact_points, bool) or points != int(points) or points < 3:
+            if (
+                isinstance(self.contact_points, bool)
+                or points != int(points)
+                or not 3 <= points <= MOST_POINTS
+            ):
                 raise ValueError(
-                    f"contact_points = {self.contact_points}: it must be a whole number >= 3, or None for the "
-                    "continuous ring; a single point is a PinOnDisc"
+                    f"contact_points = {self.contact_points}: it must be a whole number from 3 to {MOST_POINTS}, or "
+                    "None for the continuous ring; a single point is a PinOnDisc"
                 )
             object.__setattr__(self, "contact_points", int(points))
 
@@ -165,8 +172,17 @@ def finite_number(name: str, value: Any) -> float:
     return number
 
 
+def require_system(system: System, *allowed: type[System]) -> None:
+    """Raise ``ValueError`` unless ``system`` is one of the ``allowed``: of both, unless some are given."""
+    allowed = allowed or (PinOnDisc, DiscOnDisc)
+    if not isinstance(system, allowed):
+        names = " or a ".join(kind.__name__ for kind in allowed)
+        raise ValueError(f"system = {system!r}: it must be a {names}")
+
+
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
     """Return ``initial_state`` as an array of shape ``(system.state_size,)``, or raise ``ValueError``."""
+    require_system(system)
     state = _float_array("initial_state", initial_state)
     if state.shape != (system.state_size,):
         raise ValueError(

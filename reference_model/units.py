@@ -27,19 +27,21 @@ class Units:
         """Return those of the motion of ``system`` from ``state``.
 
         Time goes by the fastest of springs and master disc; without them by the dampers; and without these by the
-        time in which friction takes the slip away.
+        time in which friction takes the slip away. Length goes by the motion of the centre: a fast spin must not
+        hide it.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
         speed = math.hypot(*state[velocities : velocities + 2])
+        slip = speed
         decay = system.damping / system.mass
         if isinstance(system, DiscOnDisc):
             gyration = math.sqrt(system.polar_inertia / system.mass)
-            speed = math.hypot(speed, gyration * (state[5] - system.disc_speed))
+            slip = math.hypot(speed, gyration * (state[5] - system.disc_speed))
             decay = max(decay, system.shaft_damping / system.polar_inertia)
         rate = max(system.natural_frequency, abs(system.disc_speed)) or decay
         if rate == 0.0:  # free on a resting disc
-            rate = friction / speed if friction > 0.0 < speed else 1.0
+            rate = friction / slip if friction > 0.0 < slip else 1.0
         length = max(math.hypot(*state[:2]), abs(system.offset), speed / rate, friction / rate**2)
         return cls(length if length > 0.0 else 1.0, 1.0 / rate)
 

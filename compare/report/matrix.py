@@ -105,6 +105,16 @@ class Group:
         """Return how many cells of the column are in each state."""
         return Counter(row.cells[column].state for row in self.rows if column in row.cells)
 
+    def reasons(self, state: State) -> Counter[str]:
+        """Return the reasons of all cells in ``state``, and how many cells give each."""
+        return Counter(cell.reason for row in self.rows for cell in row.cells.values() if cell.state is state)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether there are claims, and all that could be simulated agree."""
+        states = {cell.state for row in self.rows for cell in row.cells.values()}
+        return State.AGREES in states and states <= {State.AGREES, State.NOT_SIMULATED}
+
     def first_with(self, column: str, reason: str) -> Row | None:
         """Return the first row whose cell gives ``reason``: once is enough for the reader."""
         return next(
@@ -122,6 +132,10 @@ class Matrix:
     def count(self, column: str) -> Counter[State]:
         """Return how many cells of the column are in each state."""
         return sum((group.count(column) for group in self.groups), Counter())
+
+    def reasons(self, state: State) -> Counter[str]:
+        """Return the reasons of all cells in ``state``, and how many cells give each."""
+        return sum((group.reasons(state) for group in self.groups), Counter())
 
     @property
     def totals(self) -> Counter[State]:

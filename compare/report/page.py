@@ -69,6 +69,7 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
         exceptions=_exceptions(matrix),
         measurements=_measurements,
         common=_common,
+        findings=[group.study for group in matrix.groups if group.study.finding and group.agrees],
         pictures=lambda study: _pictures(run, study),
         drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
         commands=lambda study: _commands(run, study),
@@ -117,7 +118,7 @@ def _measurements(row: Row) -> list[Measurement]:
         for claim in cell.claims:
             own = {name: value for name, value in claim.parameters.items() if name not in shared}
             lines.append(Measurement(engine, state_of(claim), claim, worst(claim), _parameters(own)))
-        if not cell.claims:
+        if not cell.claims and cell.state is not State.NOT_SIMULATED:  # which is said once a study
             lines.append(Measurement(engine, cell.state, reason=cell.reason))
     return lines
 

@@ -230,6 +230,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 STUDY = Study(
     name="connector",
     title="The friction connector on its own",
+    section="The engines",
     paper="Not in the paper. Whoever takes the connector into a larger model relies on its reaction on the master: "
     "the opposite force, and its moment about the master's own centre. Between two free discs both show at once, as "
     "momentum and angular momentum that do not change. The linearisation is what an engineer gets from Exudyn.",
@@ -240,5 +241,5 @@ STUDY = Study(
         "origin, and their sum, on six points. Right: how far the momenta drift (the larger of linear and angular).",
     },
     only=("exudyn", "exudyn-native"),
-    seconds=1.0,
+    seconds=0.3,
 )

@@ -450,6 +450,7 @@ def _range_of(values: FloatArray, name: str, unit: str = "") -> str:
 STUDY = Study(
     name="engine-convergence",
     title="Convergence of the engines",
+    section="The engines",
     paper="Not in the paper. An engine is to be trusted when its errors fall as its method says: with the tolerance, "
     "with the step h, and, where the friction law is smoothed, with the slip speed ε below which it is viscous, "
     "F = −μN·v/max(|v|, ε). The reference takes Coulomb friction as it is and has no ε. Sliding pins are measured "
@@ -469,5 +470,5 @@ STUDY = Study(
         "Exudyn C++ with the friction in Python; times depend on the machine.",
     },
     only=("reference", "exudyn"),
-    seconds=5.0,
+    seconds=3.0,
 )

@@ -421,6 +421,7 @@ def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
 STUDY = Study(
     name="fig03",
     title="Self-centring: the pin at rest in space",
+    section="The friction pin",
     paper=(
         "At low speed of the disc the pin finds a rest in space while the disc slides below it (3). Under "
         "growing load the position of rest moves along a semicircle (4) towards the axis, until at μN = C·X0 "
@@ -441,5 +442,5 @@ STUDY = Study(
             "support; radial motion is braked by friction as well, the more the nearer to the axis."
         ),
     },
-    seconds=1.5,
+    seconds=2.0,
 )

@@ -235,6 +235,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 STUDY = Study(
     name="fig04",
     title="Shift of the whirl by a small offset",
+    section="The friction pin",
     paper="With a small offset X0 the whirl is approximately a circle whose centre is shifted from the axis "
     "by x_s, y_s of (18), found by balancing first harmonics. Fig. 4 compares it with simulations over ω. The "
     "offset also excites a second harmonic of the same first order, so (18) keeps a relative error however "
@@ -248,5 +249,5 @@ STUDY = Study(
         "of the orbits' means from both formulas over the offset; large marks: reference, small ones: other "
         "engines."
     },
-    seconds=6.0,
+    seconds=3.0,
 )

@@ -324,6 +324,7 @@ def ends_on_whirl(engine: Engine, velocity: float, tolerance: float) -> bool:
 STUDY = Study(
     name="fig05",
     title="Equilibrium and whirl side by side",
+    section="The friction pin",
     paper="For the same parameters the pin ends in the self-centred equilibrium (3) or on the whirl (17), from "
     "initial conditions that differ by 0.03 m/s: both have limited attraction areas (Fig. 5). On the way it "
     "sticks and slips; the paper leaves stick–slip to later work and gives neither the stick phases nor the "
@@ -338,5 +339,5 @@ STUDY = Study(
         "fig05-animation": "The two motions of Fig. 5 on the turning disc. The pin is purple while it sticks.",
     },
     animations=animate,
-    seconds=15.0,
+    seconds=6.0,
 )

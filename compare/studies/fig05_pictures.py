@@ -56,7 +56,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     plane.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
     history.plot([], [], color=STUCK, linewidth=4.0, label="stick phases")
     history.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, None))
-    history.legend(loc="lower right", bbox_to_anchor=(1.0, 0.13))
+    history.legend(loc="upper left")
     errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of its time in s")
     if errors.lines:
         errors.legend()

@@ -51,6 +51,9 @@ INNERMOST = 0.012
 
 SHOOTING = 1e-10
 
+ON_THE_WAY = 1e-8
+"""Tolerance of the branch that is drawn, and that leads to the cycle; its loads are right to 1e-10 N."""
+
 SOURCE = "Fig. 6: Fig. 4 with ω = 1.2; the loads are our choice, the paper prints no range"
 
 EQUILIBRIA = "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0"
@@ -94,7 +97,7 @@ def theory(innermost: float = INNERMOST, step: float = 0.14) -> Findings:
 
     The branch is followed to the crossing ``innermost`` in m, in relative steps of ``step``.
     """
-    outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]), tolerance=1e-10)
+    outermost = whirl_orbit(replace(FIG6, friction_force=WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep
     sticking = np.linspace(LIMIT, WHIRL_LOADS[-1], 101)[1:]
@@ -216,7 +219,10 @@ def last_whirl_claim(engine: Engine) -> Claim:
 
 
 UNIT_MULTIPLIER_ERROR = 1e-5
-"""Error of a multiplier from central differences with the relative step ``orbits.CENTRAL``, near a fold."""
+"""Error of a multiplier from central differences with the relative step ``orbits.CENTRAL``, near a fold.
+
+There two multipliers meet, so that it is the root of that of the return map: 3e-6 was seen.
+"""
 
 
 @functools.cache
@@ -265,8 +271,8 @@ def coexistence_claim(engine: Engine) -> Claim:
 @functools.cache
 def _cycle() -> Orbit:
     """Return the stable stick–slip cycle at ``CYCLE_LOAD``, reached along the branch of whirls."""
-    start = whirl_orbit(replace(FIG6, friction_force=0.08), tolerance=1e-10)  # the way there may be rough
-    *_, orbit = whirl_branch(start, 0.06, step=0.25, samples=2)
+    start = whirl_orbit(replace(FIG6, friction_force=0.08), tolerance=ON_THE_WAY)
+    *_, orbit = whirl_branch(start, 0.06, step=0.4, samples=2)
     return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
 
 
@@ -383,6 +389,7 @@ def _draw_theory(panel: Axes, found: Data) -> None:
 STUDY = Study(
     name="fig06",
     title="Branches under increasing load",
+    section="The friction pin",
     paper="Fig. 6 shows the steady motions at ω = 1.2 over the load: the equilibrium (3) up to μN = C·X0, "
     "sticking above it within the radius (9), and the whirl; sticking and whirl exist for the same parameters. "
     "The paper does not say where the whirl ends: it meets an unstable whirl in a fold. That one goes on to "
@@ -396,5 +403,5 @@ STUDY = Study(
         "greatest one; right: the surroundings of the limit (5), enlarged. Lines: (3), (9), and the branch of "
         "periodic orbits followed by the reference through its folds; marks: what the engines found."
     },
-    seconds=15.0,
+    seconds=7.0,
 )

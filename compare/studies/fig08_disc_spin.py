@@ -147,7 +147,7 @@ def six_points_claim(engine: Engine, loads: Sequence[float], measured: FloatArra
     beside_ring = np.abs(measured - [place_and_spin(with_load(RING, load)) for load in loads])[:, 2]
     return Claim(
         SIX_POINTS,
-        equation="(19) to (21)",
+        equation="(19)–(21)",
         engine=engine.name,
         predicted=[_six_points_of_reference(load) for load in loads],
         measured=measured,
@@ -277,6 +277,7 @@ def sticking_claim(engine: Engine, ratios: Sequence[float]) -> Claim:
 STUDY = Study(
     name="fig08",
     title="Place and spin of the self-centred disc",
+    section="The friction disc",
     paper=(
         "A disc on the slow master disc finds a rest in space as the pin does, on the same semicircle (4), and spins "
         "about its centre at a speed between those of shaft and master disc. From the simplified equations (23) "
@@ -300,5 +301,5 @@ STUDY = Study(
             "a small X0 it is friction's moment against the shaft that counts, for a large one the force of springs."
         ),
     },
-    seconds=4.0,
+    seconds=2.0,
 )

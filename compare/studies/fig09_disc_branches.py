@@ -205,7 +205,7 @@ def six_circle_claim(engine: Engine, measured: FloatArray, error: FloatArray) ->
     beside = np.abs(predicted[:, 0] - [circle_of(*one).radius / radius_of_pin(one[0]) for one in CIRCLES])
     return Claim(
         SIX_CIRCLE,
-        equation="(19) to (21)",
+        equation="(19)–(21)",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -409,7 +409,7 @@ def six_rest_claim(engine: Engine, loads: Sequence[float], measured: FloatArray,
     """Compare the motions about the equilibrium on six points with those of the reference."""
     return Claim(
         SIX_RESTS,
-        equation="(19) to (21)",
+        equation="(19)–(21)",
         engine=engine.name,
         predicted=[_six_rest_of_reference(load) for load in loads],
         measured=measured,
@@ -636,7 +636,8 @@ def coexistence_claim(engine: Engine) -> Claim:
 
 STUDY = Study(
     name="fig09",
-    title="Whirl, equilibrium and sticking of the disc over the load, and their spin (Figs. 9 and 10)",
+    title="Steady motions of the disc over the load, and their spin (Figs. 9, 10)",
+    section="The friction disc",
     paper="At ω = 1.5 and Ω = 1.25 a disc whirls, sticks, or rests self-centred, like the pin. Fig. 9 compares the "
     "steady states by (23) with simulations on six points over the load, Fig. 10 their spin, with that of sticking "
     "dashed. The conclusions have the self-centred equilibrium stable, with a basin that shrinks. The whirl follows "
@@ -661,5 +662,5 @@ STUDY = Study(
         "which the equilibrium loses its stability, lowest where centre and rim slip equally fast, ωX0 = R(ω − Ω); "
         "and the fold of the whirl.",
     },
-    seconds=10.0,
+    seconds=5.5,
 )

@@ -170,7 +170,7 @@ def draw_ends(found: Data) -> Figure:
     panel.text(0.16, 0.01, "equilibrium\nand whirl", **words)
     panel.text(0.15, 0.0008, "equilibrium,\nno whirl", **words)
     panel.text(0.0044, 0.0185, r"friction holds $C X_0$ and $b(\omega-\Omega)$", va="top")
-    panel.text(0.085, 0.0075, "an eigenvalue passes zero", color=GREY, rotation=51.0, ha="right", va="center")
+    panel.text(0.085, 0.0075, "loses its stability", color=GREY, rotation=51.0, ha="right", va="center")
     panel.text(0.042, 0.00058, "fold of the whirl", color=GREEN, va="top")
     panel.text(0.0043, 0.97 * load[0], r"fold for $X_0=0$", color=PURPLE, va="top")
     panel.set(xscale="log", yscale="log", xlim=(offset[0], offset[-1]), ylim=(1.5e-4, 0.35))

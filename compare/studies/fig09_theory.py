@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -261,10 +262,11 @@ def circles() -> Data:
     return data
 
 
-def orbits() -> list[Orbit]:
+@functools.cache
+def orbits() -> tuple[Orbit, ...]:
     """Return whirls with offset by falling size, from the largest load through the fold to the equilibrium."""
     outer = [whirl_orbit(with_load(RING, load), tolerance=1e-10, samples=64) for load in OUTER_LOADS]
-    return outer + list(to_inner_orbits(with_load(RING, BRANCH_START * RING.stiffness * RING.offset)))
+    return (*outer, *to_inner_orbits(with_load(RING, BRANCH_START * RING.stiffness * RING.offset)))
 
 
 def smooth(found: Sequence[Orbit]) -> Data:

@@ -7,8 +7,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.optimize import root
 from scipy.stats import t as student
 
 from compare.accuracy import COARSENING
@@ -16,6 +14,7 @@ from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.studies.common import ANGLE, ComplexArray, parameters_of, turned
 from compare.studies.fig11_motion import DISCS, RING, SOURCE
+from compare.studies.steady_flow import steady_motion
 from reference_model import simulate, whirls
 from reference_model.contact import IsotropicContact, ThreeTermRing
 from reference_model.stability import turning_frame_jacobian
@@ -102,7 +101,7 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
     if disc.contact_points is not None:
-        return _on_points(disc, disc.contact_points, circle.state)
+        return _on_points(disc, circle.state)
     values, right = np.linalg.eig(turning_frame_jacobian(ring, circle.state, contact))
     mode, projection = _growing(values, right)
     period = 2.0 * math.pi / circle.frequency
@@ -118,36 +117,28 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     )
 
 
-def _on_points(disc: DiscOnDisc, points: int, guess: FloatArray) -> SteadyWhirl:
-    """Solve for x, vx, vy, the spin, the period and the turn, with y = 0 and the angle 0 at the start.
+def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
+    """Return the whirl on points near to the state ``guess``, with its linearised return map by differences."""
+    reference = Engine("reference", simulate, ("points",))
+    motion = steady_motion(reference, disc, guess, WHIRL_TOLERANCE)
+    if motion is None:
+        raise RuntimeError(f"no whirl on {disc.contact_points} points near the circle of the ring")
+    period, turn = motion.period, motion.frequency * motion.period
 
-    After the period all has turned about the axis by the angle θ, and the disc by 2π/n more.
-    """
-    advance = 2.0 * math.pi / points
-    period = advance / (guess[5] - guess[4] / guess[0])
+    def returned(state: FloatArray) -> FloatArray:
+        return turned(simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end, -turn)
 
-    def returned(state: ArrayLike, period: float, turn: float) -> FloatArray:
-        end = simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end
-        end = turned(end, -turn)
-        end[ANGLE] -= advance
-        return end
-
-    def miss(unknowns: FloatArray) -> FloatArray:
-        state = np.insert(unknowns[:4], (1, 1), 0.0)
-        return returned(state, unknowns[4], unknowns[5]) - state
-
-    found = root(miss, [*guess[[0, 3, 4, 5]], period, period * guess[4] / guess[0]], tol=1e-12)
-    if not float(np.max(np.abs(miss(found.x)))) < 1e-10 * guess[0]:
-        raise RuntimeError(f"no whirl on {points} points near the circle of the ring: {found.message}")
-    state, period, turn = np.insert(found.x[:4], (1, 1), 0.0), float(found.x[4]), float(found.x[5])
-    shifts = STEP * guess[0] * np.eye(6)
+    step = STEP * guess[0]
     columns = [
-        returned(state + shift, period, turn) - returned(state - shift, period, turn) for shift in shifts
+        (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
+        for shift in step * np.eye(disc.state_size)
     ]
-    multipliers, right = np.linalg.eig(np.column_stack(columns) / (2.0 * STEP * guess[0]))
+    multipliers, right = np.linalg.eig(np.column_stack(columns))
     values = np.log(multipliers.astype(complex)) / period
     mode, projection = _growing(values, right)
-    return SteadyWhirl(state, period, turn, advance, _pair(values), mode, projection)
+    return SteadyWhirl(
+        motion.state, period, turn, motion.spin * period - turn, _pair(values), mode, projection
+    )
 
 
 def _pair(values: ComplexArray) -> complex:

@@ -23,8 +23,11 @@ from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate
 from reference_model.stability import sliding_jacobian
 from reference_model.systems import DiscOnDisc, FloatArray
 
-TRIED = (0.007, 0.00725, 0.0075)
-"""X0 in m of the whirls between which the critical one is interpolated."""
+TRIED = (0.0072, 0.00725, 0.0073)
+"""X0 in m of the whirls between which the critical one is interpolated.
+
+So close to each other that the term of third degree, which a parabola leaves out, moves it by less than 1e-10 m.
+"""
 
 TOLERANCE = 1e-12
 
@@ -51,8 +54,10 @@ BOTH_STABLE = 0.0073
 MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
 """A state near the modulated motion at that offset, found by simulation while X0 was raised in small steps."""
 
-BRANCH = np.array([*np.linspace(0.0, 0.015, 11), 0.0157, 0.0161, 0.0163, 0.0166, 0.017, 0.0175])
-"""X0 in m of the whirls in the figure; at larger ones they do not cross the x axis, where shooting looks for them."""
+BRANCH = np.array(
+    [*np.linspace(0.0, 0.015, 11), 0.016, 0.0166, 0.0175, 0.0185, 0.0192, 0.0196, 0.0198, 0.0199, 0.01993]
+)
+"""X0 in m of the whirls in the figure: up to the fold at 0.019930 m, which lies beyond :func:`rest_offset`."""
 
 KINDS = ("rest", "whirl", "modulated")
 
@@ -92,7 +97,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, Orb
     """
     orbits: list[Orbit] = []
     for offset in TRIED:
-        guess = orbits[-1] if orbits else None
+        guess = orbits[-1] if orbits else _whirl_of_reference()
         orbits.append(
             whirl_orbit(
                 disc_at(offset),
@@ -113,6 +118,12 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, Orb
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
     root = min(roots, key=abs)
     return middle + root, float(parabola.deriv()(root)), orbits[1]
+
+
+@functools.cache
+def _whirl_of_reference() -> Orbit:
+    """Return where shooting starts: the whirl at the first X0 of ``TRIED``."""
+    return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
 
 
 def critical_claim(engine: Engine) -> Claim:
@@ -147,9 +158,8 @@ def critical_claim(engine: Engine) -> Claim:
 
 def _error_of_monodromy(orbit: Orbit) -> float:
     """Return about how wrong the linearised return map is: it should leave a shift in time as it is."""
-    unknowns = orbit.flow.unknowns(orbit.state, orbit.period, orbit.system.friction_force, orbit.turn)
     shift = np.array(rates(disc_at(orbit.system.offset), orbit.state))[WITHOUT_ANGLE]
-    change = orbit.flow.monodromy(unknowns) @ shift - shift
+    change = orbit.monodromy @ shift - shift
     # One direction of as many as there are states.
     return math.sqrt(len(shift)) * float(np.linalg.norm(change) / np.linalg.norm(shift))
 
@@ -183,7 +193,10 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
 
 @functools.cache
 def rest_offset() -> float:
-    """Return X0 in m at which the self-centred equilibrium becomes stable, and the whirl ends."""
+    """Return X0 in m at which the self-centred equilibrium becomes stable.
+
+    The whirl goes on beyond, by a quarter of a per cent of X0.
+    """
 
     def rate(offset: float) -> float:
         return self_centred_equilibria(disc_at(offset))[0].eigenvalues[0].real
@@ -247,7 +260,7 @@ def theory_of_offsets() -> Findings:
     orbits: list[Orbit] = []
     whirling = np.sort([*BRANCH, critical_offset_of_reference()])
     for offset in whirling:
-        guess = orbits[-1] if orbits else None
+        guess = orbits[-1].from_the_right() if orbits else None
         orbits.append(whirl_orbit(disc_at(float(offset)), guess=guess, tolerance=1e-9, samples=64))
     resting = np.sort([*np.linspace(0.0005, 0.025, 50), rest_offset()])
     rest = [self_centred_equilibria(disc_at(float(offset)))[0] for offset in resting]

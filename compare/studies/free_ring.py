@@ -525,6 +525,7 @@ def _described(throws: Sequence[Throw]) -> str:
 STUDY = Study(
     name="free-ring",
     title="A ring thrown on a table: sliding and spinning stop together",
+    section="The friction disc",
     paper=(
         "Not in the paper, but contained in (19) to (21): without springs, dampers and shaft, on a master disc at "
         "rest, the friction disc is a ring thrown on a table. Published results that do not depend on the paper: "
@@ -545,5 +546,5 @@ STUDY = Study(
             "inertia."
         ),
     },
-    seconds=6.0,
+    seconds=2.0,
 )

@@ -229,6 +229,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 STUDY = Study(
     name="power-balance",
     title="Power balance of every kind of motion",
+    section="The engines",
     paper="Not in the paper, but implied by (1) and (19): what the drive of the disc puts in is friction heat, heat "
     "of the dampers, work on the shaft of a friction disc and stored energy. The drive's work is taken from the "
     "angular momentum of the motion and the heat from the slip, so the balance checks friction, damping, springs "
@@ -239,5 +240,5 @@ STUDY = Study(
         "power-balance": "Left: energies on Fig. 5's way to the whirl (reference). Right: what the balance of each "
         "engine leaves over, as a fraction of the energy turned over."
     },
-    seconds=10.0,
+    seconds=4.0,
 )

@@ -408,7 +408,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
         ylim=(2e-17, 1.0),
         title="Distance of the turn until release from (7)",
     )
-    for panel, place in ((time, (0.62, 0.7)), (error, (0.3, 0.4))):
+    for panel, place in ((time, (0.62, 0.7)), (error, (0.2, 0.24))):
         handles, labels = panel.get_legend_handles_labels()
         if handles:
             panel.legend(handles, labels, loc=place)
@@ -418,6 +418,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 STUDY = Study(
     name="sticking-domain",
     title="Sticking to the disc, and its resonance",
+    section="The friction pin",
     paper=(
         "If the load is above C·X0 the pin can stick to the disc and turn with it. The force that holds it "
         "changes with the angle (7); it stays below μN for every angle if the pin is nearer to the axis than the "
@@ -434,5 +435,5 @@ STUDY = Study(
             "simulated. Right: how far the turn of the disc until then is from (7), with the error budget."
         ),
     },
-    seconds=2.7,
+    seconds=2.0,
 )

@@ -474,6 +474,7 @@ def hurwitz() -> tuple[FloatArray, FloatArray, FloatArray, tuple[Claim, ...]]:
 STUDY = Study(
     name="whirl-stability",
     title="The whirl without offset and its stability",
+    section="The friction pin",
     paper=(
         "Without offset the pin can whirl on a circle of radius μN/(βk) with its natural frequency k; the "
         "paper says that this solution always exists (11). Deviations from it obey (12), with the "
@@ -500,5 +501,5 @@ STUDY = Study(
             "ω = k/3, where no whirl exists: wherever it exists, it is stable."
         ),
     },
-    seconds=2.7,
+    seconds=2.0,
 )

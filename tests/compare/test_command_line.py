@@ -5,6 +5,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 from dataclasses import asdict, replace
 
 import fake_studies
@@ -239,7 +240,7 @@ PIN, DISC = ("simulate", "pin"), ("simulate", "disc")
 BAD = [
     (("report", "verdict"), "unknown study 'verdict': did you mean 'verdicts'?"),
     (("report", "--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
-    (("report", "--jobs", "0"), "jobs = 0: it must be at least 1"),
+    (("report", "--jobs", "0"), "jobs = 0: it must lie between 1 and 1000"),
     (("report", "--jobs", "two"), "jobs = 'two': it must be a whole number"),
     ((*PIN, "--engine", "referense"), "unknown engine 'referense': did you mean 'reference'?"),
     ((*PIN, "--set", "disk_speed=1"), "unknown parameter 'disk_speed': did you mean 'disc_speed'?"),
@@ -258,7 +259,8 @@ BAD = [
     ((*PIN, "--until", "-1"), "until = -1 s: it must be > 0"),
     ((*PIN, "--until", "nan"), "until = nan: it must be finite"),
     ((*PIN, "--until", "soon"), "until = 'soon': it must be a number"),
-    ((*PIN, "--samples", "1"), "samples = 1: it must be at least 2"),
+    ((*PIN, "--samples", "1"), "samples = 1: it must lie between 2 and 10000000"),
+    ((*PIN, "--samples", "1" + 14 * "0"), f"samples = {10**14}: it must lie between 2 and 10000000"),
     ((*PIN, "--samples", "2.5"), "samples = '2.5': it must be a whole number"),
     ((*PIN, "--tolerance", "1"), "tolerance = 1: it must lie between 1e-14 and 1e-2"),
     ((*PIN, "--set", "shaft_speed=1"), "unknown parameter 'shaft_speed': did you mean 'disc_speed'?"),
@@ -270,10 +272,10 @@ BAD = [
     *(
         (
             (*DISC, "--set", f"contact_points={points}"),
-            f"contact_points = {points}: it must be a whole number >= 3, or None for the continuous ring; "
-            "a single point is a PinOnDisc",
+            f"contact_points = {points}: it must be a whole number from 3 to 1000, or None for the "
+            "continuous ring; a single point is a PinOnDisc",
         )
-        for points in ("1", "2", "2.5", "-6")
+        for points in ("1", "2", "2.5", "-6", "1e6")
     ),
     ((*DISC, "--set", "contact_points=six"), "contact_points = 'six': it must be a number"),
     ((*DISC, "--start", "0", "0", "0", "0", "0", "nan"), "start = nan: it must be finite"),
@@ -353,6 +355,55 @@ def test_what_cannot_be_written_is_refused_before_anything_is_computed(
 def test_bad_input_to_the_process(command):
     process = command("simulate", "pin", "--set", "mass=-1")
     assert (process.returncode, process.stdout, process.stderr) == (2, "", "mass = -1 kg: it must be > 0\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        (
+            "fails",
+            "engine 'engines_of_mine:fails' failed: KeyError: 'inside' (engines_of_mine.py:2 in fails)",
+        ),
+        (
+            "nothing",
+            "engine 'engines_of_mine:nothing' failed: TypeError: simulate() returned None: it must be a",
+        ),
+        ("other", "engine 'engines_of_mine:other' failed: TypeError: other() "),
+    ],
+)
+def test_whatever_an_engine_raises_or_returns_ends_in_one_sentence(
+    name, sentence, tmp_path, monkeypatch, capsys
+):
+    (tmp_path / "engines_of_mine.py").write_text(
+        "def fails(system, initial_state, times, *, tolerance):\n    raise KeyError('inside')\n"
+        "def nothing(system, initial_state, times, *, tolerance):\n    pass\n"
+        "def other(): pass\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    assert cli.status([*PIN, "--engine", f"engines_of_mine:{name}"]) == 1
+    output, errors = capsys.readouterr()
+    assert output == ""
+    assert errors.startswith(sentence)
+    assert errors.count("\n") == 1
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
+@pytest.mark.parametrize("arguments", [("list",), (*PIN, "--until", "1"), (*PIN, "--output", "full.csv")])
+def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path):
+    (tmp_path / "full.csv").symlink_to("/dev/full")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "compare.cli", *arguments],
+            cwd=tmp_path,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert done.stderr.startswith("can't write ")
+    assert done.stderr.endswith(": No space left on device\n")
+    assert done.stderr.count("\n") == 1
 
 
 def test_files_stay_as_they_are_when_the_engine_gives_up(tmp_path, capsys):

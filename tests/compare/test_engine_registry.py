@@ -42,10 +42,23 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function(tmp_path, monkeyp
     assert engine.kinds == ("pin",)
 
 
-@pytest.mark.parametrize("name", ["no_such_module:simulate", "math:no_such_function", ":simulate", "math:pi"])
+@pytest.mark.parametrize(
+    "name", ["no_such_module:simulate", "math:no_such_function", ":simulate", "math:pi", ".:simulate"]
+)
 def test_an_engine_that_is_none_is_refused_in_a_sentence(name):
     with pytest.raises(ValueError, match=f"^engine '{name}' "):
         engines([name])
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"), [("1 / 0", "ZeroDivisionError: division by zero"), ("def (", "SyntaxError: ")]
+)
+def test_an_engine_whose_module_fails_is_refused_in_a_sentence(code, reason, tmp_path, monkeypatch):
+    (tmp_path / "broken_module.py").write_text(code)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    with pytest.raises(ValueError, match=f"^engine 'broken_module:simulate' can't be imported: {reason}"):
+        engines(["broken_module:simulate"])
 
 
 POINTS, RING = replace(FIG11, contact_points=6), FIG11

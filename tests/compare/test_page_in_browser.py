@@ -38,11 +38,25 @@ def test_tables_stay_inside_of_the_page_or_scroll_in_their_own_container(opened)
     assert outside == 0
 
 
-def test_the_first_screen_shows_the_matrix(opened):
-    box = opened[0].locator("#matrix table").bounding_box()
+def test_the_first_screen_shows_totals_what_differs_and_the_studies(opened):
+    box = opened[0].locator("#overview table").bounding_box()
     assert 0 <= box["y"] < 400
     assert opened[0].locator("#totals").bounding_box()["y"] < box["y"]
-    assert opened[0].locator("#matrix .verdict.differs").first.bounding_box()["y"] < 800
+    assert opened[0].locator(".exceptions .verdict.differs").bounding_box()["y"] < box["y"]
+    assert opened[0].locator("#overview .tally.short").last.bounding_box()["y"] < 800
+
+
+def test_a_claim_has_most_of_the_width_of_the_matrix_however_long_the_units(opened):
+    opened[0].evaluate(
+        """() => document.querySelectorAll('#matrix td[data-label]').forEach(
+               cell => cell.textContent = '± 1.2×10⁻⁹ m, rad, m/s, rad/s, or about as much')"""
+    )
+    assert overhang(opened[0]) <= 0
+    if opened[0].viewport_size["width"] > 720:  # stacked on a telephone
+        claim, engine = (
+            opened[0].locator(f"#matrix thead th:nth-child({i})").bounding_box()["width"] for i in (1, 3)
+        )
+        assert claim > 2.5 * engine
 
 
 def test_all_images_are_decoded(opened):
@@ -62,6 +76,12 @@ def test_text_is_large_enough_to_read(opened):
                .map(e => parseFloat(getComputedStyle(e).fontSize)))"""
     )
     assert smallest >= 11
+
+
+def test_links_of_the_overview_lead_to_the_studies(opened):
+    opened[0].locator("#overview tbody a").first.click()
+    assert opened[0].evaluate("location.hash") == "#verdicts"
+    assert -1 <= opened[0].locator("#verdicts").bounding_box()["y"] < 800
 
 
 def test_links_of_the_matrix_lead_to_the_claims(opened):

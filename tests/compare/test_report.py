@@ -2,10 +2,12 @@ import base64
 import json
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from html.parser import HTMLParser
+from itertools import groupby
 
 import pytest
-from fake_studies import PARTLY, PIN, POINTS, RING, RING_ONLY, straight
+from fake_studies import PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, straight
 from processes import ROOT
 
 from compare.engines import EVERY_KIND, Engine
@@ -14,6 +16,7 @@ from compare.report.matrix import WORST_FIRST, State
 from compare.report.page import summary
 from compare.report.write import write_report
 from compare.runner import run
+from compare.studies import STUDIES
 
 
 class Cells(HTMLParser):
@@ -223,15 +226,48 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
 
 def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
     page = (partly_reported[2] / "index.html").read_text(encoding="utf-8")
-    (table,) = re.findall(r'<table class="matrix">(.*?)</table>', page, flags=re.DOTALL)
-    assert table.count("pins does not simulate a disc on single points or a disc on a continuous ring") == 1
-    assert table.count("some does not simulate a disc on a continuous ring") == 2  # one a study
-    said = [" ".join(c[3].split()) for c in Cells(page).cells if c[0] == "matrix" and c[2] == "some"]
-    assert said[0] == "2 of 2 agree,2 not simulated"
-    assert said[-2] == "1 not simulated"
-    assert said[-1] == "∅ not simulatedsome does not simulate a disc on a continuous ring"
-    assert "the engine is not made for this system" in page
+    reason = "some does not simulate a disc on a continuous ring"
+    (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
+    assert legend.count(reason) == 1
+    assert page.count(reason) == 3  # besides, one a study
+    assert (
+        page.count("2 claims: pins does not simulate a disc on single points or a disc on a continuous ring")
+        == 1
+    )
+    said = {
+        table: [" ".join(c[3].split()) for c in Cells(page).cells if c[0] == table and c[2] == "some"]
+        for table in ("overview", "matrix")
+    }
+    assert said["overview"] == [
+        "2 of 2 agree, 2 not simulated",
+        "2 of 2 agree, 1 not simulated",
+        "1 not simulated",
+    ]
+    assert said["matrix"] == ["✓ agrees", "✓ agrees", "∅ not simulated", "∅ not simulated"]
     assert '<ul class="exceptions">' not in page
+
+
+@pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (VERDICTS, False)])
+def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tmp_path, study, shown):
+    study = replace(study, finding="Straight on.")
+    engines = (Engine("one", straight, EVERY_KIND), Engine("pins", straight))
+    write_report(run((study,), engines, folder=tmp_path / "data"), tmp_path)
+    assert ("<li>Straight on." in (tmp_path / "index.html").read_text(encoding="utf-8")) == shown
+
+
+def test_numbers_of_a_finding_stand_in_the_text_of_its_study():
+    found = [study for study in STUDIES if study.finding]
+    assert {study.name for study in found} >= {"fig11", "stability-map"}
+    for study in found:
+        numbers = re.findall(r"[\d.]+\d (?:%|N|mm|m|1/s)(?!\w)", study.finding)
+        assert numbers
+        assert all(number in study.paper for number in numbers)
+
+
+def test_studies_of_a_section_stand_together():
+    sections = [study.section for study in STUDIES]
+    assert all(sections)
+    assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
 
 
 def test_programs_see_what_is_not_simulated(partly_reported):

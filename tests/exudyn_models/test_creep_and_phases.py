@@ -4,26 +4,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from compare.paper import FIG5, FIG11
 from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
 from exudyn_models.friction_laws import point_regularisation
 from exudyn_models.phases import phases
 from exudyn_models.scales import settling_time
 from exudyn_models.solving import Steps
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import DiscOnDisc
 
 EPSILON = 1e-6
-PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=0.0, offset=0.0)
-RING = DiscOnDisc(
-    mass=1.0,
-    polar_inertia=0.5,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
+PIN = replace(FIG5, disc_speed=0.0, offset=0.0)
+RING = replace(FIG11, polar_inertia=0.5)
 SYSTEMS = [
     replace(PIN, disc_speed=1.5),
     RING,

@@ -3,23 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compare.paper import FIG11
 from exudyn_models import eigenvalues
 from reference_model import self_centred_equilibria
 from reference_model.contact import contact_of
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
 PIN = PinOnDisc(mass=2.0, stiffness=1.3, damping=0.1, friction_force=0.09, disc_speed=0.7, offset=0.1)
-DISC = DiscOnDisc(
-    mass=1.3,
-    polar_inertia=0.7,
-    stiffness=0.9,
-    damping=0.1,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
+DISC = replace(FIG11, mass=1.3, polar_inertia=0.7, stiffness=0.9, damping=0.1)
 
 
 def analytic_eigenvalues(system, state):

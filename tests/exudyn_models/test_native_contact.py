@@ -10,26 +10,15 @@ from free_bodies import coordinates, items, momenta, planar_body, rotor, run_exp
 from scipy.integrate import solve_ivp
 
 import reference_model
+from compare.paper import FIG5, FIG11
 from exudyn_models import models, native_contact
 from exudyn_models.friction_laws import point_regularisation
 from exudyn_models.native_contact import add_native_friction, simulate_with_native_contact
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import DiscOnDisc
 
-PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
 STICKING_PIN = [0.1, 0.0, 0.03, 0.0]  # Fig. 5, second start
-DISC = DiscOnDisc(  # Fig. 11
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-    contact_points=6,
-)
+DISC = replace(FIG11, contact_points=6)
 TABLE_DISC = replace(
     DISC,
     polar_inertia=0.0144,
@@ -194,8 +183,8 @@ def test_two_free_discs_keep_their_momentum_and_angular_momentum_under_a_constan
 
 
 def test_error_of_a_slipping_pin_falls_with_the_tolerance_and_stays_below_it():
-    expected = reference_model.simulate(PIN, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-13).at_end
-    errors = errors_over_tolerances(PIN, SLIPPING_PIN, [0.0, 100.0], expected)
+    expected = reference_model.simulate(FIG5, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-13).at_end
+    errors = errors_over_tolerances(FIG5, SLIPPING_PIN, [0.0, 100.0], expected)
     assert np.all(errors < TOLERANCES), errors
     assert observed_order(errors) == pytest.approx(1.0, abs=0.1), errors
 
@@ -208,11 +197,11 @@ def test_error_of_a_slipping_disc_on_six_points_falls_with_the_tolerance_and_sta
 
 
 def test_stick_phases_of_a_pin_have_errors_of_first_order_in_the_regularisation():
-    exact = reference_model.simulate(PIN, STICKING_PIN, [0.0, 14.0], tolerance=1e-12)
+    exact = reference_model.simulate(FIG5, STICKING_PIN, [0.0, 14.0], tolerance=1e-12)
     assert len(exact.stick_phases) == 2
     errors = []
     for tolerance in TOLERANCES[:4]:
-        found = simulate_with_native_contact(PIN, STICKING_PIN, [0.0, 14.0], tolerance=tolerance)
+        found = simulate_with_native_contact(FIG5, STICKING_PIN, [0.0, 14.0], tolerance=tolerance)
         assert [phase.kind for phase in found.phases] == [phase.kind for phase in exact.phases]
         errors.append(np.abs(found.stick_times - exact.stick_times))
     # The first touch comes before any creep; all later times carry the creep that went before.
@@ -269,8 +258,8 @@ def test_a_disc_that_is_caught_and_let_go_has_errors_of_first_order_but_for_the_
     [
         # All on a table at rest, started from the middle straight towards an edge of the triangle with 1 m/s: a pin
         # without a spring after v·t − ½(μN/m)t², a pin on a spring just before it turns, a disc that does not spin.
-        (replace(PIN, stiffness=0.0), 10.0, 10.0 - 0.5 * 0.01 * 10.0**2),
-        (PIN, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
+        (replace(FIG5, stiffness=0.0), 10.0, 10.0 - 0.5 * 0.01 * 10.0**2),
+        (FIG5, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
         (replace(DISC, stiffness=0.0, contact_radius=0.5), 1.0, 1.0 - 0.5 * 0.01),
     ],
 )
@@ -284,39 +273,39 @@ def test_the_contact_holds_however_far_a_body_goes(system, span, distance):
 
 
 def test_a_friction_coefficient_that_is_wrong_by_1e_8_is_seen(monkeypatch):
-    expected = reference_model.simulate(PIN, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-13).at_end
+    expected = reference_model.simulate(FIG5, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-13).at_end
     contact = items.ObjectContactSphereTriangle
 
     def wrong(**arguments):
         return contact(**arguments | {"dynamicFriction": (1.0 + 1e-8) * arguments["dynamicFriction"]})
 
     monkeypatch.setattr(native_contact.items, "ObjectContactSphereTriangle", wrong)
-    found = simulate_with_native_contact(PIN, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-10)
+    found = simulate_with_native_contact(FIG5, SLIPPING_PIN, [0.0, 100.0], tolerance=1e-10)
     assert np.abs(found.at_end - expected).max() > 10.0 * 1e-10
 
 
 @pytest.mark.parametrize(
-    ("system", "state"), [(PIN, np.array(SLIPPING_PIN)), (DISC, np.array(SLIPPING_DISC))]
+    ("system", "state"), [(FIG5, np.array(SLIPPING_PIN)), (DISC, np.array(SLIPPING_DISC))]
 )
 def test_no_user_function_takes_part_in_the_friction(system, state):
     friction = partial(add_native_friction, reach=10.0)
     model = models.build(system, state, regularisation=1e-7, friction=friction)
     mbs = model.mbs
     objects = [mbs.GetObject(i) for i in range(mbs.systemData.NumberOfObjects())]
-    assert sum("trianglePoints" in item for item in objects) == (1 if system is PIN else 6)
+    assert sum("trianglePoints" in item for item in objects) == (1 if system is FIG5 else 6)
     for item in objects:
         assert not any(value for name, value in item.items() if "UserFunction" in name), item
 
 
 def test_the_solution_names_the_contact_and_its_regularisation():
-    solution = simulate_with_native_contact(PIN, SLIPPING_PIN, [0.0, 1.0], tolerance=1e-8).solution
+    solution = simulate_with_native_contact(FIG5, SLIPPING_PIN, [0.0, 1.0], tolerance=1e-8).solution
     assert solution.method == "Exudyn DOPRI5, generalised-α while sticking, built-in contact"
     assert solution.tolerance == 1e-8
     assert solution.regularisation == pytest.approx(1e-6)
 
 
 @pytest.mark.parametrize(
-    ("system", "start"), [(PIN, [0.1, 0.0, 0.0, 0.0]), (PIN, [0.0] * 4), (DISC, [0.0] * 6)]
+    ("system", "start"), [(FIG5, [0.1, 0.0, 0.0, 0.0]), (FIG5, [0.0] * 4), (DISC, [0.0] * 6)]
 )
 def test_one_time_gives_the_initial_state(system, start):
     trajectory = simulate_with_native_contact(replace(system, offset=0.0), start, [2.0])
@@ -327,8 +316,8 @@ def test_states_within_a_step_of_the_start_are_those_of_the_reference():
     # The branch of the law at the start is that of the initial slip: here friction is viscous there.
     start = [-0.06, -0.015, 0.0225, -0.09]
     times = np.linspace(0.0, 1e-3, 11)
-    expected = reference_model.simulate(PIN, start, times).states
-    found = simulate_with_native_contact(PIN, start, times, tolerance=1e-10)
+    expected = reference_model.simulate(FIG5, start, times).states
+    found = simulate_with_native_contact(FIG5, start, times, tolerance=1e-10)
     assert [phase.kind for phase in found.phases] == ["stick"]
     np.testing.assert_allclose(found.states, expected, rtol=0.0, atol=found.solution.regularisation)
 
@@ -341,15 +330,15 @@ def test_states_within_a_step_of_the_start_are_those_of_the_reference():
             {},
             "contact_points = None: Exudyn's built-in contact has single",
         ),
-        (PIN, {"initial_state": [0.0, 0.0, 0.0]}, "initial_state has shape"),
-        (PIN, {"initial_state": [0.0, np.nan, 0.0, 0.0]}, r"initial_state\[1\] = nan"),
-        (PIN, {"times": [1.0, 0.0]}, "times must increase"),
-        (PIN, {"times": []}, "at least one time"),
-        (PIN, {"tolerance": 0.0}, "tolerance = 0"),
+        (FIG5, {"initial_state": [0.0, 0.0, 0.0]}, "initial_state has shape"),
+        (FIG5, {"initial_state": [0.0, np.nan, 0.0, 0.0]}, r"initial_state\[1\] = nan"),
+        (FIG5, {"times": [1.0, 0.0]}, "times must increase"),
+        (FIG5, {"times": []}, "at least one time"),
+        (FIG5, {"tolerance": 0.0}, "tolerance = 0"),
     ],
 )
 def test_bad_input_is_refused_in_a_sentence(system, change, message):
-    start = SLIPPING_PIN if system is PIN else SLIPPING_DISC
+    start = SLIPPING_PIN if system is FIG5 else SLIPPING_DISC
     arguments = {"initial_state": start, "times": [0.0, 1.0]} | change
     with pytest.raises(ValueError, match=message):
         simulate_with_native_contact(system, **arguments)

@@ -4,25 +4,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import exudyn_models
 import reference_model
+from compare.paper import FIG11
 from exudyn_models import simulate, simulate_fixed_step
 from reference_model.contact import contact_of
-from reference_model.systems import DiscOnDisc
 
-DISC = DiscOnDisc(  # Fig. 11
-    mass=1.0,
-    polar_inertia=1.0,
-    stiffness=1.0,
-    damping=0.5,
-    friction_force=0.0225,
-    disc_speed=1.5,
-    contact_radius=0.12,
-    shaft_damping=0.015,
-    shaft_speed=1.25,
-)
 START = [0.05, 0.0, 0.4, 0.0, 0.05, 1.3]
 RING = replace(  # of J = mR², on a table at rest
-    DISC,
+    FIG11,
     polar_inertia=0.0144,
     stiffness=0.0,
     damping=0.0,
@@ -32,7 +22,7 @@ RING = replace(  # of J = mR², on a table at rest
     shaft_speed=0.0,
 )
 THROWN = [0.0, 0.0, 0.3, 0.3, 0.1, 2.0]
-STICKING = replace(DISC, polar_inertia=0.0072, damping=0.1, friction_force=0.09, offset=0.1)
+STICKING = replace(FIG11, polar_inertia=0.0072, damping=0.1, friction_force=0.09, offset=0.1)
 STICKING_START = [0.1, 0.0, 0.0, 0.03, 0.0, 1.2]
 
 
@@ -58,7 +48,7 @@ def kinds(trajectory):
 @pytest.mark.parametrize("points", [None, 6])
 @pytest.mark.parametrize("offset", [0.0, 0.1])
 def test_slip_agrees_with_an_independent_integrator_at_every_output_time(points, offset):
-    disc = replace(DISC, contact_points=points, offset=offset)
+    disc = replace(FIG11, contact_points=points, offset=offset)
     times = np.linspace(0.0, 100.0, 201)
     found = simulate(disc, START, times)
     np.testing.assert_allclose(found.states, slip_motion(disc, START, times), rtol=0.0, atol=1e-9)
@@ -67,7 +57,7 @@ def test_slip_agrees_with_an_independent_integrator_at_every_output_time(points,
 
 @pytest.mark.parametrize("points", [None, 6])
 def test_error_while_slipping_falls_with_the_tolerance(points):
-    disc = replace(DISC, contact_points=points)
+    disc = replace(FIG11, contact_points=points)
     times = np.linspace(0.0, 40.0, 41)
     expected = slip_motion(disc, START, times)
     errors = [
@@ -89,7 +79,7 @@ def test_error_while_slipping_falls_with_the_tolerance(points):
     ],
 )
 def test_integrators_converge_at_their_order(points, integrator, order, steps):
-    disc = replace(DISC, contact_points=points)
+    disc = replace(FIG11, contact_points=points)
     start = [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # slips so fast that all is smooth, U > W throughout
     times = [0.0, 3.0]
     expected = slip_motion(disc, start, times)[-1]
@@ -105,7 +95,7 @@ def test_integrators_converge_at_their_order(points, integrator, order, steps):
 
 @pytest.mark.parametrize("points", [None, 6])
 def test_implicit_solver_has_an_error_of_first_order_in_the_tolerance(points):
-    disc = replace(DISC, contact_points=points)
+    disc = replace(FIG11, contact_points=points)
     times = np.linspace(0.0, 5.0, 11)
     expected = slip_motion(disc, START, times)
     errors = [
@@ -211,7 +201,7 @@ def test_a_disc_on_points_pivots_about_one_of_them_before_it_rests(tolerance):
 
 def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
     # Fig. 11's disc on six points, near the centre of its modulated motion.
-    disc = replace(DISC, contact_points=6)
+    disc = replace(FIG11, contact_points=6)
     start = [0.01, 0.0, 0.0, 0.0, 0.01, 1.45]
     exact = reference_model.simulate(disc, start, [0.0, 100.0], tolerance=1e-11)
     assert kinds(exact).count("pivot") == 2
@@ -239,7 +229,7 @@ def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
 )
 @pytest.mark.parametrize("solver", ["explicit", "implicit"])
 def test_without_friction_centre_and_spin_are_two_free_decays(points, change, solver):
-    disc = replace(DISC, friction_force=0.0, contact_points=points, **change)
+    disc = replace(FIG11, friction_force=0.0, contact_points=points, **change)
     times = np.linspace(0.0, 10.0, 21)
     found = simulate(disc, START, times, solver=solver)
     accuracy = 1e-10 if solver == "explicit" else 1e-5
@@ -275,7 +265,7 @@ def test_another_point_in_the_place_of_the_first_gives_the_same_motion():
 
 def test_a_large_angle_does_not_stop_the_solver():
     start = START + 1e6 * np.eye(6)[2]
-    found, expected = simulate(DISC, start, [0.0, 20.0]), simulate(DISC, START, [0.0, 20.0])
+    found, expected = simulate(FIG11, start, [0.0, 20.0]), simulate(FIG11, START, [0.0, 20.0])
     np.testing.assert_allclose(found.at_end - expected.at_end, [0.0, 0.0, 1e6, 0.0, 0.0, 0.0], atol=1e-8)
     assert found.solution.steps < 2 * expected.solution.steps
 
@@ -292,4 +282,21 @@ def test_a_large_angle_does_not_stop_the_solver():
 def test_bad_input_is_refused_in_a_sentence(change, message):
     arguments = {"initial_state": START, "times": [0.0, 1.0]} | change
     with pytest.raises(ValueError, match=message):
-        simulate(DISC, **arguments)
+        simulate(FIG11, **arguments)
+
+
+@pytest.mark.parametrize("start", [-5.0, 1e6])
+@pytest.mark.parametrize("simulate", [exudyn_models.simulate, exudyn_models.simulate_with_native_contact])
+def test_the_clock_at_the_start_does_not_matter(simulate, start):
+    disc = replace(STICKING, contact_points=6)
+    delays = np.linspace(0.0, 3.0, 7)
+    moved = simulate(disc, STICKING_START, start + delays)
+    expected = simulate(disc, STICKING_START, delays)
+    # A second is known to 1e-10 of itself on a clock that shows a million of them.
+    assert moved.states == pytest.approx(expected.states, abs=1e-9)
+    assert [phase.kind for phase in moved.phases] == [phase.kind for phase in expected.phases]
+    ends = [(phase.start, phase.end) for phase in moved.phases]
+    assert (ends[0][0], ends[-1][1]) == (start, start + 3.0)
+    assert np.ravel(ends) - start == pytest.approx(
+        np.ravel([(phase.start, phase.end) for phase in expected.phases]), abs=1e-9
+    )

@@ -154,6 +154,7 @@ def test_annulus_is_a_law_like_the_others():
         ((0.08, 0.12, 8, lambda r: 0.1 - r), r"pressure\(0\.1\d* m\) = -.*: it must be >= 0"),
         ((0.08, 0.12, 8, lambda r: math.nan), r"pressure\(0\.08\d* m\) = nan: it must be finite"),
         ((0.08, 0.12, 8, lambda r: 0.0), "pressure = 0 everywhere"),
+        ((0.08, 0.12, 8, 3.0), r"pressure = 3\.0: it must be a function of the radius, or None"),
     ],
 )
 def test_what_is_no_annulus_is_refused(arguments, message):

@@ -354,9 +354,9 @@ def test_circle_of_no_size_is_refused(law, radius, message):
         law(radius)
 
 
-@pytest.mark.parametrize("points", [2, -6, 6.5, 6.0, True, math.nan, "six", None])
+@pytest.mark.parametrize("points", [2, -6, 6.5, 6.0, True, math.nan, "six", None, 10**6])
 def test_what_is_no_number_of_points_is_refused(points):
-    with pytest.raises(ValueError, match=r"points = .*: it must be a whole number >= 3"):
+    with pytest.raises(ValueError, match=r"points = .*: it must be a whole number from 3 to 1000"):
         PointsOnRing(R, points)
 
 
@@ -371,5 +371,17 @@ def test_points_are_refused_where_the_law_must_not_depend_on_the_angle():
     six = replace(FIG11, contact_points=6)
     assert isotropic_contact_of(FIG11, None, "whirls") == RING
     assert isotropic_contact_of(six, EXPANSION, "whirls") == EXPANSION
-    with pytest.raises(ValueError, match="contact_points = 6: whirls of a disc on single points"):
+    with pytest.raises(
+        ValueError, match="contact_points = 6: whirls can't be had for a disc on single points"
+    ):
         isotropic_contact_of(six, None, "whirls")
+    with pytest.raises(
+        ValueError, match=r"contact = PointsOnRing\(radius=0\.12, points=6\): whirls can't be had"
+    ):
+        isotropic_contact_of(FIG11, SIX, "whirls")
+
+
+def test_radius_of_any_kind_of_number_becomes_a_float():
+    for law in (Ring("0.12"), ThreeTermRing(np.float32(0.125)), PointsOnRing(1, 6)):
+        assert type(law.radius) is float
+    assert Ring("0.12") == RING

@@ -410,6 +410,15 @@ def test_free_ring_slides_longer_when_it_spins_and_turns_the_heat_of_all_its_ene
     assert np.all(balance.drive_work == 0.0)
 
 
+@pytest.mark.parametrize(("inertia", "spin"), [(1e9, 1.3), (1.0, 1e6), (1e-4, 1.3)])
+def test_accuracy_of_the_place_depends_on_neither_inertia_nor_spin(inertia, spin):
+    disc, start = replace(FIG11, polar_inertia=inertia), [0.02, 0.0, 0.0, 0.0, 0.0, spin]
+    coarse, fine = (
+        simulate(disc, start, np.linspace(0.0, 10.0, 51), tolerance=tolerance) for tolerance in (1e-9, 1e-12)
+    )
+    assert np.abs(coarse.states[:, :2] - fine.states[:, :2]).max() < 1e-8 * fine.radius.max()
+
+
 # ---------------------------------------------------------------- what is refused
 
 

@@ -523,3 +523,13 @@ def test_a_motion_of_too_many_steps_is_refused_with_its_time(monkeypatch):
     monkeypatch.setattr(stepping, "MOST_STEPS", 50)
     with pytest.raises(SimulationError, match=r"more than 50 steps up to t = \d+"):
         simulate(FIG_5, TO_WHIRL, [0.0, 400.0])
+
+
+def test_a_motion_that_would_take_far_too_many_steps_is_given_up_early(monkeypatch):
+    monkeypatch.setattr(stepping, "LOOK_BACK", 200)
+    for start in (TO_WHIRL, [0.1, 0.0, 1e-9, 0.15]):
+        with pytest.raises(
+            SimulationError, match=r"more than 20,000,000 steps ahead after 200 up to t = \d+"
+        ):
+            simulate(FIG_5, start, [0.0, 1e12])
+    simulate(FIG_5, TO_WHIRL, [0.0, 400.0])

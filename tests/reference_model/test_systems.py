@@ -6,7 +6,16 @@ from dataclasses import FrozenInstanceError, replace
 import numpy as np
 import pytest
 
-from reference_model import PinOnDisc, simulate
+from reference_model import (
+    DiscOnDisc,
+    PinOnDisc,
+    onset_load,
+    self_centred_equilibria,
+    simulate,
+    smallest_load_with_whirl,
+    whirl_orbit,
+    whirls,
+)
 from reference_model.systems import checked_times, checked_tolerance
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -19,7 +28,7 @@ def refusal(function, *args, **kwargs):
         function(*args, **kwargs)
     message = str(caught.value)
     assert "\n" not in message
-    assert len(message) < 200
+    assert len(message) < 250
     assert caught.value.__suppress_context__ or caught.value.__context__ is None  # no second error above it
     return message
 
@@ -59,6 +68,39 @@ def test_integer_beyond_all_floats_is_refused():
 @pytest.mark.parametrize("parameter", ["stiffness", "damping", "friction_force", "disc_speed", "offset"])
 def test_everything_but_the_mass_may_be_zero(parameter):
     assert getattr(replace(FIG_5, **{parameter: 0.0}), parameter) == 0.0
+
+
+@pytest.mark.parametrize("system", [None, "pin", {}, PinOnDisc])
+def test_what_is_no_system_is_refused_wherever_it_is_handed_in(system):
+    message = f"system = {system!r}: it must be a PinOnDisc or a DiscOnDisc"
+    assert refusal(simulate, system, [0.0] * 4, [0.0, 1.0]) == message
+    for function in (self_centred_equilibria, whirls, whirl_orbit):
+        assert refusal(function, system) == message
+
+
+@pytest.mark.parametrize("function", [onset_load, smallest_load_with_whirl])
+def test_a_pin_is_refused_where_only_a_disc_has_what_is_asked_for(function):
+    assert refusal(function, replace(FIG_5, offset=0.0)).endswith("it must be a DiscOnDisc")
+
+
+@pytest.mark.parametrize("points", [1, 2, 2.5, -6, 0, True, 1001, 10**6, 1e6])
+def test_contact_of_too_few_or_too_many_points_is_refused(points):
+    disc = DiscOnDisc(
+        mass=1.0,
+        polar_inertia=1.0,
+        stiffness=1.0,
+        damping=0.5,
+        friction_force=0.0225,
+        disc_speed=1.5,
+        contact_radius=0.12,
+        shaft_damping=0.015,
+        shaft_speed=1.25,
+        contact_points=1000,
+    )
+    message = refusal(replace, disc, contact_points=points)
+    assert message.startswith(
+        f"contact_points = {points}: it must be a whole number from 3 to 1000, or None for"
+    )
 
 
 def test_numbers_of_any_kind_become_floats():
