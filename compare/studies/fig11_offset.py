@@ -24,10 +24,7 @@ from reference_model.stability import sliding_jacobian
 from reference_model.systems import DiscOnDisc, FloatArray
 
 TRIED = (0.0072, 0.00725, 0.0073)
-"""X0 in m of the whirls between which the critical one is interpolated.
-
-So close to each other that the term of third degree, which a parabola leaves out, moves it by less than 1e-10 m.
-"""
+"""X0 in m of the whirls between which the critical one is interpolated."""
 
 TOLERANCE = 1e-12
 
@@ -89,11 +86,12 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
     return max((abs(value) for value in multipliers if value.imag > 0.0), default=math.nan)
 
 
-def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, Orbit]:
-    """Return X0 in m at which the modulus is 1, its slope there in 1/m, and the whirl of the middle of ``TRIED``.
+def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
+    """Return X0 in m at which the modulus is 1, its error, its slope in 1/m, and the whirl of the middle of ``TRIED``.
 
-    From a parabola through the moduli at ``TRIED``. Raises ``RuntimeError`` where there is no such whirl, or
-    none that is nearly critical.
+    From a parabola through the moduli at ``TRIED``; the error is the change by a straight line through the two that
+    are next to it, which is more than a term of third degree makes. Raises ``RuntimeError`` where there is no such
+    whirl, or none that is nearly critical.
     """
     orbits: list[Orbit] = []
     for offset in TRIED:
@@ -108,16 +106,17 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, Orb
             )
         )
     middle = TRIED[1]
-    parabola = Polynomial.fit(
-        np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits], 2
-    ).convert()
+    tried, moduli = np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits]
+    parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
     roots = [float(root.real) for root in parabola.roots() if root.imag == 0.0]
     if not roots:
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
     root = min(roots, key=abs)
-    return middle + root, float(parabola.deriv()(root)), orbits[1]
+    nearest = np.argsort(abs(tried - root))[:2]
+    straight = float(Polynomial.fit(tried[nearest], np.take(moduli, nearest), 1).roots()[0])
+    return middle + root, abs(straight - root), float(parabola.deriv()(root)), orbits[1]
 
 
 @functools.cache
@@ -132,10 +131,10 @@ def critical_claim(engine: Engine) -> Claim:
     predicted, measured, error = math.nan, np.array(math.nan), np.array(math.nan)
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0], TOLERANCE)
-        _, slope, near = found(TOLERANCE)
+        _, interpolation, slope, near = found(TOLERANCE)
         exact = multipliers_by_variation(disc_at(float(measured)), near)
         predicted = float(measured) - (pair_modulus(exact) - 1.0) / slope
-        error = error + _error_of_monodromy(near) / abs(slope)
+        error = error + interpolation + _error_of_monodromy(near) / abs(slope)
     except RuntimeError:  # no whirl, or none that could be critical: no numbers
         pass
     return Claim(
@@ -151,8 +150,8 @@ def critical_claim(engine: Engine) -> Claim:
         note="Measured: whirls with an offset are found by shooting with the engine, for "
         f"{at_each('X0', TRIED)} m, and their multipliers by differences. Predicted: what one step of Newton's "
         "method makes of that X0 with multipliers from the variational equations, integrated with the analytic "
-        "Jacobian. Error: the change at a larger tolerance, and how much the linearised return map changes a shift "
-        "in time.",
+        "Jacobian. Error: the change at a larger tolerance, that by a straight line for the interpolation, and how "
+        "much the linearised return map changes a shift in time.",
     )
 
 
