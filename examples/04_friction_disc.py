@@ -20,7 +20,8 @@ disc = DiscOnDisc(
 (whirl,) = whirls(disc)  # all there are, each with its eigenvalues
 (by_23,) = whirls(disc, ThreeTermRing(disc.contact_radius))  # the paper's simplified equations (23)
 
-start = whirl.state + [1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]  # x, y, angle, vx, vy, spin
+start = whirl.state  # x, y, angle, vx, vy, spin
+start[0] += 1e-3
 times = np.linspace(0.0, 1500.0, 15001)
 trajectory = simulate(disc, start, times)
 in_exudyn = exudyn_models.simulate(disc, start, times)
@@ -28,7 +29,9 @@ in_exudyn = exudyn_models.simulate(disc, start, times)
 if __name__ == "__main__":
     for name, steady in (("ring", whirl), ("(23)", by_23)):
         slowest = steady.eigenvalues[1]  # the first is the zero of the phase
-        print(f"{name}: radius {steady.radius:.6f} m, spin {steady.spin:.6f} rad/s, eigenvalue {slowest:.5f} 1/s")
+        print(
+            f"{name}: radius {steady.radius:.6f} m, spin {steady.spin:.6f} rad/s, eigenvalue {slowest:.5f} 1/s"
+        )
     print(f"there is a whirl from {onset_load(disc):.6f} N on")
     for name, motion in (("reference", trajectory), ("Exudyn", in_exudyn)):
         last = motion.radius[-2500:]  # one period of the modulation and some more
