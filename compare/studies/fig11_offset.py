@@ -87,7 +87,7 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
 
 
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
-    """Return X0 in m at which the modulus is 1, its error, the slope in 1/m, and the whirl in the middle of ``TRIED``.
+    """Return X0 in m of modulus 1, its error, the slope in 1/m, and the whirl in the middle of ``TRIED``.
 
     From a parabola through the moduli at ``TRIED``; the error is the change by a straight line through the two that
     are next to it, which is more than a term of third degree makes. Raises ``RuntimeError`` where there is no such
