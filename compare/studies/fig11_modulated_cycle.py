@@ -77,7 +77,7 @@ STUDY = Study(
     title="The modulated cycle",
     section="The friction disc",
     finding=(
-        "Fig. 11's modulated cycle exists at small offsets only, X0 up to about 7.3 mm, such as zero. There the "
+        "Fig. 11's modulated cycle exists only for offsets X0 from zero to about 7.3 mm. There the "
         "whirl is unstable: a pair of its eigenvalues, in which radius and spin swing together, grows at 0.0104 1/s. "
         "With the 0.1 m of the other figures the disc comes to rest in space."
     ),
