@@ -110,10 +110,11 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
-    roots = [float(root.real) for root in parabola.roots() if root.imag == 0.0]
+    # So far from where it was laid a parabola says nothing any more.
+    roots = [root.real for root in parabola.roots() if root.imag == 0.0 and abs(root.real) < 0.1 * middle]
     if not roots:
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
-    root = min(roots, key=abs)
+    root = float(min(roots, key=abs))
     nearest = np.argsort(abs(tried - root))[:2]
     straight = float(Polynomial.fit(tried[nearest], np.take(moduli, nearest), 1).roots()[0])
     return middle + root, abs(straight - root), float(parabola.deriv()(root)), orbits[1]
