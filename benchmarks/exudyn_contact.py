@@ -21,6 +21,7 @@ import reference_model
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.ring_friction import _force_on_rotor
+from exudyn_models.strength import Strength
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -50,9 +51,10 @@ def ours(radius: float, points: int | None) -> AddContact:
             mbs,
             master,
             disc,
-            friction_force=PIN.friction_force,
-            regularisation=1e-6,
             contact_radius=radius,
+            friction_coefficient=1.0,
+            normal_load=PIN.friction_force,
+            regularisation=1e-6,
             contact_points=points,
         )
 
@@ -74,8 +76,8 @@ def with_force(force: Callable[..., list[float]]) -> AddContact:
 
 def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
     """Add the connector with its force evaluated by a given kernel."""
-    contact = (radius, points, PIN.friction_force, 1e-6, NONE_HELD)
-    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, contact))
+    strength = Strength((radius, points, 1.0, 1e-6, NONE_HELD), 1.0, PIN.friction_force)
+    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, strength, constant))
 
 
 def constant(*arguments: Any) -> list[float]:

@@ -73,7 +73,7 @@ def ring_friction(
     ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
     ``angle`` (rad) is φ, the spins are in rad/s. The force on the master is −F.
     """
-    radius, points, friction, epsilon, _ = contact
+    radius, _, friction, epsilon, _ = contact
     ux = dvx + master_spin * dy  # slip of the disc's centre
     uy = dvy - master_spin * dx
     if radius == 0.0:
@@ -82,22 +82,47 @@ def ring_friction(
         fx = factor * ux
         fy = factor * uy
         return fx, fy, 0.0, dy * fx - dx * fy
-    rim = radius * (disc_spin - master_spin)
-    fx = fy = moment = 0.0
-    if points == CONTINUOUS:
-        speed = math.sqrt(ux * ux + uy * uy)
-        if speed > 0.0 or rim != 0.0:
-            by_speed, by_rim = mean_slip_slopes(speed, abs(rim))
-            mean = by_speed * speed + by_rim * abs(rim)
-            factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
-            if speed > 0.0:
-                push = factor * by_speed / speed
-                fx = push * ux
-                fy = push * uy
-            moment = math.copysign(radius * by_rim, rim) * factor
-        return fx, fy, moment, dy * fx - dx * fy - moment
-    fx, fy, moment = _force_of_points(ux, uy, rim, angle, contact)
+    fx, fy, moment = friction_of_slip(ux, uy, disc_spin - master_spin, angle, contact)
     return fx, fy, moment, dy * fx - dx * fy - moment
+
+
+@numba.njit(cache=True, error_model="numpy")
+def friction_of_slip(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, float]:
+    """Return F_x, F_y (N) and M (N m) on the disc, whose centre slips with u (m/s) and which spins with φ̇ − ω."""
+    radius, points, friction, epsilon, _ = contact
+    rim = radius * spin
+    if points != CONTINUOUS:
+        return _force_of_points(ux, uy, rim, angle, contact)
+    fx = fy = moment = 0.0
+    speed = math.sqrt(ux * ux + uy * uy)
+    if speed > 0.0 or rim != 0.0:
+        by_speed, by_rim = mean_slip_slopes(speed, abs(rim))
+        mean = by_speed * speed + by_rim * abs(rim)
+        factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
+        if speed > 0.0:
+            push = factor * by_speed / speed
+            fx = push * ux
+            fy = push * uy
+        moment = math.copysign(radius * by_rim, rim) * factor
+    return fx, fy, moment
+
+
+@numba.njit(cache=True, error_model="numpy")
+def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
+    """Return P in m/s for the arguments of ``friction_of_slip``."""
+    radius, points, _, _, _ = contact
+    if points == CONTINUOUS:
+        speed, rim = math.sqrt(ux * ux + uy * uy), abs(radius * spin)
+        if speed == 0.0 and rim == 0.0:
+            return 0.0
+        by_speed, by_rim = mean_slip_slopes(speed, rim)
+        return by_speed * speed + by_rim * rim
+    mean = 0.0
+    for i in range(points):
+        mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
+    return mean
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -182,10 +207,7 @@ def ring_friction_derivatives(
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
     spin = disc_spin - master_spin
-    if contact[1] == CONTINUOUS:
-        fx, fy, by_slip = _derivatives_of_ring(ux, uy, spin, contact)
-    else:
-        fx, fy, by_slip = _derivatives_of_points(ux, uy, spin, angle, contact)
+    fx, fy, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     result = np.zeros((4, 7))
     for i in range(3):
         by_ux, by_uy, by_spin, by_angle = by_slip[i]
@@ -204,10 +226,20 @@ def ring_friction_derivatives(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _derivatives_of_points(
+def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
     """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    if contact[1] == CONTINUOUS:
+        return _derivatives_of_ring(ux, uy, spin, contact)
+    return _derivatives_of_points(ux, uy, spin, angle, contact)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _derivatives_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """As ``derivatives_by_slip``."""
     radius, points, friction, epsilon, held = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
@@ -281,7 +313,7 @@ def _slip_of_point(
 def _derivatives_of_ring(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return what ``_derivatives_of_points`` does, which does not depend on the angle here."""
+    """As ``derivatives_by_slip``; nothing depends on the angle here."""
     radius, _, friction, epsilon, _ = contact
     rim = radius * spin
     speed = math.sqrt(ux * ux + uy * uy)
