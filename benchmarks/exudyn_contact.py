@@ -21,7 +21,7 @@ import reference_model
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.ring_friction import _force_on_rotor
-from exudyn_models.strength import Strength
+from exudyn_models.strength import NumberOrFunction, Strength
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -43,7 +43,7 @@ REPETITIONS = 7
 AddContact = Callable[[Any, Any, Any], None]
 
 
-def ours(radius: float, points: int | None) -> AddContact:
+def ours(normal_load: NumberOrFunction = PIN.friction_force, **geometry: Any) -> AddContact:
     """Add the connector as it is used."""
 
     def add(mbs: Any, master: Any, disc: Any) -> None:
@@ -51,11 +51,10 @@ def ours(radius: float, points: int | None) -> AddContact:
             mbs,
             master,
             disc,
-            contact_radius=radius,
             friction_coefficient=1.0,
-            normal_load=PIN.friction_force,
+            normal_load=normal_load,
             regularisation=1e-6,
-            contact_points=points,
+            **geometry,
         )
 
     return add
@@ -76,7 +75,7 @@ def with_force(force: Callable[..., list[float]]) -> AddContact:
 
 def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
     """Add the connector with its force evaluated by a given kernel."""
-    strength = Strength((radius, points, 1.0, 1e-6, NONE_HELD), 1.0, PIN.friction_force)
+    strength = Strength((radius, points, 1.0, 1e-6, NONE_HELD, radius), 1.0, PIN.friction_force)
     return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, strength, constant))
 
 
@@ -88,11 +87,13 @@ def constant(*arguments: Any) -> list[float]:
 CONTACTS: dict[str, AddContact | None] = {
     "no friction, native springs only": None,
     "a user function that returns constants": with_force(constant),
-    "pin, connector as used": ours(0.0, 1),
+    "pin, connector as used": ours(contact_radius=0.0),
     "pin, numba": kernel(ring_friction, 0.0, 1),
-    "six points, connector as used": ours(0.12, 6),
-    "24 points, connector as used": ours(0.12, 24),
-    "continuous ring, connector as used": ours(0.12, None),
+    "six points, connector as used": ours(contact_radius=0.12, contact_points=6),
+    "24 points, connector as used": ours(contact_radius=0.12, contact_points=24),
+    "continuous ring, connector as used": ours(contact_radius=0.12),
+    "the same under a load of time": ours(lambda t: PIN.friction_force, contact_radius=0.12),
+    "annulus, connector as used": ours(inner_radius=0.08, outer_radius=0.12),
 }
 
 
@@ -118,7 +119,7 @@ def cost_of_kernels() -> None:
         ("24 points", 0.12, 24),
         ("continuous ring", 0.12, CONTINUOUS),
     ):
-        contact = (radius, points, PIN.friction_force, 1e-7, NONE_HELD)
+        contact = (radius, points, PIN.friction_force, 1e-7, NONE_HELD, radius)
         for where, fastest in (("around U = W", 0.048), ("U up to 20 W", 0.48)):
             best = math.inf
             for _ in range(200):

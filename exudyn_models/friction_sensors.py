@@ -21,7 +21,7 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 Quantity = Literal["transmitted_moment", "radial_force", "centre_slip", "rim_slip", "power", "heat"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RingFriction:
     """Friction that ``add_ring_friction`` has added to a model.
 

@@ -61,7 +61,9 @@ def add_ring_friction(
     master_node: Any,
     disc_node: Any,
     *,
-    contact_radius: float,
+    contact_radius: float | None = None,
+    inner_radius: float | None = None,
+    outer_radius: float | None = None,
     friction_coefficient: NumberOrFunction,
     normal_load: NumberOrFunction,
     regularisation: float,
@@ -71,8 +73,9 @@ def add_ring_friction(
     """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
 
     The contact is a circle of ``contact_radius`` about the origin of the disc's node, or ``contact_points`` points on
-    it that turn with the disc: point i at the angle φ + 2πi/n. The points share the normal load N alike. The law is
-    that of ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
+    it that turn with the disc: point i at the angle φ + 2πi/n. The points share the normal load N alike. Or it is the
+    annulus between ``inner_radius`` and ``outer_radius`` under uniform pressure. The law is that of
+    ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
 
     Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
     ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The plane of contact goes through the disc's node across the
@@ -88,6 +91,8 @@ def add_ring_friction(
         Of the two bodies.
     contact_radius : float
         R in m, >= 0; the contact is a pin if it is 0.
+    inner_radius, outer_radius : float
+        In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
     friction_coefficient : float or callable
         μ >= 0, or a function that returns it for the mean slip speed of the contact in m/s (Stribeck's curve).
     normal_load : float or callable
@@ -96,7 +101,7 @@ def add_ring_friction(
     regularisation : float
         ε in m/s, > 0.
     contact_points : int or None
-        n >= 1, or None for the whole circle.
+        n >= 1, or None for the whole circle or annulus.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
@@ -107,12 +112,17 @@ def add_ring_friction(
         number in a run, Exudyn ends it with an error that tells it and for which argument.
 
     """
-    radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+    if inner_radius is None and outer_radius is None:
+        radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+        inner = radius
+    else:
+        inner, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
+        points, epsilon = CONTINUOUS, checked_regularisation(regularisation)
     if held is not None and held not in range(1, 1 + points):
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
-    unit = (radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1)
+    unit = (radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner)
     strength = Strength(unit, friction_coefficient, normal_load)
     kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
     if int(master_node) == int(disc_node):
@@ -149,7 +159,7 @@ def add_ring_friction(
 
 
 def checked_contact(
-    regularisation: float, contact_radius: float, contact_points: int | None
+    regularisation: float, contact_radius: float | None, contact_points: int | None
 ) -> tuple[float, int, float]:
     """Return R, number of points and ε; raise ``ValueError`` if one is out of its range."""
     radius = finite_number("contact_radius", contact_radius)
@@ -165,6 +175,24 @@ def checked_contact(
     if radius == 0.0:  # a pin, of however many points
         return radius, 1, epsilon
     return radius, int(contact_points or CONTINUOUS), epsilon
+
+
+def _checked_annulus(
+    inner_radius: float | None,
+    outer_radius: float | None,
+    contact_radius: float | None,
+    contact_points: int | None,
+) -> tuple[float, float]:
+    """Return both radii in m; raise ``ValueError`` if there is no such annulus."""
+    for name, value in (("contact_radius", contact_radius), ("contact_points", contact_points)):
+        if value is not None:
+            raise ValueError(f"{name} = {value}: it must be left out for an annulus with its two radii")
+    inner, outer = finite_number("inner_radius", inner_radius), finite_number("outer_radius", outer_radius)
+    if inner < 0.0:
+        raise ValueError(f"inner_radius = {inner:g} m: it must be >= 0")
+    if outer <= inner:
+        raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
+    return inner, outer
 
 
 def checked_regularisation(value: float) -> float:

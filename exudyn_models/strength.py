@@ -81,8 +81,8 @@ class Strength:
         return (self.coefficient(high) - self.coefficient(low)) / (high - low)
 
     def _with(self, friction: float) -> Contact:
-        radius, points, _, epsilon, held = self._contact
-        return radius, points, friction, epsilon, held
+        radius, points, _, epsilon, held, inner = self._contact
+        return radius, points, friction, epsilon, held, inner
 
 
 def checked_strength(name: str, value: float, unit: str) -> float:

@@ -30,6 +30,7 @@ CONTACT = {
     "regularisation": 1e-3,
     "contact_points": 6,
 }
+ANNULUS = {"contact_radius": None, "contact_points": None, "inner_radius": 0.08, "outer_radius": 0.12}
 
 
 def body(mbs, kind, mass, inertia, position, velocity):
@@ -66,9 +67,13 @@ def conserved(kinds):
     return [5] if "rotor" in kinds else [0, 1, 5]
 
 
-@pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
-def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_into_heat(kinds):
-    mbs, nodes, friction = pair_of(kinds)
+@pytest.mark.parametrize(
+    ("kinds", "contact"),
+    [*product(PAIRS, [{}]), *product([("planar", "planar"), ("Tait-Bryan", "rotation vector")], [ANNULUS])],
+    ids=lambda value: " on ".join(value) if isinstance(value, tuple) else "annulus" if value else "points",
+)
+def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_into_heat(kinds, contact):
+    mbs, nodes, friction = pair_of(kinds, **contact)
     heat = friction.add_sensor("heat")
     mbs.Assemble()
     before, energy_before = momenta_and_energy(mbs, kinds, nodes)
@@ -88,12 +93,23 @@ def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_i
     [
         {},
         {"contact_points": None},
+        ANNULUS,
+        ANNULUS | {"regularisation": 100.0, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
         {"contact_radius": 0.0},
         {"contact_points": None, "regularisation": 100.0},
         {"contact_points": None, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
         {"friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v), "normal_load": lambda t: 3.0 + t},
     ],
-    ids=["points", "ring", "pin", "creeping ring", "Stribeck's ring", "Stribeck's points, load of time"],
+    ids=[
+        "points",
+        "ring",
+        "annulus",
+        "Stribeck's creeping annulus",
+        "pin",
+        "creeping ring",
+        "Stribeck's ring",
+        "Stribeck's points, load of time",
+    ],
 )
 def test_jacobian_of_any_pair_is_the_derivative_of_the_force(kinds, contact):
     mbs, nodes, friction = pair_of(kinds, **contact)

@@ -18,6 +18,7 @@ CONTACT = {
     "regularisation": 1e-3,
     "contact_points": 1,
 }
+ANNULUS = {"contact_radius": None, "contact_points": None, "inner_radius": 0.08, "outer_radius": 0.12}
 
 
 @pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 3), (0.12, 6), (0.3, 24), (0.12, None)])
@@ -152,6 +153,14 @@ def test_exudyns_linearisation_has_the_eigenvalues_of_the_self_centred_equilibri
         ({"contact_radius": -0.1}, "contact_radius = -0.1 m"),
         ({"contact_points": 0}, "contact_points = 0"),
         ({"contact_points": 2.5}, "contact_points = 2.5"),
+        ({"contact_radius": None}, "contact_radius = None: it must be a number"),
+        (ANNULUS | {"inner_radius": -0.1}, "inner_radius = -0.1 m: it must be >= 0"),
+        (ANNULUS | {"inner_radius": None}, "inner_radius = None: it must be a number"),
+        (ANNULUS | {"outer_radius": 0.08}, "outer_radius = 0.08 m: it must be > inner_radius = 0.08 m"),
+        (ANNULUS | {"outer_radius": float("inf")}, "outer_radius = inf"),
+        (ANNULUS | {"contact_radius": 0.1}, "contact_radius = 0.1: it must be left out for an annulus"),
+        (ANNULUS | {"contact_points": 6}, "contact_points = 6: it must be left out for an annulus"),
+        (ANNULUS | {"regularisation": -1.0}, "regularisation = -1 m/s"),
         ({"held": 2}, "held = 2: it must be from 1 to the number of points, 1"),
         ({"held": 0}, "held = 0: it must be from 1 to the number of points, 1"),
         ({"held": 1, "contact_points": None, "contact_radius": 0.1}, "held = 1: it must be from 1"),
