@@ -22,9 +22,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from exudyn_models.compiled import compiled
 from exudyn_models.mean_slip import mean_slip_gradient, mean_slip_hessian, mean_slip_of_circles
 from reference_model.systems import FloatArray
 
@@ -51,7 +51,7 @@ for one load in ten on six points, one in six on three. With 0.3 of K it found a
 """
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def ring_friction(
     dx: float,
     dy: float,
@@ -80,7 +80,7 @@ def ring_friction(
     return fx, fy, moment, dy * fx - dx * fy - moment
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def friction_of_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, float]:
@@ -102,7 +102,7 @@ def friction_of_slip(
     return fx, fy, moment
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
     """Return P in m/s for the arguments of ``friction_of_slip``."""
     radius, points, _, _, _, inner = contact
@@ -114,7 +114,7 @@ def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Co
     return mean
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _force_of_points(
     ux: float, uy: float, rim: float, angle: float, contact: Contact
 ) -> tuple[float, float, float]:
@@ -162,7 +162,7 @@ BEND = 4.0 / 3.0
 """Slip of the slowest point, over δ, from which on it acts as all others."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
     """Return which part of the slowest point's slip the others lose, and whether its own friction is viscous."""
     if held != NONE_HELD or speed <= delta:
@@ -170,7 +170,7 @@ def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
     return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def point_regularisation(epsilon: float, points: int) -> float:
     """Return δ in m/s, below which a single point's friction is viscous."""
     if points == 1:
@@ -178,7 +178,7 @@ def point_regularisation(epsilon: float, points: int) -> float:
     return epsilon / BEND / (1.0 + 4.0 / (math.pi * math.sin(math.pi / points)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def ring_friction_derivatives(
     dx: float,
     dy: float,
@@ -214,7 +214,7 @@ def ring_friction_derivatives(
     return result
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
@@ -224,7 +224,7 @@ def derivatives_by_slip(
     return _derivatives_of_points(ux, uy, spin, angle, contact)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _derivatives_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
@@ -289,7 +289,7 @@ def _derivatives_of_points(
     return force.real, force.imag, result
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _slip_of_point(
     ux: float, uy: float, spin: float, alpha: float, radius: float
 ) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
@@ -298,7 +298,7 @@ def _slip_of_point(
     return arm, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:

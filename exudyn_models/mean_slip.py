@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from exudyn_models.compiled import compiled
 from reference_model.systems import FloatArray
 
 NEAREST = 1e-15
@@ -42,7 +42,7 @@ def _rule() -> tuple[FloatArray, FloatArray]:
 _WAYS, _WEIGHTS = _rule()
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_gradient(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), a ring if alike.
 
@@ -66,7 +66,7 @@ def mean_slip_gradient(speed: float, spin: float, inner: float, outer: float) ->
     return by_speed / total, by_spin / total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_hessian(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float, float]:
     """Return ∂²P/∂U², ∂²P/∂U∂|S| and ∂²P/∂|S|² for the arguments of ``mean_slip_gradient``."""
     if inner == outer:
@@ -88,7 +88,7 @@ def mean_slip_hessian(speed: float, spin: float, inner: float, outer: float) -> 
     return by_speed_twice / total, mixed / total, by_spin_twice / total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _resting_radius(speed: float, spin: float, inner: float, outer: float) -> float:
     """Return r₀ = U/|S| in m, or the radius of the contact next to it."""
     if speed >= outer * spin:
@@ -96,7 +96,7 @@ def _resting_radius(speed: float, spin: float, inner: float, outer: float) -> fl
     return max(inner, speed / spin)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂W of a ring whose centre slips with U >= 0 and whose rim turns with W >= 0, not both zero.
 
@@ -113,7 +113,7 @@ def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
     return by_smaller, by_larger
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
     """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² at U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
     larger, smaller = max(speed, rim), min(speed, rim)
@@ -128,7 +128,7 @@ def mean_slip_curvatures(speed: float, rim: float) -> tuple[float, float, float]
     return curvature, mixed, by_larger
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
     """Return the derivatives of P by its larger and by its smaller argument."""
     ratio = smaller / larger
@@ -140,7 +140,7 @@ def _slopes(larger: float, smaller: float) -> tuple[float, float]:
     return (0.5 - t + complement * (0.5 + t)) * scale, ratio * (0.5 - t) * scale
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _mean(ratio: float, complement: float) -> tuple[float, float]:
     """Return A and T of ``mean_slip_slopes`` for k and 1 − k² > 0."""
     m = ratio * ratio
@@ -161,7 +161,7 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
     return 0.5 * (a + b), t
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_of_circles(speed: float, spin: float, inner: float, outer: float) -> float:
     """Return P in m/s for the arguments of ``mean_slip_gradient``, which both may be zero here."""
     if speed == 0.0 and spin == 0.0:
@@ -170,7 +170,7 @@ def mean_slip_of_circles(speed: float, spin: float, inner: float, outer: float) 
     return by_speed * speed + by_spin * spin
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def mean_slip_speeds(speeds: FloatArray, rims: FloatArray) -> FloatArray:
     """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
     result = np.zeros(len(speeds))

@@ -138,7 +138,7 @@ def add_ring_friction(
         if kinds[0] == PLANAR:
             x, y = x - place[0], y - place[1]
         # A pin's force is so short that the call into compiled code would cost more than it saves.
-        kernel: Kernel = ring_friction.py_func if radius == 0.0 else ring_friction
+        kernel: Kernel = cast(Any, ring_friction).py_func if radius == 0.0 else ring_friction
         on_pair, jacobian_on_pair = (
             (_force_on_planar_master, _jacobian_on_planar_master)
             if kinds[0] == PLANAR

@@ -14,10 +14,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from exudyn_models.compiled import compiled
 from exudyn_models.friction_laws import Contact, derivatives_by_slip, friction_of_slip, mean_slip_speed
 from reference_model.systems import FloatArray
 
@@ -46,7 +46,7 @@ Array = NDArray[Any]
 """Of real numbers, or of complex ones where derivatives are asked for."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def slip_map(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
@@ -73,7 +73,7 @@ def slip_map(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any,
     return result, axes, (_product(mark, axes[:, 0]), _product(mark, axes[:, 1]))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def friction_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
 ) -> tuple[FloatArray, float]:
@@ -87,7 +87,7 @@ def friction_on_nodes(
     )
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def friction_derivatives_on_nodes(
     kinds: Kinds,
     coordinates: FloatArray,
@@ -127,7 +127,7 @@ def friction_derivatives_on_nodes(
     return by_nodes, mean_by_nodes
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
     """Return position and axes of a body, and the columns that turn rates of its coordinates into ω."""
     place, axes, turning = np.zeros(3, q.dtype), np.zeros((3, 3), q.dtype), np.zeros((3, 3), q.dtype)
@@ -153,7 +153,7 @@ def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
     return place, axes, turning
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _rotate_by_vector(v: Array, axes: Array) -> None:
     """Fill ``axes``, all zero, by Rodrigues' formula, 1 + sin(θ)/θ·[v] + (1 − cos(θ))/θ²·[v]²."""
     square = _product(v, v)
@@ -171,7 +171,7 @@ def _rotate_by_vector(v: Array, axes: Array) -> None:
         axes[j, k] -= linear * v[i]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _product(a: Array, b: Array) -> Any:
     """Return a·b without the complex conjugate."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -91,14 +91,19 @@ def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_i
 @pytest.mark.parametrize(
     "contact",
     [
-        {},
+        {"contact_radius": 0.7, "contact_points": 3},
         {"contact_points": None},
         ANNULUS,
         ANNULUS | {"regularisation": 100.0, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
         {"contact_radius": 0.0},
         {"contact_points": None, "regularisation": 100.0},
         {"contact_points": None, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
-        {"friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v), "normal_load": lambda t: 3.0 + t},
+        {
+            "contact_radius": 0.7,
+            "contact_points": 3,
+            "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v),
+            "normal_load": lambda t: 3.0 + t,
+        },
     ],
     ids=[
         "points",
