@@ -92,6 +92,21 @@ def test_load_and_coefficient_can_be_changed_between_two_runs(radius):
         assert coordinates(mbs, disc)[1][0] == pytest.approx(30.0 - impulse / MASS, rel=1e-11)
 
 
+def test_two_contacts_between_the_same_bodies_add_up_and_keep_their_own_loads_and_heat():
+    mbs, master, disc, first = spinning_disc()
+    second = add_ring_friction(mbs, master, disc, **CONTACT | {"normal_load": lambda t: 2.0 * LOAD * t})
+    heats = [friction.add_sensor("heat") for friction in (first, second)]
+    mbs.Assemble()
+    run_explicitly(mbs, 1.0, 100)
+    assert spins(mbs, master, disc) == expected_spins(2.0 * MU * LOAD)
+    # W = R·S and S = S₀ + κ(t + t²) with κ = (1/J + 1/J_m)·R·μN, the heats −∫μN·W and −∫2μN·t·W.
+    growth = (1.0 / INERTIA + 1.0 / MASTER_INERTIA) * RADIUS * MU * LOAD
+    start = SPIN - MASTER_SPIN
+    expected = [start + growth * (1.0 / 2.0 + 1.0 / 3.0), start + 2.0 * growth * (1.0 / 3.0 + 1.0 / 4.0)]
+    found = [float(mbs.GetSensorValues(heat)) for heat in heats]
+    np.testing.assert_allclose(found, -MU * LOAD * RADIUS * np.array(expected), rtol=1e-11)
+
+
 def test_a_change_that_is_refused_leaves_the_friction_as_it_was():
     mbs, *bodies, friction = spinning_disc()
     mbs.Assemble()
