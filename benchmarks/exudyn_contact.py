@@ -22,6 +22,7 @@ from compare.paper import FIG5, FIG11
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.ring_friction import _force_on_rotor
+from exudyn_models.strength import NumberOrFunction, Strength
 
 STEPS = 20_000
 EVALUATIONS_PER_STEP = 5  # four stages of RK44, and the acceleration at the end of the step
@@ -30,7 +31,7 @@ REPETITIONS = 7
 AddContact = Callable[[Any, Any, Any], None]
 
 
-def ours(radius: float, points: int | None) -> AddContact:
+def ours(normal_load: NumberOrFunction = FIG5.friction_force, **geometry: Any) -> AddContact:
     """Add the connector as it is used."""
 
     def add(mbs: Any, master: Any, disc: Any) -> None:
@@ -38,10 +39,10 @@ def ours(radius: float, points: int | None) -> AddContact:
             mbs,
             master,
             disc,
-            friction_force=FIG5.friction_force,
+            friction_coefficient=1.0,
+            normal_load=normal_load,
             regularisation=1e-6,
-            contact_radius=radius,
-            contact_points=points,
+            **geometry,
         )
 
     return add
@@ -62,8 +63,8 @@ def with_force(force: Callable[..., list[float]]) -> AddContact:
 
 def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
     """Add the connector with its force evaluated by a given kernel."""
-    contact = (radius, points, FIG5.friction_force, 1e-6, NONE_HELD)
-    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, contact))
+    strength = Strength((radius, points, 1.0, 1e-6, NONE_HELD, radius), 1.0, FIG5.friction_force)
+    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, strength, constant))
 
 
 def constant(*arguments: Any) -> list[float]:
@@ -74,11 +75,13 @@ def constant(*arguments: Any) -> list[float]:
 CONTACTS: dict[str, AddContact | None] = {
     "no friction, native springs only": None,
     "a user function that returns constants": with_force(constant),
-    "pin, connector as used": ours(0.0, 1),
+    "pin, connector as used": ours(contact_radius=0.0),
     "pin, numba": kernel(ring_friction, 0.0, 1),
-    "six points, connector as used": ours(0.12, 6),
-    "24 points, connector as used": ours(0.12, 24),
-    "continuous ring, connector as used": ours(0.12, None),
+    "six points, connector as used": ours(contact_radius=0.12, contact_points=6),
+    "24 points, connector as used": ours(contact_radius=0.12, contact_points=24),
+    "continuous ring, connector as used": ours(contact_radius=0.12),
+    "the same under a load of time": ours(lambda t: FIG5.friction_force, contact_radius=0.12),
+    "annulus, connector as used": ours(inner_radius=0.08, outer_radius=0.12),
 }
 
 
@@ -104,7 +107,7 @@ def cost_of_kernels() -> None:
         ("24 points", 0.12, 24),
         ("continuous ring", 0.12, CONTINUOUS),
     ):
-        contact = (radius, points, FIG5.friction_force, 1e-7, NONE_HELD)
+        contact = (radius, points, FIG5.friction_force, 1e-7, NONE_HELD, radius)
         for where, fastest in (("around U = W", 0.048), ("U up to 20 W", 0.48)):
             best = math.inf
             for _ in range(200):

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.friction_laws import mean_slip_slopes, mean_slip_speeds, point_regularisation
+from exudyn_models.friction_laws import point_regularisation
+from exudyn_models.mean_slip import mean_slip_slopes, mean_slip_speeds
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 WHOLE = 0

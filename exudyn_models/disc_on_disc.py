@@ -38,9 +38,10 @@ def build_disc_on_disc(
             mbs,
             master,
             body,
-            friction_force=disc.friction_force,
-            regularisation=regularisation,
             contact_radius=disc.contact_radius,
+            friction_coefficient=1.0,
+            normal_load=disc.friction_force,
+            regularisation=regularisation,
             contact_points=disc.contact_points,
         )
     return assembled(container, mbs, body, disc)

@@ -1,14 +1,13 @@
-"""Coulomb friction of a pin, of points on a ring and of the continuous ring, compiled for Exudyn's user functions.
+"""Coulomb friction of a pin, of points on a ring, of a ring and of an annulus, compiled for Exudyn's user functions.
 
-All are gradients of a mean slip speed. With u the slip of the disc's centre and w = R·(φ̇ − ω) the speed of its rim
-relative to the master disc, a point at the angle α slips with u + w·(−sin α, cos α), and the mean of its magnitude
-over the contact is P(u, w). The friction on the disc is −μN·∂P/∂u and the moment −μN·R·∂P/∂w: they work against
-the slip with the power μN·P.
+All are gradients of a mean slip speed. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
+and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is P(u, S). The
+friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
 
 Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
 release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
 
-- *The contact as a whole* is viscous where P < ε: force and moment are those in the same direction of (u, w) at
+- *The contact as a whole* is viscous where P < ε: force and moment are those in the same direction of (u, S) at
   P = ε, times P/ε. As these are on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if
   Coulomb friction could hold it.
 - *One of n points* on the way through rest, because alone it can jump. Where the slowest of them slips with v below
@@ -16,37 +15,32 @@ release leaves an error of ε^0.8 behind, here all errors are of first order in 
   less v·(4 − 3v/δ) beyond. Its own friction is viscous below δ. So its force grows from nothing to its share of μN,
   while the others have the directions that they have when the disc pivots about it: again those of the limit surface.
   δ = (3/4)·ε/(1 + (4/π)/sin(π/n)) makes sure that at P = ε no two points are slower than 4δ/3: they are 2R·sin(π/n)
-  apart, and if the slip of one is v, then P <= v + (4/π)|w|.
+  apart, and if the slip of one is v, then P <= v + (4/π)R|S|.
 """
 
 from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from exudyn_models.compiled import compiled
+from exudyn_models.mean_slip import mean_slip_gradient, mean_slip_hessian, mean_slip_of_circles
 from reference_model.systems import FloatArray
 
 CONTINUOUS = 0
-"""Number of contact points by which the compiled functions know the continuous ring."""
+"""Number of contact points by which the compiled functions know the continuous ring or annulus."""
 
 NONE_HELD = -1
 """In place of the number of a point: none is held."""
 
-Contact = tuple[float, int, float, float, int]
-"""R in m, number of points, μN in N, ε in m/s, and the point whose friction is viscous at any slip or ``NONE_HELD``.
+Contact = tuple[float, int, float, float, int, float]
+"""R in m, number of points, μN in N, ε in m/s, the point held or ``NONE_HELD``, and the inner radius in m.
 
-That point models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
+The inner radius is R, but of an annulus, whose outer radius is R. The friction of the point held is viscous at any
+slip: it models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
 linear, and can not throw off Newton's iteration.
 """
-
-NEAREST = 1e-15
-"""Relative distance from U = W below which the slope of the ring's friction grows no more.
-
-It is infinite there, like a logarithm: the slope at this distance is a secant over what a step can't resolve.
-"""
-
 
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
@@ -57,7 +51,7 @@ for one load in ten on six points, one in six on three. With 0.3 of K it found a
 """
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def ring_friction(
     dx: float,
     dy: float,
@@ -73,7 +67,7 @@ def ring_friction(
     ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
     ``angle`` (rad) is φ, the spins are in rad/s. The force on the master is −F.
     """
-    radius, points, friction, epsilon, _ = contact
+    radius, _, friction, epsilon, _, _ = contact
     ux = dvx + master_spin * dy  # slip of the disc's centre
     uy = dvy - master_spin * dx
     if radius == 0.0:
@@ -82,30 +76,50 @@ def ring_friction(
         fx = factor * ux
         fy = factor * uy
         return fx, fy, 0.0, dy * fx - dx * fy
-    rim = radius * (disc_spin - master_spin)
-    fx = fy = moment = 0.0
-    if points == CONTINUOUS:
-        speed = math.sqrt(ux * ux + uy * uy)
-        if speed > 0.0 or rim != 0.0:
-            by_speed, by_rim = mean_slip_slopes(speed, abs(rim))
-            mean = by_speed * speed + by_rim * abs(rim)
-            factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
-            if speed > 0.0:
-                push = factor * by_speed / speed
-                fx = push * ux
-                fy = push * uy
-            moment = math.copysign(radius * by_rim, rim) * factor
-        return fx, fy, moment, dy * fx - dx * fy - moment
-    fx, fy, moment = _force_of_points(ux, uy, rim, angle, contact)
+    fx, fy, moment = friction_of_slip(ux, uy, disc_spin - master_spin, angle, contact)
     return fx, fy, moment, dy * fx - dx * fy - moment
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
+def friction_of_slip(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, float]:
+    """Return F_x, F_y (N) and M (N m) on the disc, whose centre slips with u (m/s) and which spins with φ̇ − ω."""
+    radius, points, friction, epsilon, _, inner = contact
+    if points != CONTINUOUS:
+        return _force_of_points(ux, uy, radius * spin, angle, contact)
+    fx = fy = moment = 0.0
+    speed = math.sqrt(ux * ux + uy * uy)
+    if speed > 0.0 or spin != 0.0:
+        by_speed, by_spin = mean_slip_gradient(speed, abs(spin), inner, radius)
+        mean = by_speed * speed + by_spin * abs(spin)
+        factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
+        if speed > 0.0:
+            push = factor * by_speed / speed
+            fx = push * ux
+            fy = push * uy
+        moment = math.copysign(by_spin, spin) * factor
+    return fx, fy, moment
+
+
+@compiled
+def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
+    """Return P in m/s for the arguments of ``friction_of_slip``."""
+    radius, points, _, _, _, inner = contact
+    if points == CONTINUOUS:
+        return mean_slip_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
+    mean = 0.0
+    for i in range(points):
+        mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
+    return mean
+
+
+@compiled
 def _force_of_points(
     ux: float, uy: float, rim: float, angle: float, contact: Contact
 ) -> tuple[float, float, float]:
     """Return F_x, F_y and M."""
-    radius, points, friction, epsilon, held = contact
+    radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     turn = complex(math.cos(2.0 * math.pi / points), math.sin(2.0 * math.pi / points))
     arm = complex(math.cos(angle), math.sin(angle))
@@ -148,7 +162,7 @@ BEND = 4.0 / 3.0
 """Slip of the slowest point, over δ, from which on it acts as all others."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
     """Return which part of the slowest point's slip the others lose, and whether its own friction is viscous."""
     if held != NONE_HELD or speed <= delta:
@@ -156,7 +170,7 @@ def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
     return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def point_regularisation(epsilon: float, points: int) -> float:
     """Return δ in m/s, below which a single point's friction is viscous."""
     if points == 1:
@@ -164,7 +178,7 @@ def point_regularisation(epsilon: float, points: int) -> float:
     return epsilon / BEND / (1.0 + 4.0 / (math.pi * math.sin(math.pi / points)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def ring_friction_derivatives(
     dx: float,
     dy: float,
@@ -182,10 +196,7 @@ def ring_friction_derivatives(
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
     spin = disc_spin - master_spin
-    if contact[1] == CONTINUOUS:
-        fx, fy, by_slip = _derivatives_of_ring(ux, uy, spin, contact)
-    else:
-        fx, fy, by_slip = _derivatives_of_points(ux, uy, spin, angle, contact)
+    fx, fy, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     result = np.zeros((4, 7))
     for i in range(3):
         by_ux, by_uy, by_spin, by_angle = by_slip[i]
@@ -203,12 +214,22 @@ def ring_friction_derivatives(
     return result
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _derivatives_of_points(
+@compiled
+def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
     """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
-    radius, points, friction, epsilon, held = contact
+    if contact[1] == CONTINUOUS:
+        return _derivatives_of_circles(ux, uy, spin, contact)
+    return _derivatives_of_points(ux, uy, spin, angle, contact)
+
+
+@compiled
+def _derivatives_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """As ``derivatives_by_slip``."""
+    radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
     # P and its derivatives, which count where the contact creeps as a whole, and the slowest point.
@@ -268,7 +289,7 @@ def _derivatives_of_points(
     return force.real, force.imag, result
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled
 def _slip_of_point(
     ux: float, uy: float, spin: float, alpha: float, radius: float
 ) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
@@ -277,112 +298,34 @@ def _slip_of_point(
     return arm, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _derivatives_of_ring(
+@compiled
+def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return what ``_derivatives_of_points`` does, which does not depend on the angle here."""
-    radius, _, friction, epsilon, _ = contact
-    rim = radius * spin
+    """As ``derivatives_by_slip``; nothing depends on the angle here."""
+    radius, _, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     # At rest the slope depends on the direction in which slip starts: take one without spin.
-    size = speed if speed > 0.0 or rim != 0.0 else 1.0
-    by_speed, by_rim = mean_slip_slopes(size, abs(rim))
-    by_speed_twice, mixed, by_rim_twice = mean_slip_curvatures(size, abs(rim))
+    size = speed if speed > 0.0 or spin != 0.0 else 1.0
+    by_speed, by_spin = mean_slip_gradient(size, abs(spin), inner, radius)
+    by_speed_twice, mixed, by_spin_twice = mean_slip_hessian(size, abs(spin), inner, radius)
     across = by_speed / size if size > 0.0 else by_speed_twice
-    by_rim, mixed = math.copysign(by_rim, rim), math.copysign(mixed, -rim)
-    mean = by_speed * speed + by_rim * rim
+    by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
+    mean = by_speed * speed + by_spin * spin
     sliding = mean > epsilon
     # The potential is P, or P²/(2ε) near rest; the direction of the slip counts in both.
     factor = 1.0 if sliding else by_speed * size / epsilon if mean == 0.0 else mean / epsilon
     tip = 0.0 if sliding else 1.0 / epsilon
     along = -friction * (factor * by_speed_twice + tip * by_speed * by_speed)
     turning = -friction * factor * across
-    coupling = -friction * radius * (factor * mixed + tip * by_speed * by_rim)
+    coupling = -friction * (factor * mixed + tip * by_speed * by_spin)
     result = np.zeros((3, 4))
     result[0, 0] = along * ex * ex + turning * ey * ey
     result[1, 1] = along * ey * ey + turning * ex * ex
     result[0, 1] = result[1, 0] = (along - turning) * ex * ey
     result[0, 2] = result[2, 0] = coupling * ex
     result[1, 2] = result[2, 1] = coupling * ey
-    result[2, 2] = -friction * radius * radius * (factor * by_rim_twice + tip * by_rim * by_rim)
+    result[2, 2] = -friction * (factor * by_spin_twice + tip * by_spin * by_spin)
     push = -friction * (1.0 if sliding else mean / epsilon) * by_speed
     return push * ex, push * ey, result
-
-
-@numba.njit(cache=True, error_model="numpy")
-def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
-    """Return ∂P/∂U and ∂P/∂W of a ring whose centre slips with U >= 0 and whose rim turns with W >= 0, not both zero.
-
-    With k = W/U <= 1, a₀ = 1, b₀ = √(1 − k²) and c₀ = k, the arithmetic-geometric mean A and
-    T = Σ 2^(n−1)·c_n²/k² over n >= 1 give the complete elliptic integrals (DLMF 19.8.6), and with them::
-
-        ∂P/∂U = [(1/2 − T) + (1 − k²)(1/2 + T)]/A,   ∂P/∂W = k(1/2 − T)/A,   ∂²P/∂W² = (1/2 + T)/(A·U)
-
-    P is symmetric in U and W, which gives W > U.
-    """
-    if speed >= rim:
-        return _slopes(speed, rim)
-    by_larger, by_smaller = _slopes(rim, speed)
-    return by_smaller, by_larger
-
-
-@numba.njit(cache=True, error_model="numpy")
-def mean_slip_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
-    """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² at U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
-    larger, smaller = max(speed, rim), min(speed, rim)
-    ratio = smaller / larger
-    complement = max((larger - smaller) / larger, NEAREST) * (1.0 + ratio)
-    mean, t = _mean(ratio, complement)
-    curvature = (0.5 + t) / (mean * larger)
-    mixed = -ratio * curvature  # the slopes are of degree 0
-    by_larger = ratio * ratio * curvature
-    if speed >= rim:
-        return by_larger, mixed, curvature
-    return curvature, mixed, by_larger
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _slopes(larger: float, smaller: float) -> tuple[float, float]:
-    """Return the derivatives of P by its larger and by its smaller argument."""
-    ratio = smaller / larger
-    complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without its cancellation
-    if complement == 0.0:
-        return 2.0 / math.pi, 2.0 / math.pi
-    mean, t = _mean(ratio, complement)
-    scale = 1.0 / mean
-    return (0.5 - t + complement * (0.5 + t)) * scale, ratio * (0.5 - t) * scale
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _mean(ratio: float, complement: float) -> tuple[float, float]:
-    """Return A and T of ``mean_slip_slopes`` for k and 1 − k² > 0."""
-    m = ratio * ratio
-    b = math.sqrt(complement)
-    a = 0.5 * (1.0 + b)
-    b = math.sqrt(b)
-    share = 0.25 / a
-    c = m * share  # (1 − b₀)/2 without its cancellation
-    t = c * share
-    if c > 1e-5:  # the next c is less than its square, and enters as a square
-        weight, total = 1.0, 0.0
-        while c > 1e-5:
-            c = 0.5 * (a - b)  # its rounding error is small beside the terms before
-            a, b = 0.5 * (a + b), math.sqrt(a * b)
-            weight *= 2.0
-            total += weight * c * c
-        t += total / m
-    return 0.5 * (a + b), t
-
-
-@numba.njit(cache=True, error_model="numpy")
-def mean_slip_speeds(speeds: FloatArray, rims: FloatArray) -> FloatArray:
-    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
-    result = np.zeros(len(speeds))
-    for i in range(len(speeds)):
-        speed, rim = speeds[i], abs(rims[i])
-        if speed > 0.0 or rim > 0.0:
-            by_speed, by_rim = mean_slip_slopes(speed, rim)
-            result[i] = by_speed * speed + by_rim * rim
-    return result

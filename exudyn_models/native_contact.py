@@ -21,9 +21,11 @@ from numpy.typing import ArrayLike
 
 from exudyn_models.creep import WHOLE, creep_ratios, creeping
 from exudyn_models.friction_laws import CONTINUOUS, point_regularisation
-from exudyn_models.ring_friction import checked_contact, is_planar
+from exudyn_models.ring_friction import checked_contact, checked_kind
 from exudyn_models.simulate import simulate
 from exudyn_models.slip_and_creep import Friction, Part
+from exudyn_models.slip_map import PLANAR, ROTOR
+from exudyn_models.strength import checked_strength
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -117,10 +119,11 @@ def add_native_friction(
     master_node: Any,
     disc_node: Any,
     *,
-    friction_force: float,
+    contact_radius: float,
+    friction_coefficient: float,
+    normal_load: float,
     regularisation: float,
-    contact_radius: float = 0.0,
-    contact_points: int | None = 1,
+    contact_points: int | None = None,
     reach: float,
 ) -> list[Any]:
     """Add friction as ``add_ring_friction`` does, by one built-in contact a point; return their ``ObjectIndex``.
@@ -133,13 +136,15 @@ def add_native_friction(
     mbs : exudyn MainSystem
         Not yet assembled, with both nodes and their bodies.
     master_node, disc_node : NodeIndex
-        As ``add_ring_friction`` takes them.
-    friction_force : float
-        μN of all points together, in N, >= 0.
+        A rotor's or a planar body's, and a planar body's.
+    contact_radius : float
+        R in m, >= 0; the contact is a pin if it is 0.
+    friction_coefficient : float
+        μ >= 0. Only its product with N counts.
+    normal_load : float
+        N in N of all points together, >= 0.
     regularisation : float
         ε in m/s, > 0.
-    contact_radius : float
-        R in m, >= 0.
     contact_points : int
         n >= 1. There is no built-in contact of a whole circle.
     reach : float
@@ -151,8 +156,9 @@ def add_native_friction(
         If a number is out of its range or a node is of a kind that can't be used.
 
     """
-    radius, points, friction, epsilon = checked_contact(
-        friction_force, regularisation, contact_radius, contact_points
+    radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+    friction = checked_strength("friction_coefficient", friction_coefficient, "") * checked_strength(
+        "normal_load", normal_load, " N"
     )
     if points == CONTINUOUS:
         raise ValueError(
@@ -162,8 +168,8 @@ def add_native_friction(
     reach = finite_number("reach", reach)
     if reach <= 0.0:
         raise ValueError(f"reach = {reach:g} m: it must be > 0")
-    is_planar("master_node", mbs, master_node, rotor_allowed=True)
-    is_planar("disc_node", mbs, disc_node, rotor_allowed=False)
+    checked_kind("master_node", mbs, master_node, (ROTOR, PLANAR))
+    checked_kind("disc_node", mbs, disc_node, (PLANAR,))
     size = 2.0 * reach  # from the middle to a corner; the circle that fits in has half of that
     penetration = size / 2.0
     height = penetration - size

@@ -27,5 +27,13 @@ def build_pin_on_disc(
     # Nothing turns the pin's body, so that its moment of inertia is any number.
     body = add_supported_body(mbs, pin, initial_state, polar_inertia=pin.mass)
     if pin.friction_force > 0.0:
-        friction(mbs, master, body, friction_force=pin.friction_force, regularisation=regularisation)
+        friction(
+            mbs,
+            master,
+            body,
+            contact_radius=0.0,
+            friction_coefficient=1.0,
+            normal_load=pin.friction_force,
+            regularisation=regularisation,
+        )
     return assembled(container, mbs, body, pin)

@@ -66,6 +66,7 @@ def measure(engine: Engine) -> Findings:
     """Let two free discs rub on each other, on the ring where the connector has it and on six points."""
     from exudyn_models import add_native_friction, add_ring_friction, eigenvalues
 
+    adders: dict[str, Callable[..., Any]]
     if engine.name == "exudyn-native":
         reach = 2.0 * UNTIL
         adders = {"six points": partial(add_native_friction, contact_points=6, reach=reach)}
@@ -101,7 +102,14 @@ def two_discs(add_friction: Callable[..., Any], steps: int) -> tuple[FloatArray,
         )
         mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=body.mass, inertia=body.inertia))
         nodes.append(node)
-    add_friction(mbs, *nodes, friction_force=FRICTION, regularisation=EPSILON, contact_radius=RADIUS)
+    add_friction(
+        mbs,
+        *nodes,
+        contact_radius=RADIUS,
+        friction_coefficient=1.0,
+        normal_load=FRICTION,
+        regularisation=EPSILON,
+    )
     variables = exu.OutputVariableType
     sensors = [
         mbs.AddSensor(

@@ -27,11 +27,11 @@ def rotor(mbs: Any, inertia: float, speed: float) -> Any:
     return node
 
 
-def run_explicitly(mbs: Any, end: float) -> None:
+def run_explicitly(mbs: Any, end: float, steps: int = 6000) -> None:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, 6000, 0
+    options.endTime, options.numberOfSteps, options.verboseMode = end, steps, 0
     options.solverType = exu.DynamicSolverType.RK67
     assert exu.MainSolverExplicit().SolveSystem(mbs, settings)
 
@@ -50,3 +50,31 @@ def momenta(mbs: Any, bodies: list[tuple[Any, float, float]]) -> np.ndarray:
         (x, y, _), (vx, vy, spin) = coordinates(mbs, node)
         total += [mass * vx, mass * vy, mass * (x * vy - y * vx) + inertia * spin]
     return total
+
+
+def spatial_body(
+    mbs: Any, kind: Any, mass: float, inertia: list[float], position: list[float], velocity: list[float]
+) -> Any:
+    """Add a body with a node of ``kind`` and the principal moments of ``inertia``."""
+    half = [value / 2.0 for value in position]
+    node = mbs.AddNode(kind(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity))
+    mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0]))
+    return node
+
+
+def spatial_momenta(mbs: Any, node: Any, mass: float, inertia: Any) -> np.ndarray:
+    """Momentum and angular momentum about the origin, three components each, as Exudyn sees position and rotation."""
+    kinds = exu.OutputVariableType
+    position, velocity, spin, rotation = (
+        mbs.GetNodeOutput(node, kind)
+        for kind in (kinds.Position, kinds.Velocity, kinds.AngularVelocityLocal, kinds.RotationMatrix)
+    )
+    own = rotation.reshape(3, 3) @ (np.diag(inertia) @ spin)
+    return np.hstack((mass * velocity, mass * np.cross(position, velocity) + own))
+
+
+def spatial_energy(mbs: Any, node: Any, mass: float, inertia: Any) -> float:
+    """Kinetic energy in J."""
+    kinds = exu.OutputVariableType
+    velocity, spin = (mbs.GetNodeOutput(node, kind) for kind in (kinds.Velocity, kinds.AngularVelocityLocal))
+    return float(mass * velocity @ velocity + spin @ (inertia * spin)) / 2.0

@@ -9,17 +9,15 @@ from exudyn_models import friction_laws
 from exudyn_models.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
-    mean_slip_curvatures,
-    mean_slip_slopes,
-    mean_slip_speeds,
     point_regularisation,
     ring_friction,
     ring_friction_derivatives,
 )
+from exudyn_models.mean_slip import mean_slip_curvatures, mean_slip_slopes, mean_slip_speeds
 from reference_model.contact import PointsOnRing, Ring
 
 RADIUS, FRICTION, EPSILON = 0.12, 0.5, 1e-4
-CONTACTS = {n: (RADIUS, n or CONTINUOUS, FRICTION, EPSILON, NONE_HELD) for n in (None, 3, 6, 12, 24)}
+CONTACTS = {n: (RADIUS, n or CONTINUOUS, FRICTION, EPSILON, NONE_HELD, RADIUS) for n in (None, 3, 6, 12, 24)}
 
 
 def on_disc(contact, slip, angle=0.3):
@@ -173,7 +171,7 @@ def test_no_two_points_are_slower_than_a_point_at_its_bend_while_the_contact_sli
 @pytest.mark.parametrize("size", [1.0, 1e-6], ids=["slip", "creep"])
 @pytest.mark.parametrize("held", [NONE_HELD, 0])
 def test_derivatives_are_those_of_the_law(points, size, held):
-    contact = (RADIUS, points or CONTINUOUS, FRICTION, EPSILON, held)
+    contact = (RADIUS, points or CONTINUOUS, FRICTION, EPSILON, held, RADIUS)
     rng = np.random.default_rng(5)
     for _ in range(20):
         slip = rng.normal(size=3) * [1.0, 1.0, 8.0] * size
@@ -196,7 +194,7 @@ def test_derivatives_are_those_of_the_law(points, size, held):
 
 def secant_of(contact, slip, angle):
     """K of F = K·slip while the contact creeps as a whole: every point's own viscosity, on its arm."""
-    radius, points, friction, epsilon, held = contact
+    radius, points, friction, epsilon, held, _ = contact
     alpha = angle + 2.0 * np.pi * np.arange(points) / points
     lever = np.array([-radius * np.sin(alpha), radius * np.cos(alpha)])
     velocity = slip[:2, None] + slip[2] * lever
@@ -213,7 +211,7 @@ def secant_of(contact, slip, angle):
 def test_newtons_iteration_finds_the_creep_of_every_load_from_far_away(points):
     contact = CONTACTS[points]
     rng = np.random.default_rng(6)
-    endless = (*contact[:2], contact[2] * 2.0**40, contact[3] * 2.0**40, NONE_HELD)
+    endless = (*contact[:2], contact[2] * 2.0**40, contact[3] * 2.0**40, *contact[4:])
     scale = np.array([1.0, 1.0, 1.0 / RADIUS]) * EPSILON
     for _ in range(100):
         load = on_disc(endless, rng.normal(size=3) * scale)

@@ -29,6 +29,13 @@ TABLE_DISC = replace(
     shaft_damping=0.0,
 )
 THROWN = [0.0, 0.0, 0.0, 0.5, 0.2, 3.0]  # turns about one of its points before it comes to rest
+CONTACT = {
+    "contact_radius": 0.0,
+    "friction_coefficient": 1.0,
+    "normal_load": 1.0,
+    "regularisation": 1e-3,
+    "contact_points": 1,
+}
 CAUGHT_DISC = replace(DISC, friction_force=0.2, offset=0.1)
 CAUGHT = [0.1, 0.0, 0.0, 0.0, 0.1, 1.5]  # is carried along with the master disc for a while
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
@@ -88,7 +95,8 @@ def test_forces_and_moments_of_both_bodies_are_those_of_the_law(
             mbs,
             master,
             disc,
-            friction_force=0.5,
+            friction_coefficient=0.25,
+            normal_load=2.0,
             regularisation=regularisation,
             contact_radius=radius,
             contact_points=points,
@@ -152,7 +160,8 @@ def test_two_free_discs_keep_their_momentum_and_angular_momentum_under_a_constan
         mbs,
         master,
         disc,
-        friction_force=0.5,
+        friction_coefficient=0.25,
+        normal_load=2.0,
         regularisation=1e-3,
         contact_radius=0.12,
         contact_points=6,
@@ -347,7 +356,8 @@ def test_bad_input_is_refused_in_a_sentence(system, change, message):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"friction_force": -1.0}, "friction_force = -1 N"),
+        ({"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
+        ({"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
         ({"contact_radius": -0.1}, "contact_radius = -0.1 m"),
         ({"contact_points": 2.5}, "contact_points = 2.5"),
         ({"contact_points": None, "contact_radius": 0.1}, "contact_points = None"),
@@ -359,7 +369,7 @@ def test_bad_input_is_refused_in_a_sentence(system, change, message):
 def test_nonsense_is_refused_with_its_name_and_value(change, message):
     mbs = exu.SystemContainer().AddSystem()
     master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    arguments = {"friction_force": 1.0, "regularisation": 1e-3, "reach": 1.0} | change
+    arguments = CONTACT | {"reach": 1.0} | change
     with pytest.raises(ValueError, match=message):
         add_native_friction(mbs, master, disc, **arguments)
 
@@ -368,4 +378,4 @@ def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve():
     mbs = exu.SystemContainer().AddSystem()
     master = rotor(mbs, 1.0, 0.0)
     with pytest.raises(ValueError, match="disc_node 0 is a Node1D: ring friction takes a NodeRigidBody2D"):
-        add_native_friction(mbs, master, master, friction_force=1.0, regularisation=1e-3, reach=1.0)
+        add_native_friction(mbs, master, master, **CONTACT, reach=1.0)

@@ -11,6 +11,15 @@ from reference_model.systems import PinOnDisc
 
 items: Any = exudyn.itemInterface
 
+CONTACT = {
+    "contact_radius": 0.0,
+    "friction_coefficient": 0.25,
+    "normal_load": 2.0,
+    "regularisation": 1e-3,
+    "contact_points": 1,
+}
+ANNULUS = {"contact_radius": None, "contact_points": None, "inner_radius": 0.08, "outer_radius": 0.12}
+
 
 @pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 3), (0.12, 6), (0.3, 24), (0.12, None)])
 def test_two_free_bodies_keep_their_momentum_and_angular_momentum(radius, points):
@@ -21,7 +30,8 @@ def test_two_free_bodies_keep_their_momentum_and_angular_momentum(radius, points
         mbs,
         master,
         disc,
-        friction_force=0.5,
+        friction_coefficient=0.25,
+        normal_load=2.0,
         contact_radius=radius,
         contact_points=points,
         regularisation=1e-3,
@@ -39,9 +49,7 @@ def test_rotor_takes_up_the_angular_momentum_about_its_axis_that_a_free_disc_los
     mbs = exu.SystemContainer().AddSystem()
     master = rotor(mbs, 0.7, 2.0)
     disc = planar_body(mbs, 1.0, 0.02, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
-    add_ring_friction(
-        mbs, master, disc, friction_force=0.5, contact_radius=0.12, contact_points=6, regularisation=1e-3
-    )
+    add_ring_friction(mbs, master, disc, **CONTACT | {"contact_radius": 0.12, "contact_points": 6})
     mbs.Assemble()
 
     def angular_momentum() -> float:
@@ -74,12 +82,13 @@ def test_jacobian_is_the_derivative_of_the_force(planar_master, radius, points, 
         mbs,
         master,
         disc,
-        friction_force=0.5,
+        friction_coefficient=0.25,
+        normal_load=2.0,
         contact_radius=radius,
         contact_points=points,
         regularisation=regularisation,
     )
-    functions = mbs.GetObject(connector)
+    functions = mbs.GetObject(connector.item)
     force = functions["forceUserFunction"]["function"]
     jacobian = functions["jacobianUserFunction"]["function"]
     rng = np.random.default_rng(1)
@@ -137,12 +146,21 @@ def test_exudyns_linearisation_has_the_eigenvalues_of_the_self_centred_equilibri
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"friction_force": -1.0}, "friction_force = -1 N"),
-        ({"friction_force": float("nan")}, "friction_force = nan"),
+        ({"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
+        ({"friction_coefficient": "steel"}, "friction_coefficient = 'steel': it must be a number"),
+        ({"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
+        ({"normal_load": float("nan")}, "normal_load = nan"),
         ({"contact_radius": -0.1}, "contact_radius = -0.1 m"),
         ({"contact_points": 0}, "contact_points = 0"),
         ({"contact_points": 2.5}, "contact_points = 2.5"),
-        ({"contact_points": None}, "contact_radius = 0 m: it must be > 0 for the continuous ring"),
+        ({"contact_radius": None}, "contact_radius = None: it must be a number"),
+        (ANNULUS | {"inner_radius": -0.1}, "inner_radius = -0.1 m: it must be >= 0"),
+        (ANNULUS | {"inner_radius": None}, "inner_radius = None: it must be a number"),
+        (ANNULUS | {"outer_radius": 0.08}, "outer_radius = 0.08 m: it must be > inner_radius = 0.08 m"),
+        (ANNULUS | {"outer_radius": float("inf")}, "outer_radius = inf"),
+        (ANNULUS | {"contact_radius": 0.1}, "contact_radius = 0.1: it must be left out for an annulus"),
+        (ANNULUS | {"contact_points": 6}, "contact_points = 6: it must be left out for an annulus"),
+        (ANNULUS | {"regularisation": -1.0}, "regularisation = -1 m/s"),
         ({"held": 2}, "held = 2: it must be from 1 to the number of points, 1"),
         ({"held": 0}, "held = 0: it must be from 1 to the number of points, 1"),
         ({"held": 1, "contact_points": None, "contact_radius": 0.1}, "held = 1: it must be from 1"),
@@ -152,16 +170,24 @@ def test_exudyns_linearisation_has_the_eigenvalues_of_the_self_centred_equilibri
 def test_nonsense_is_refused_with_its_name_and_value(change, message):
     mbs = exu.SystemContainer().AddSystem()
     master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    arguments = {"friction_force": 1.0, "regularisation": 1e-3} | change
+    arguments = CONTACT | change
     with pytest.raises(ValueError, match=message):
         add_ring_friction(mbs, master, disc, **arguments)
 
 
-def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve():
+@pytest.mark.parametrize("node", [items.NodePoint(), items.NodeRigidBodyEP()])
+@pytest.mark.parametrize("name", ["master_node", "disc_node"])
+def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve(node, name):
     mbs = exu.SystemContainer().AddSystem()
-    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    point = mbs.AddNode(items.NodePoint())
-    with pytest.raises(ValueError, match=r"disc_node .* takes a NodeRigidBody2D$"):
-        add_ring_friction(mbs, master, master, friction_force=1.0, regularisation=1e-3)
-    with pytest.raises(ValueError, match=r"master_node .* takes a NodeRigidBody2D or Node1D"):
-        add_ring_friction(mbs, point, disc, friction_force=1.0, regularisation=1e-3)
+    nodes = {"master_node": rotor(mbs, 1.0, 0.0), "disc_node": rotor(mbs, 1.0, 0.0)}
+    nodes[name] = mbs.AddNode(node)
+    kinds = "Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz"
+    with pytest.raises(ValueError, match=rf"{name} 2 is a Node\w+: ring friction takes a {kinds}$"):
+        add_ring_friction(mbs, **nodes, **CONTACT)
+
+
+def test_a_body_has_no_friction_with_itself():
+    mbs = exu.SystemContainer().AddSystem()
+    disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    with pytest.raises(ValueError, match="disc_node 0 is the master_node too"):
+        add_ring_friction(mbs, disc, disc, **CONTACT)
