@@ -11,6 +11,7 @@ from plain_disc_engines import friction_of_pivot, just_released_disc, slide_disc
 
 from compare.paper import FIG11
 from reference_model import PinOnDisc, power_balance, simulate
+from reference_model.annulus import Annulus
 from reference_model.contact import Pin, PointsOnRing, Ring, ThreeTermRing
 from reference_model.integrate import simulate_with
 from reference_model.pin import SlipMotion
@@ -61,6 +62,19 @@ def test_slip_agrees_with_eq_19_integrated_plainly(law, start):
     ]
     assert errors[0] < 1e-9 * 10
     assert errors[1] < 1e-11  # the plain integrator's own: a kink or logarithm in a step
+
+
+def test_thin_annulus_slips_and_sticks_like_the_ring_with_an_error_of_second_order_in_its_width():
+    disc, start, times = STICKY, STARTS[0], np.linspace(0.0, 20.0, 31)
+    ring = simulate(disc, start, times)
+    errors = []
+    for half_width in (2e-3, 1e-3):
+        facing = Annulus(disc.contact_radius - half_width, disc.contact_radius + half_width)
+        annulus = simulate(disc, start, times, contact=facing)
+        assert kinds(annulus) == kinds(ring)
+        errors.append(np.abs(annulus.states - ring.states).max())
+    assert "stick" in kinds(ring)
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.01)
 
 
 @pytest.mark.parametrize("start", [[0.395575, -0.553647, 0.0, 1.2747005841951533, 0.5507301118799482, 0.799]])
