@@ -280,6 +280,9 @@ def _force_on_planar_master(
     return force
 
 
+Relative = tuple[float, float, float, float, float, float, float]
+"""What the kernel takes of the motion: dx, dy, angle, dvx, dvy and both spins."""
+
 Maps = tuple[FloatArray, FloatArray, FloatArray]
 """Generalised forces from (F_x, F_y, M, M_master); the kernel's positions and velocities from those of the nodes."""
 
@@ -313,30 +316,30 @@ def _over_both_nodes(
 def _jacobian_on_rotor(
     x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
 ) -> JacobianFunction:
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        if strength.depends_on_slip:
-            return otherwise(mbs, t, item, q, q_t, position_factor, velocity_factor)
-        contact = strength.contact or strength.contact_at(t)
+    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
         _, x, y, angle = q
         master_spin, vx, vy, spin = q_t
-        derivatives = ring_friction_derivatives(
-            x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin, contact
-        )
-        return _over_both_nodes(derivatives, position_factor, velocity_factor, _ON_ROTOR)
+        return x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin
 
-    return jacobian
+    return _jacobian_on_pair(arguments, _ON_ROTOR, strength, otherwise)
 
 
 def _jacobian_on_planar_master(
     x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
+) -> JacobianFunction:
+    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
+        xm, ym, _, x, y, angle = q
+        vxm, vym, master_spin, vx, vy, spin = q_t
+        return x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin
+
+    return _jacobian_on_pair(arguments, _ON_PLANAR, strength, otherwise)
+
+
+def _jacobian_on_pair(
+    arguments: Callable[[Sequence[float], Sequence[float]], Relative],
+    maps: Maps,
+    strength: Strength,
+    otherwise: JacobianFunction,
 ) -> JacobianFunction:
     def jacobian(
         mbs: Any,
@@ -350,12 +353,8 @@ def _jacobian_on_planar_master(
         if strength.depends_on_slip:
             return otherwise(mbs, t, item, q, q_t, position_factor, velocity_factor)
         contact = strength.contact or strength.contact_at(t)
-        xm, ym, _, x, y, angle = q
-        vxm, vym, master_spin, vx, vy, spin = q_t
-        derivatives = ring_friction_derivatives(
-            x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin, contact
-        )
-        return _over_both_nodes(derivatives, position_factor, velocity_factor, _ON_PLANAR)
+        derivatives = ring_friction_derivatives(*arguments(q, q_t), contact)
+        return _over_both_nodes(derivatives, position_factor, velocity_factor, maps)
 
     return jacobian
 
