@@ -14,13 +14,13 @@ from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
-from reference_model import PinOnDisc, simulate
+from compare.paper import FIG5, FIG5_STARTS
+from reference_model import simulate
 from reference_model.pin import SlipMotion
 from reference_model.sticking import release_delay
 from reference_model.systems import FloatArray
 
-FIG5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
-STARTS = ((0.1, 0.0, 0.0, 0.0), (0.1, 0.0, 0.03, 0.0))
+STARTS = tuple(FIG5_STARTS.values())
 UNTIL = 400.0
 SAMPLES = 4001
 
