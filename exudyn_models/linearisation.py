@@ -11,13 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from exudyn_models.creep import creep_ratios
 from exudyn_models.models import build
 from exudyn_models.solving import quiet
-from reference_model.systems import DiscOnDisc, System, checked_state
+from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
 REGULARISATION = 1e-12
 """ε in m/s: friction is Coulomb's wherever the contact slips by more."""
-
-ANGLE = 2
-"""Position of a disc's angle in its state."""
 
 
 def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:

@@ -19,6 +19,7 @@ from reference_model.contact import isotropic_contact_of, require_whole
 from reference_model.integrate import simulate as reference_simulate
 from reference_model.steady_states import Whirl, whirls, why_no_whirl
 from reference_model.systems import (
+    ANGLE,
     DiscOnDisc,
     FloatArray,
     System,
@@ -419,7 +420,7 @@ def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
 
 def _without_angle(state: FloatArray) -> FloatArray:
     """Return x, y, vx, vy and the spin of a disc."""
-    return np.delete(state, 2) if len(state) == DiscOnDisc.state_size else np.array(state)
+    return np.delete(state, ANGLE) if len(state) == DiscOnDisc.state_size else np.array(state)
 
 
 def _size(system: System, part: FloatArray) -> FloatArray:

@@ -14,10 +14,7 @@ from numpy.typing import ArrayLike
 
 from reference_model.contact import Contact, IsotropicContact, contact_of, isotropic_contact_of
 from reference_model.pin_formulas import equilibrium_radius, whirl_frequency, whirl_radius
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, checked_state
-
-ANGLE = 2
-"""Place of the angle among the states of a disc."""
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System, checked_state
 
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
@@ -72,6 +69,21 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     return np.vstack((np.eye(size, 2 * size, size), by_state))
 
 
+def jacobian_without_angle(
+    system: System, state: ArrayLike, contact: IsotropicContact | None = None
+) -> FloatArray:
+    """Return :func:`sliding_jacobian` without row and column of the angle, on which nothing depends.
+
+    Shape (4, 4) of a pin, (5, 5) of a disc. Parameters and errors as there; ``ValueError`` too for single points,
+    whose friction does depend on the angle.
+    """
+    if isinstance(system, PinOnDisc):
+        return sliding_jacobian(system, state, contact)
+    law = isotropic_contact_of(system, contact, "steady motions")
+    jacobian = sliding_jacobian(system, state, law)
+    return np.delete(np.delete(jacobian, ANGLE, axis=0), ANGLE, axis=1)
+
+
 def equilibrium_eigenvalues(
     system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
 ) -> tuple[complex, ...]:
@@ -105,7 +117,7 @@ def equilibrium_eigenvalues(
     if isinstance(system, DiscOnDisc):
         if state is None:
             raise ValueError("state = None: that of a disc is needed, see self_centred_equilibria()")
-        return slowest_first(np.linalg.eigvals(_without_angle(system, state, contact)))
+        return slowest_first(np.linalg.eigvals(jacobian_without_angle(system, state, contact)))
     radius = equilibrium_radius(system)
     friction_damping = 0.0
     if system.friction_force > 0.0:
@@ -149,7 +161,7 @@ def turning_frame_jacobian(
 
     """
     state = _state_on_whirl(system, state)
-    jacobian = _without_angle(system, state, contact)
+    jacobian = jacobian_without_angle(system, state, contact)
     turn = np.zeros_like(jacobian)
     turn[:4, :4] = np.kron(np.eye(2), QUARTER_TURN)
     return jacobian - _frequency(system, state) * turn
@@ -224,15 +236,6 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
     """Sort by decreasing real part, conjugates with the positive imaginary part first."""
     return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
-
-
-def _without_angle(system: System, state: ArrayLike, contact: IsotropicContact | None) -> FloatArray:
-    """Return :func:`sliding_jacobian` without row and column of the angle, of which nothing depends."""
-    if isinstance(system, PinOnDisc):
-        return sliding_jacobian(system, state, contact)
-    law = isotropic_contact_of(system, contact, "steady motions")
-    jacobian = sliding_jacobian(system, state, law)
-    return np.delete(np.delete(jacobian, ANGLE, axis=0), ANGLE, axis=1)
 
 
 def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:

@@ -158,6 +158,9 @@ class DiscOnDisc(_SupportedMass):
 
 System: TypeAlias = PinOnDisc | DiscOnDisc
 
+ANGLE = 2
+"""Place of the angle among the states of a disc."""
+
 
 def finite_number(name: str, value: Any) -> float:
     """Return ``value`` as a float; raise ``ValueError`` naming it if it is not a finite number."""

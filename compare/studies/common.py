@@ -11,15 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from compare.accuracy import COARSENING
 from compare.engines import Engine
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
 ComplexArray = NDArray[np.complex128]
 
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
-
-ANGLE = 2
-"""Place of the angle among the states of a disc."""
 
 FLOW_TOLERANCE = 1e-11
 """Of the simulations that are subtracted from each other."""

@@ -28,8 +28,8 @@ from compare.studies.common import (
 )
 from compare.study import Data, Findings, Study
 from reference_model import self_centred_equilibria
-from reference_model.stability import sliding_jacobian
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.stability import jacobian_without_angle
+from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -180,10 +180,7 @@ def _claim_of_linearisation(
     measured, predicted, rounding = [], [], []
     for system in (FIG5, FIG8, rotating):
         (equilibrium,) = self_centred_equilibria(system)
-        jacobian = sliding_jacobian(system, equilibrium.state)
-        if isinstance(system, DiscOnDisc):
-            jacobian = np.delete(np.delete(jacobian, 2, 0), 2, 1)  # nothing depends on the angle
-        values, errors = eigenvalues_with_rounding(jacobian)
+        values, errors = eigenvalues_with_rounding(jacobian_without_angle(system, equilibrium.state))
         measured.append(matched(eigenvalues(system, equilibrium.state), values))
         predicted.append(values)
         rounding.append(errors)

@@ -20,8 +20,8 @@ from compare.studies.steady_flow import steady_motion
 from compare.study import Data, Findings, Study
 from reference_model import simulate
 from reference_model.disc_formulas import places_by_26, semicircle_residual
-from reference_model.stability import ANGLE, sliding_jacobian
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.stability import jacobian_without_angle
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 SIX = replace(RING, contact_points=6)
 """What the paper simulated."""
@@ -207,9 +207,8 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     intervals = 4 * round(0.5 * disc.natural_frequency * (span[1] - span[0]))
     times = np.linspace(*span, intervals + 1)
     states = engine.simulate(disc, start, [0.0, *times], tolerance=tolerance).states[1:]
-    jacobian = sliding_jacobian(disc, rest)
-    jacobian = np.delete(np.delete(jacobian, ANGLE, axis=0), ANGLE, axis=1)
-    values, vectors = np.linalg.eig(jacobian.T)  # the left ones: of a sum of modes they see one
+    # The left ones: of a sum of modes they see one.
+    values, vectors = np.linalg.eig(jacobian_without_angle(disc, rest).T)
     slowest = vectors[:, max(range(len(values)), key=lambda i: (values[i].real, values[i].imag))]
     part = np.delete(states - rest, ANGLE, axis=1) @ slowest
     logarithm = np.log(np.abs(part)) + 1j * np.unwrap(np.angle(part))

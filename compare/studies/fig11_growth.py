@@ -12,13 +12,13 @@ from scipy.stats import t as student
 from compare.accuracy import COARSENING
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
-from compare.studies.common import ANGLE, ComplexArray, parameters_of, turned
+from compare.studies.common import ComplexArray, parameters_of, turned
 from compare.studies.fig11_motion import DISCS, RING, SOURCE
 from compare.studies.steady_flow import steady_motion
 from reference_model import simulate, whirls
 from reference_model.contact import IsotropicContact, ThreeTermRing
 from reference_model.stability import turning_frame_jacobian
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 AMPLITUDE = 1e-4
 """Of the deviation at its start, in units of the whirl's radius."""

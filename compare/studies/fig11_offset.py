@@ -16,12 +16,12 @@ from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.paper import FIG8, FIG11
-from compare.studies.common import ANGLE, ComplexArray, at_each, parameters_of
+from compare.studies.common import ComplexArray, at_each, parameters_of
 from compare.studies.fig11_motion import SOURCE, START, rates
 from compare.study import Findings
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
-from reference_model.stability import sliding_jacobian
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.stability import jacobian_without_angle
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 TRIED = (0.0072, 0.00725, 0.0073)
 """X0 in m of the whirls between which the critical one is interpolated."""
@@ -172,7 +172,7 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:
-        jacobian = sliding_jacobian(disc, both[:6])[np.ix_(WITHOUT_ANGLE, WITHOUT_ANGLE)]
+        jacobian = jacobian_without_angle(disc, both[:6])
         return np.concatenate((rates(disc, both[:6]), (jacobian @ both[6:].reshape(5, 5)).ravel()))
 
     state, period = near.state.copy(), near.period

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import root
 
 from compare.engines import Engine
-from compare.studies.common import ANGLE, turned
+from compare.studies.common import turned
 from reference_model.stability import sliding_jacobian
 from reference_model.steady_states import SelfCentredEquilibrium, Whirl
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 CONVERGED = 1e-9
 """Largest relative miss of a motion that comes back."""
