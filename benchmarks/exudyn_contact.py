@@ -21,7 +21,7 @@ import reference_model
 from compare.paper import FIG5, FIG11
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
-from exudyn_models.ring_friction import _force_on_rotor
+from exudyn_models.planar_pairs import _force_on_rotor
 from exudyn_models.strength import NumberOrFunction, Strength
 
 STEPS = 20_000

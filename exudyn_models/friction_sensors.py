@@ -135,6 +135,6 @@ class RingFriction:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
         arguments = (*slip.tolist(), angle, self._strength.contact_at(t))
         friction = np.array(friction_of_slip(*arguments))
-        if self._strength.depends_on_slip:
+        if self._strength.depends_on_motion:
             friction *= self._strength.coefficient(mean_slip_speed(*arguments))
         return friction

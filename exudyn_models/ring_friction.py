@@ -8,7 +8,7 @@ momentum between two free bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Protocol, cast
 
 import exudyn.itemInterface
@@ -17,14 +17,11 @@ import numpy as np
 from exudyn_models.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
-    ring_friction,
-    ring_friction_derivatives,
 )
 from exudyn_models.friction_sensors import RingFriction
+from exudyn_models.planar_pairs import ForceFunction, JacobianFunction, is_planar, on_planar_pair
 from exudyn_models.slip_map import (
     KINDS,
-    PLANAR,
-    ROTOR,
     Kinds,
     friction_derivatives_on_nodes,
     friction_on_nodes,
@@ -33,8 +30,6 @@ from exudyn_models.strength import NumberOrFunction, Strength
 from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
-
-Kernel = Callable[..., tuple[float, float, float, float]]
 
 
 class AddFriction(Protocol):
@@ -132,20 +127,8 @@ def add_ring_friction(
     )
     force = _force_on_any(kinds, reference, strength)
     jacobian = _jacobian_on_any(kinds, reference, strength)
-    if kinds[0] in (ROTOR, PLANAR) and kinds[1] == PLANAR:  # known in closed form, at half the cost
-        # .tolist(): one NumPy number in the kernel would make all its arithmetic NumPy's, which is far slower.
-        *place, x, y, angle = reference.tolist()
-        if kinds[0] == PLANAR:
-            x, y = x - place[0], y - place[1]
-        # A pin's force is so short that the call into compiled code would cost more than it saves.
-        kernel: Kernel = cast(Any, ring_friction).py_func if radius == 0.0 else ring_friction
-        on_pair, jacobian_on_pair = (
-            (_force_on_planar_master, _jacobian_on_planar_master)
-            if kinds[0] == PLANAR
-            else (_force_on_rotor, _jacobian_on_rotor)
-        )
-        force = on_pair(kernel, x, y, angle, strength, force)
-        jacobian = jacobian_on_pair(x, y, angle, strength, jacobian)
+    if is_planar(kinds):
+        force, jacobian = on_planar_pair(kinds, reference, strength, force, jacobian)
     size = len(reference)
     item = mbs.AddObject(
         items.ObjectGenericODE2(
@@ -203,15 +186,11 @@ def checked_regularisation(value: float) -> float:
     return epsilon
 
 
-ForceFunction = Callable[[Any, float, int, Sequence[float], Sequence[float]], list[float]]
-JacobianFunction = Callable[[Any, float, int, Sequence[float], Sequence[float], float, float], FloatArray]
-
-
 def _force_on_any(kinds: Kinds, reference: FloatArray, strength: Strength) -> ForceFunction:
     def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         contact = strength.contact or strength.contact_at(t)
         forces, slip_speed = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
-        if strength.depends_on_slip:
+        if strength.depends_on_motion:
             forces *= strength.coefficient(slip_speed)
         return cast(list[float], forces.tolist())
 
@@ -233,128 +212,11 @@ def _jacobian_on_any(kinds: Kinds, reference: FloatArray, strength: Strength) ->
         derivatives, mean_derivatives = friction_derivatives_on_nodes(
             *state, position_factor, velocity_factor, contact
         )
-        if strength.depends_on_slip:
+        if strength.depends_on_motion:
             forces, slip_speed = friction_on_nodes(*state, contact)
             derivatives *= strength.coefficient(slip_speed)
             derivatives += strength.coefficient_slope(slip_speed) * np.outer(forces, mean_derivatives)
         return -derivatives  # Exudyn takes those of the left-hand side
-
-    return jacobian
-
-
-def _force_on_rotor(
-    kernel: Kernel, x0: float, y0: float, angle0: float, strength: Strength, otherwise: ForceFunction
-) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact
-        if contact is None:
-            if strength.depends_on_slip:
-                return otherwise(mbs, t, item, q, q_t)
-            contact = strength.contact_at(t)
-        _, x, y, angle = q
-        master_spin, vx, vy, spin = q_t
-        fx, fy, moment, master_moment = kernel(
-            x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin, contact
-        )
-        return [master_moment, fx, fy, moment]
-
-    return force
-
-
-def _force_on_planar_master(
-    kernel: Kernel, x0: float, y0: float, angle0: float, strength: Strength, otherwise: ForceFunction
-) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact
-        if contact is None:
-            if strength.depends_on_slip:
-                return otherwise(mbs, t, item, q, q_t)
-            contact = strength.contact_at(t)
-        xm, ym, _, x, y, angle = q
-        vxm, vym, master_spin, vx, vy, spin = q_t
-        fx, fy, moment, master_moment = kernel(
-            x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin, contact
-        )
-        return [-fx, -fy, master_moment, fx, fy, moment]
-
-    return force
-
-
-Relative = tuple[float, float, float, float, float, float, float]
-"""What the kernel takes of the motion: dx, dy, angle, dvx, dvy and both spins."""
-
-Maps = tuple[FloatArray, FloatArray, FloatArray]
-"""Generalised forces from (F_x, F_y, M, M_master); the kernel's positions and velocities from those of the nodes."""
-
-_FORCES_ON_ROTOR = np.array([[0, 0, 0, 1], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], dtype=float)
-_ON_ROTOR: Maps = (
-    _FORCES_ON_ROTOR,
-    np.hstack((np.zeros((3, 1)), np.eye(3))),
-    np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float),
-)
-_ON_PLANAR: Maps = (
-    np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR)).astype(float),
-    np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3))),
-    np.array([[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float),
-)
-
-
-def _over_both_nodes(
-    derivatives: FloatArray, position_factor: float, velocity_factor: float, maps: Maps
-) -> FloatArray:
-    """Return the Jacobian over the coordinates of both nodes from the derivatives of the kernel.
-
-    Exudyn takes the derivative of the left-hand side, where the force stands with a minus.
-    """
-    forces, positions, velocities = maps
-    weighted = (
-        -position_factor * derivatives[:, :3] @ positions - velocity_factor * derivatives[:, 3:] @ velocities
-    )
-    return np.asarray(forces @ weighted)
-
-
-def _jacobian_on_rotor(
-    x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
-) -> JacobianFunction:
-    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
-        _, x, y, angle = q
-        master_spin, vx, vy, spin = q_t
-        return x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin
-
-    return _jacobian_on_pair(arguments, _ON_ROTOR, strength, otherwise)
-
-
-def _jacobian_on_planar_master(
-    x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
-) -> JacobianFunction:
-    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
-        xm, ym, _, x, y, angle = q
-        vxm, vym, master_spin, vx, vy, spin = q_t
-        return x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin
-
-    return _jacobian_on_pair(arguments, _ON_PLANAR, strength, otherwise)
-
-
-def _jacobian_on_pair(
-    arguments: Callable[[Sequence[float], Sequence[float]], Relative],
-    maps: Maps,
-    strength: Strength,
-    otherwise: JacobianFunction,
-) -> JacobianFunction:
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        if strength.depends_on_slip:
-            return otherwise(mbs, t, item, q, q_t, position_factor, velocity_factor)
-        contact = strength.contact or strength.contact_at(t)
-        derivatives = ring_friction_derivatives(*arguments(q, q_t), contact)
-        return _over_both_nodes(derivatives, position_factor, velocity_factor, maps)
 
     return jacobian
 

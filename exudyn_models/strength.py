@@ -51,7 +51,7 @@ class Strength:
             )
         )
         self.friction_coefficient, self.normal_load = coefficient, load
-        self.depends_on_slip = callable(coefficient)
+        self.depends_on_motion = callable(coefficient)
         #: The contact with its μN, or None where that is no number.
         self.contact = None if callable(coefficient) or callable(load) else self._with(coefficient * load)
 
