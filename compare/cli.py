@@ -266,6 +266,7 @@ def simulate_pin(
     \b
     Parameters, with their values in Fig. 5:
       mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
+      hardening=0 stop_gap=0 stop_stiffness=0
     \b
     Examples:
       friction-discs simulate pin --output whirl.json
@@ -293,6 +294,7 @@ def simulate_disc(
     Parameters, with their values in Fig. 11; contact_points=none is the continuous ring:
       mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
       contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
+      hardening=0 stop_gap=0 stop_stiffness=0
     \b
     Examples:
       friction-discs simulate disc --output modulated.csv

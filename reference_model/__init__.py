@@ -3,8 +3,9 @@
 Where to find what:
 
 - parameters and results: ``systems``, ``trajectory``;
+- the force of a support that may harden or have a stop: ``support``;
 - laws of friction: ``contact`` with ``ring_integrals``, ``annulus``;
-- the paper's closed forms: ``pin_formulas``, ``disc_formulas``;
+- the paper's closed forms: ``pin_formulas``, ``disc_formulas``; ``harmonic_balance`` for a hardening support;
 - simulation: ``integrate``, which goes through ``phases`` of ``slip`` and ``sticking`` by the equations of motion of
   ``pin`` and ``disc``; ``points`` with ``pivot`` and ``limit_surface`` for discs on single points, ``growth`` for how
   slip begins, ``units`` and ``stepping`` below;

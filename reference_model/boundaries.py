@@ -28,6 +28,7 @@ from reference_model.contact import IsotropicContact, isotropic_contact_of
 from reference_model.continuation import follow
 from reference_model.disc_formulas import pin_of, whirl_arm
 from reference_model.pin_formulas import whirl_radius
+from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray
 
 Kind = Literal["Hopf", "fold", "onset"]
@@ -75,7 +76,7 @@ class Plane:
     disc : DiscOnDisc
         The other parameters.
     names : tuple of str
-        The two parameters, as the fields of ``DiscOnDisc`` are called; all but those of the contact.
+        The two parameters, as the fields of ``DiscOnDisc`` are called; all but those of contact and stop.
     lower, upper : tuple of float
         Their ranges.
 
@@ -83,7 +84,7 @@ class Plane:
     ------
     ValueError
         If a name is no parameter, a range is empty or reaches where no whirl exists at any load, or if there is
-        an offset.
+        an offset or a support that is not linear.
 
     """
 
@@ -98,8 +99,9 @@ class Plane:
             raise ValueError(
                 f"offset = {self.disc.offset:g} m: boundaries are known for whirls without offset"
             )
+        require_linear_support(self.disc)
         # A contact that is handed over has a radius of its own.
-        fixed = ("offset", "contact_radius", "contact_points")
+        fixed = ("offset", "hardening", "stop_gap", "stop_stiffness", "contact_radius", "contact_points")
         allowed = [field.name for field in fields(self.disc) if field.name not in fixed]
         if len(set(self.names)) != 2 or not set(self.names) <= set(allowed):
             raise ValueError(f"names = {self.names}: they must be two of {', '.join(allowed)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from reference_model.contact import IsotropicContact, isotropic_contact_of
+from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc
 
 
@@ -54,9 +55,11 @@ def characteristic_coefficients(
     Raises
     ------
     ValueError
-        If the law has no derivative at that ratio, or the disc rests on single points.
+        If the law has no derivative at that ratio, or the disc rests on single points; if the support is not
+        linear.
 
     """
+    require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")
     k, spin = disc.natural_frequency, rim / disc.contact_radius
     relative = abs(disc.disc_speed) - k

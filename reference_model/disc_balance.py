@@ -16,12 +16,16 @@ from collections.abc import Callable, Iterator
 
 from reference_model.contact import IsotropicContact, Shares
 from reference_model.disc_formulas import pin_of, shaft_torque, whirl_arm
-from reference_model.pin_formulas import largest_load_with_equilibrium, whirl_radius
+from reference_model.pin_formulas import circling_speed, driven_radius, require_drive
+from reference_model.support import Support
 from reference_model.systems import DiscOnDisc
 from reference_model.zeros import largest_between, zero_between, zeros_between
 
 OfRatio = Callable[[float, float], float]
 """A function of slip and rim speed, both >= 0, of which only the ratio matters."""
+
+NO_SLIP = 1e-30
+"""Ratio of slip to rim speed that stands for none, where only the limit of their quotient is known."""
 
 ROUNDING = 8.0 * sys.float_info.epsilon
 """Relative error of a balance that is not more than rounding."""
@@ -32,40 +36,36 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
 
     By increasing W : U. None where every place or every spin is as good as another.
 
-    With U = |ω|ρ the balance of the springs with friction, which acts across the radius, is
-    (Cρ)² + (μN·F)² = (C·X0)². With the lengths m = b|ω − Ω|/μN and f = C|X0|/μN, and tan α = W/U, the torsional
-    balance gives U = (μN·R/b)(m − M)/tan α, and the zeros of (CR/(b|ω|)·(m − M)·cos α)² + (F² − f²)·sin² α are
-    left.
+    Friction acts across the radius, so that springs of the deflection d must pull by μN·F at a right angle to it:
+    ρ² + d² = X0², where d is μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and
+    tan α = W/U, the torsional balance gives U = (μN·R/b)(m − M)/tan α, and the zeros of
+    (μN·R/(b|ω|)·(m − M)·cos α)² + (d² − X0²)·sin² α are left.
     """
-    load, springs, torque = (
-        disc.friction_force,
-        largest_load_with_equilibrium(pin_of(disc)),
-        shaft_torque(disc),
-    )
+    load, offset, torque = disc.friction_force, abs(disc.offset), shaft_torque(disc)
     speed, radius = abs(disc.disc_speed), disc.contact_radius
+    support = Support.of(disc)
     if load == 0.0:
-        if disc.stiffness > 0.0 and disc.shaft_damping > 0.0:
+        if support.centring and disc.shaft_damping > 0.0:
             yield complex(disc.offset), disc.shaft_speed
         return
-    if speed == 0.0 or springs == 0.0:
+    if speed == 0.0 or support.pull(offset) == 0.0:
         # The springs pull at nothing or there are none, and friction has no force: the centre does not slip.
         to_shaft = torque - load * contact.shares(0.0, 1.0).moment
-        if to_shaft > 0.0 and (speed > 0.0 or disc.stiffness > 0.0):
+        if to_shaft > 0.0 and (speed > 0.0 or support.centring):
             place = complex(disc.offset) if speed == 0.0 else 0j
             yield place, _spin(disc, to_shaft / disc.shaft_damping)
         return
 
-    largest_moment, force = torque / load, springs / load
+    largest_moment = torque / load
 
     def at(slip: float, rim: float) -> Shares:
         return contact.shares(slip, rim / radius)
 
     def balance(slip: float, rim: float) -> float:
         resistance, moment = at(slip, rim)
-        from_springs = (
-            disc.stiffness * radius / (disc.shaft_damping * speed) * (largest_moment - moment) * slip
-        )
-        return _difference(from_springs**2, (force - resistance) * (force + resistance) * rim**2)
+        from_shaft = load * radius / (disc.shaft_damping * speed) * (largest_moment - moment) * slip
+        deflection = support.deflection(load * resistance)
+        return _difference(from_shaft**2, (offset - deflection) * (offset + deflection) * rim**2)
 
     # A disc that no moment turns against the master disc does not spin against it.
     ratios = (
@@ -75,16 +75,16 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
     )
     for slip, rim in ratios:
         resistance, moment = at(slip, rim)
-        spare_force, spare_moment = (force - resistance) * (force + resistance), largest_moment - moment
+        deflection, spare_moment = support.deflection(load * resistance), largest_moment - moment
+        squared_place = (offset - deflection) * (offset + deflection)
         # U and W are as slip and rim by both balances; the one that keeps more digits tells how large they are.
-        if spare_moment * force**2 > spare_force * largest_moment:
+        if spare_moment * offset**2 > squared_place * largest_moment:
             size = load * radius / disc.shaft_damping * spare_moment / rim
         else:
-            size = speed * load / disc.stiffness * math.sqrt(max(spare_force, 0.0)) / slip
+            size = speed * math.sqrt(max(squared_place, 0.0)) / slip
         if size > 0.0:
             rho = size * slip / speed
-            across = math.copysign(load * resistance, disc.disc_speed)
-            place = rho * complex(disc.stiffness * rho, across) / (disc.stiffness * disc.offset)
+            place = rho * complex(rho, math.copysign(deflection, disc.disc_speed)) / disc.offset
             yield place, _spin(disc, size * rim / radius)
 
 
@@ -92,15 +92,31 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
     They are the ratios at which :func:`reference_model.disc_formulas.whirl_arm` is b|ω − Ω|/μN; of pure spin, at
-    the onset, there is no whirl yet. Raises ``ValueError`` if that does, or without friction.
+    the onset, there is no whirl yet. On a support that is not linear the circle, and with it the centre's slip, is
+    not in proportion to the load, and the arm is that of this load. Raises ``ValueError`` if :func:`whirl_arm` does,
+    or without damping or friction.
     """
-    largest = whirl_radius(pin_of(disc))
-    arm, needed = whirl_arm(disc, contact), shaft_torque(disc) / disc.friction_force
+    pin = pin_of(disc)
+    require_drive(pin)
+    speed, needed = abs(disc.disc_speed), shaft_torque(disc) / disc.friction_force
+
+    def circle(resistance: float) -> tuple[float, float]:
+        """Return the radius at this share of the friction, and by how much the master disc is faster there."""
+        radius = driven_radius(pin, disc.friction_force * resistance)
+        return radius, (speed - circling_speed(pin, radius)) * radius
+
+    def arm_at_load(slip: float, rim: float) -> float:
+        slip = max(slip, NO_SLIP)
+        resistance, moment = contact.shares(slip, rim / disc.contact_radius)
+        relative_spin = circle(resistance)[1] * rim / (slip * disc.contact_radius)
+        return moment + disc.shaft_damping * relative_spin / disc.friction_force
+
+    arm = whirl_arm(disc, contact) if disc.linear_support else arm_at_load
     for slip, rim in _zeros(lambda slip, rim: _difference(arm(slip, rim), needed)):
         if slip > 0.0:
-            radius = largest * contact.shares(slip, rim / disc.contact_radius).resistance
-            centre = (abs(disc.disc_speed) - disc.natural_frequency) * radius
-            yield radius, _spin(disc, centre * rim / (slip * disc.contact_radius))
+            radius, centre = circle(contact.shares(slip, rim / disc.contact_radius).resistance)
+            if centre > 0.0:
+                yield radius, _spin(disc, centre * rim / (slip * disc.contact_radius))
 
 
 def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:

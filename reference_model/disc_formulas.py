@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike
@@ -18,20 +18,14 @@ from reference_model import pin_formulas
 from reference_model.contact import IsotropicContact, isotropic_contact_of
 from reference_model.disc import DiscMotion
 from reference_model.sticking import stuck_centre
+from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 from reference_model.zeros import zeros_between
 
 
 def pin_of(disc: DiscOnDisc) -> PinOnDisc:
     """Return the pin that a disc is as long as it does not spin against the master disc."""
-    return PinOnDisc(
-        mass=disc.mass,
-        stiffness=disc.stiffness,
-        damping=disc.damping,
-        friction_force=disc.friction_force,
-        disc_speed=disc.disc_speed,
-        offset=disc.offset,
-    )
+    return PinOnDisc(**{field.name: getattr(disc, field.name) for field in fields(PinOnDisc)})
 
 
 def shaft_torque(disc: DiscOnDisc) -> float:
@@ -139,9 +133,10 @@ def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
     Raises
     ------
     ValueError
-        If there are no springs, or the master disc is at rest.
+        If there are no springs, or the master disc is at rest; if the support is not linear.
 
     """
+    require_linear_support(disc)
     _require_not_zero(disc, "stiffness", "disc_speed")
     return ReducedParameters(
         load=disc.friction_force / disc.stiffness,
@@ -274,9 +269,10 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
     ------
     ValueError
         If α is outside of its range; if stiffness, damping or shaft damping is zero, if Ω = ω or |ω| <= k; if the
-        disc rests on single points.
+        disc rests on single points, or its support is not linear.
 
     """
+    require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")
     if not 0.0 < alpha < math.pi / 2.0:
         raise ValueError(f"alpha = {alpha:g} rad: it must lie between 0 and π/2")
@@ -308,9 +304,11 @@ def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, f
     Raises
     ------
     ValueError
-        If there is no whirl at any load: without stiffness or damping, or for |ω| <= k.
+        If there is no whirl at any load: without stiffness or damping, or for |ω| <= k; if the support is not
+        linear.
 
     """
+    require_linear_support(disc)
     per_load = pin_formulas.whirl_radius(replace(pin_of(disc), friction_force=1.0))
     against_slip = disc.shaft_damping * (abs(disc.disc_speed) - disc.natural_frequency) * per_load
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference_model.contact import IsotropicContact, isotropic_contact_of
+from reference_model.support import Support, require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 
 STEP = 8e-3
@@ -48,9 +49,11 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
     Raises
     ------
     ValueError
-        If the eigenvalues nearest to the imaginary axis are real; if the disc rests on single points.
+        If the eigenvalues nearest to the imaginary axis are real; if the disc rests on single points, or its
+        support is not linear.
 
     """
+    require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the modulation")
     radius, _, _, _, speed, spin = checked_state(disc, state).tolist()
     whirl = np.array([radius, 0.0, speed, disc.disc_speed - spin])
@@ -67,6 +70,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
 
 def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
     """Return the function from (r, ṙ, rψ̇, ω − φ̇) to its derivative: (19) without offset, free of angles."""
+    support = Support.of(disc)
 
     def rates(state: FloatArray) -> FloatArray:
         r, outward, around, relative_spin = state.tolist()
@@ -78,7 +82,7 @@ def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
         return np.array(
             [
                 outward,
-                around**2 / r - ((disc.damping + friction) * outward + disc.stiffness * r) / disc.mass,
+                around**2 / r - ((disc.damping + friction) * outward + support.pull(r)) / disc.mass,
                 -outward * around / r - (disc.damping * around + friction * across) / disc.mass,
                 (torque - disc.friction_force * moment) / disc.polar_inertia,
             ]

@@ -227,7 +227,7 @@ def whirl_orbit(
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters, with |ω| > k.
+        The parameters, with a whirl without offset: |ω| > k on a linear support.
     simulate : callable
         The engine; of the reference unless told otherwise. ``functools.partial(simulate, contact=...)`` is that
         of a disc under another law.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from reference_model.contact import IsotropicContact, Ring
 from reference_model.disc import DiscMotion
 from reference_model.growth import begin_slip
 from reference_model.pin import SlipMotion
-from reference_model.slip import Coordinates, never, slide, slide_slowly
-from reference_model.stepping import Run
+from reference_model.slip import Coordinates, never, slide, slide_slowly, stop_edges
+from reference_model.stepping import Edge, Run
 from reference_model.sticking import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
 from reference_model.systems import FloatArray
 
@@ -98,7 +98,8 @@ class PinBody(Body):
             return wx - omega * y, wy + omega * x, a.real, a.imag
 
         slow = run.thresholds.slow_slip * g
-        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0), g)
+        edges = stop_edges(motion.support)
+        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), g)
 
     def holds_for(self, y: Sequence[float]) -> float:
         """As :meth:`Body.holds_for`: by eq. 6 and 7."""
@@ -112,8 +113,13 @@ class PinBody(Body):
         return np.array((z.real, z.imag, none, none))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow the series by which slip grows from rest, as far as it holds or until slip ends again."""
+        """As :meth:`Body.let_go`; on a linear support by the series, as far as it holds or until slip ends again."""
         run = self.run
+        if not self.motion.support.linear:
+            pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
+            direction = np.array((pull.real, pull.imag)) / abs(pull)
+            drift = -omega * y[1], omega * y[0]
+            return begin_slip(run, self.coordinates, t, y[:2], drift, direction, self.leave)[:2]
         start = slip_from_rest(self.motion, complex(y[0], y[1]), tolerance=run.thresholds.series)
         run.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
         stop = t + min(start.duration, start.rest)
@@ -136,13 +142,12 @@ class PinBody(Body):
 class DiscBody(Body):
     """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
 
-    def __init__(
-        self, run: Run, motion: DiscMotion, edge: Callable[[Sequence[float]], float] | None = None
-    ) -> None:
-        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``edge``."""
+    def __init__(self, run: Run, motion: DiscMotion, edges: tuple[Edge, ...] = ()) -> None:
+        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``edges``."""
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
-        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edge=edge)
+        edges += stop_edges(motion.centre.support)
+        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
         super().__init__(run, coordinates, motion.centre.friction)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
@@ -184,7 +189,7 @@ class RingBody(DiscBody):
 
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
         """Take up the disc that moves by ``motion``."""
-        super().__init__(run, motion, motion.edge if isinstance(contact, Ring) else None)
+        super().__init__(run, motion, (Edge(motion.edge),) if isinstance(contact, Ring) else ())
         self.contact = contact
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 

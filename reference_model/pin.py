@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from reference_model.support import Support, require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, System
 
 
@@ -25,32 +26,28 @@ class SlipMotion:
     ----------
     damping : float
         β/m in 1/s.
-    stiffness : float
-        k² = C/m in 1/s².
+    support : Support
+        The springs: k² = C/m in 1/s², and X0 in m.
     friction : float
         g = μN/m in m/s², the greatest acceleration that friction gives.
     disc_speed : float
         ω in rad/s.
-    offset : float
-        X0 in m.
 
     """
 
     damping: float
-    stiffness: float
+    support: Support
     friction: float
     disc_speed: float
-    offset: float
 
     @classmethod
     def of(cls, system: System) -> SlipMotion:
         """Return the equations of motion of a pin, or of the centre of a disc."""
         return cls(
             system.damping / system.mass,
-            system.stiffness / system.mass,
+            Support.of(system).scaled(1.0 / system.mass),
             system.friction_force / system.mass,
             system.disc_speed,
-            system.offset,
         )
 
     def pull(self, z: complex, w: complex) -> complex:
@@ -59,7 +56,7 @@ class SlipMotion:
         The acceleration of support and damper, less that of the point of the disc below, d(iωz)/dt = iωż.
         """
         v = w + 1j * self.disc_speed * z
-        return -(self.damping + 1j * self.disc_speed) * v - self.stiffness * (z - self.offset)
+        return self.support.force(z) - (self.damping + 1j * self.disc_speed) * v
 
 
 def simulate_polar_form(
@@ -83,10 +80,13 @@ def simulate_polar_form(
 
     Raises
     ------
+    ValueError
+        If the support is not linear.
     RuntimeError
         If the integrator gives up.
 
     """
+    require_linear_support(pin)
     m, stiffness, beta = pin.mass, pin.stiffness, pin.damping
 
     def eq10(_: float, state: FloatArray) -> tuple[float, float, float, float]:

@@ -10,6 +10,9 @@ The paper takes ω > 0 and X0 > 0. Here both may have either sign:
 - An offset on the other side gives the motion turned by half a revolution: x and y change their signs. So
   conditions such as (5) and (8) hold with |X0|.
 
+Those of the balances of (3) and (11) hold for a support that hardens or has a stop too, with its force in the place
+of that of the spring. The others are for a linear support and refuse any else.
+
 A formula raises ``ValueError`` where what it describes does not exist, and names the condition that fails.
 The exceptions are (12)–(16), which the paper uses for ω < k too: they are statements about a matrix and its
 characteristic equation, and only |ω| = k, where ω/(ω − k) has no value, is refused.
@@ -23,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference_model.support import Support, require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc
 
 # ---------------------------------------------------------------- section 2: the self-centred equilibrium
@@ -31,6 +35,9 @@ from reference_model.systems import FloatArray, PinOnDisc
 def equilibrium_radius(pin: PinOnDisc) -> float:
     """ρ* of (3), the distance of the pin at rest from the axis, in m.
 
+    Friction acts along the circle about the axis, so that springs must pull at a right angle to ρ*, and by μN: their
+    deflection d* = √(X0² − ρ*²) is that of the force μN, μN/C of a linear support.
+
     Raises
     ------
     ValueError
@@ -38,9 +45,12 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
 
     """
     _require_equilibrium(pin)
-    largest, load = largest_load_with_equilibrium(pin), pin.friction_force
-    # As a product: the difference of two nearly equal squares would lose the digits near the limit (5).
-    return math.sqrt((largest - load) * (largest + load)) / pin.stiffness
+    if pin.linear_support:
+        largest, load = largest_load_with_equilibrium(pin), pin.friction_force
+        # As a product: the difference of two nearly equal squares would lose the digits near the limit (5).
+        return math.sqrt((largest - load) * (largest + load)) / pin.stiffness
+    offset, deflection = abs(pin.offset), _equilibrium_deflection(pin)
+    return math.sqrt(max((offset - deflection) * (offset + deflection), 0.0))
 
 
 def equilibrium_angle(pin: PinOnDisc) -> float:
@@ -55,7 +65,7 @@ def equilibrium_angle(pin: PinOnDisc) -> float:
     _require_equilibrium(pin)
     if pin.offset == 0.0:
         raise ValueError("offset = 0 m: the equilibrium is the axis itself and has no angle")
-    angle = math.asin(pin.friction_force / largest_load_with_equilibrium(pin))
+    angle = math.atan2(_equilibrium_deflection(pin), equilibrium_radius(pin))
     if pin.offset < 0.0:
         angle -= math.pi
     return _turning_direction(pin) * angle
@@ -74,7 +84,7 @@ def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
     if pin.offset == 0.0:
         return 0.0, 0.0
     x = radius**2 / pin.offset
-    y = _turning_direction(pin) * pin.friction_force / (pin.stiffness * pin.offset) * radius
+    y = _turning_direction(pin) * _equilibrium_deflection(pin) / pin.offset * radius
     return x, y
 
 
@@ -89,8 +99,13 @@ def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArra
 
 
 def largest_load_with_equilibrium(pin: PinOnDisc) -> float:
-    """Return C·|X0| of (5) in N: up to this μN the self-centred equilibrium exists."""
-    return pin.stiffness * abs(pin.offset)
+    """Return C·|X0| of (5) in N, the pull of the springs on the axis: up to this μN the equilibrium exists."""
+    return Support.of(pin).pull(abs(pin.offset))
+
+
+def largest_load_in_words(pin: PinOnDisc) -> str:
+    """Say what :func:`largest_load_with_equilibrium` is."""
+    return "stiffness·|offset|" if pin.linear_support else "force of the support at |offset|"
 
 
 # ---------------------------------------------------------------- section 2: sticking
@@ -108,7 +123,13 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
     disc_angle : float or array
         ωt, the angle at which the stuck pin is, in rad.
 
+    Raises
+    ------
+    ValueError
+        If the support is not linear.
+
     """
+    require_linear_support(pin)
     A, angle = np.asarray(radius, dtype=float), np.asarray(disc_angle, dtype=float)
     C, X0, omega = pin.stiffness, pin.offset, pin.disc_speed
     elastic = C - pin.mass * omega**2
@@ -147,9 +168,10 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     Raises
     ------
     ValueError
-        If ``radius`` is negative.
+        If ``radius`` is negative or the support not linear.
 
     """
+    require_linear_support(pin)
     if radius < 0.0:
         raise ValueError(f"radius = {radius:g} m: it must be >= 0")
     carry = _dynamic_stiffness(pin) * radius
@@ -178,14 +200,17 @@ def release_time(pin: PinOnDisc, radius: float, start_angle: float) -> float:
     """Time in s until a pin stuck at ``radius`` (m) and ``start_angle`` (rad) lets go, by (7) with equality.
 
     ``inf`` if it stays on the disc for ever, 0 if friction can't hold it at the start. Raises ``ValueError``
-    if ``radius`` is negative.
+    as :func:`turn_until_release`.
     """
     turn = turn_until_release(pin, radius, start_angle)
     return turn / abs(pin.disc_speed) if 0.0 < turn < math.inf else turn
 
 
 def sticking_margin(pin: PinOnDisc, radius: float) -> float:
-    """Right side minus left side of (8) in N: >= 0 where a pin at ``radius`` (m) sticks in every position."""
+    """Right side minus left side of (8) in N: >= 0 where a pin at ``radius`` (m) sticks in every position.
+
+    Raises ``ValueError`` if the support is not linear.
+    """
     return pin.friction_force - largest_load_with_equilibrium(pin) - _dynamic_stiffness(pin) * radius
 
 
@@ -197,7 +222,7 @@ def sticking_radius(pin: PinOnDisc) -> float:
     Raises
     ------
     ValueError
-        If μN <= C·|X0|: then friction is too weak to hold the pin even on the axis.
+        If μN <= C·|X0|: then friction is too weak to hold the pin even on the axis; if the support is not linear.
 
     """
     spare = sticking_margin(pin, 0.0)
@@ -216,9 +241,10 @@ def resonant_disc_speed(pin: PinOnDisc) -> float:
     Raises
     ------
     ValueError
-        If C/m <= β²/2m²: then the domain shrinks from ω = 0 on.
+        If C/m <= β²/2m²: then the domain shrinks from ω = 0 on; if the support is not linear.
 
     """
+    require_linear_support(pin)
     spring, damper = pin.stiffness / pin.mass, pin.damping**2 / (2.0 * pin.mass**2)
     if spring <= damper:
         raise ValueError(
@@ -234,19 +260,23 @@ def resonant_disc_speed(pin: PinOnDisc) -> float:
 def whirl_radius(pin: PinOnDisc) -> float:
     """ρ_c of (11) in m, the radius of the whirl without offset.
 
+    By the balance along the circle the pin moves at the speed v = μN/β, whatever its support; and of the circles on
+    which that carries it round, m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap), there is one, since the right side grows
+    with ρ.
+
     Raises
     ------
     ValueError
         If there is no whirl. The paper says "always exists"; by the sense of the friction force in (10) it
-        does only where |ω| > k, and it takes springs, damping and friction.
+        does only where |ω| > ψ̇ (k on a linear support), and it takes springs, damping and friction.
 
     """
     _require_whirl(pin)
-    return pin.friction_force / (pin.damping * pin.natural_frequency)
+    return driven_radius(pin, pin.friction_force)
 
 
 def whirl_frequency(pin: PinOnDisc) -> float:
-    """ψ̇ of (11) in rad/s: k where ω > k, −k where ω < −k.
+    """ψ̇ of (11) in rad/s: k where ω > k, −k where ω < −k; (μN/β)/ρ_c in general.
 
     Raises
     ------
@@ -255,7 +285,19 @@ def whirl_frequency(pin: PinOnDisc) -> float:
 
     """
     _require_whirl(pin)
-    return _turning_direction(pin) * pin.natural_frequency
+    return _turning_direction(pin) * circling_speed(pin, driven_radius(pin, pin.friction_force))
+
+
+def driven_radius(pin: PinOnDisc, drive: float) -> float:
+    """Return the radius in m of the circle on which the support carries a pin of the speed ``drive`` (N) / β."""
+    if pin.linear_support:
+        return drive / (pin.damping * pin.natural_frequency)
+    return Support.of(pin).circle(pin.mass * (drive / pin.damping) ** 2)
+
+
+def circling_speed(pin: PinOnDisc, radius: float) -> float:
+    """Return the speed of turning in rad/s at which the support carries the pin on a circle about (X0, 0)."""
+    return math.sqrt(Support.of(pin).secant(radius) / pin.mass)
 
 
 def variational_matrix(pin: PinOnDisc) -> FloatArray:
@@ -267,7 +309,7 @@ def variational_matrix(pin: PinOnDisc) -> FloatArray:
     Raises
     ------
     ValueError
-        If |ω| = k, or if damping or friction force is zero.
+        If |ω| = k, if damping or friction force is zero, or if the support is not linear.
 
     """
     _require_positive(pin, "damping", "friction_force")
@@ -438,6 +480,7 @@ def _mirrored(pin: PinOnDisc, amplitude: complex) -> complex:
 
 def _dynamic_stiffness(pin: PinOnDisc) -> float:
     """√((C − mω²)² + β²ω²) of (8) in N/m: force a metre of radius for carrying the pin round."""
+    require_linear_support(pin)
     return math.hypot(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
 
 
@@ -455,6 +498,7 @@ def _stiffness_to_damping(pin: PinOnDisc) -> float:
 
 def _speed_ratio(pin: PinOnDisc) -> float:
     """ω/(ω − k) of (12)–(18), for |ω|."""
+    require_linear_support(pin)
     speed, k = abs(pin.disc_speed), pin.natural_frequency
     if speed == k:
         raise ValueError(
@@ -464,24 +508,52 @@ def _speed_ratio(pin: PinOnDisc) -> float:
 
 
 def _require_equilibrium(pin: PinOnDisc) -> None:
-    if pin.stiffness == 0.0:
+    support = Support.of(pin)
+    if not (support.centring or (pin.stop_stiffness > 0.0 and pin.friction_force > 0.0)):
         raise ValueError("stiffness = 0 N/m: without springs there is no self-centred equilibrium")
     if pin.friction_force > largest_load_with_equilibrium(pin):
         raise ValueError(
             f"friction_force = {pin.friction_force:g} N: the self-centred equilibrium exists only up to "
-            f"stiffness·|offset| = {largest_load_with_equilibrium(pin):g} N (eq. 5)"
+            f"{largest_load_in_words(pin)} = {largest_load_with_equilibrium(pin):g} N (eq. 5)"
         )
     if pin.disc_speed == 0.0 and pin.friction_force > 0.0:
         raise ValueError("disc_speed = 0 rad/s: a pin at rest sticks to a disc at rest and does not slide")
 
 
+def require_drive(pin: PinOnDisc) -> None:
+    """Raise ``ValueError`` unless there are springs, damping and friction, which every whirl takes."""
+    if pin.linear_support:
+        _require_positive(pin, "stiffness")
+    elif pin.damping == 0.0 < pin.friction_force:
+        raise ValueError(
+            "damping = 0: it must be > 0 for a whirl to exist; without it the circle grows until the support turns "
+            "the pin as fast as the disc turns, and then it sticks"
+        )
+    _require_positive(pin, "damping", "friction_force")
+
+
 def _require_whirl(pin: PinOnDisc) -> None:
-    _require_positive(pin, "stiffness", "damping", "friction_force")
+    require_drive(pin)
+    if not pin.linear_support:
+        radius = driven_radius(pin, pin.friction_force)
+        frequency = circling_speed(pin, radius)
+        if abs(pin.disc_speed) <= frequency:
+            raise ValueError(
+                f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only where the disc turns faster than the "
+                f"{frequency:g} rad/s at which the support would turn the pin, on a circle of {radius:g} m; here the "
+                "pin ends by sticking"
+            )
+        return
     if abs(pin.disc_speed) <= pin.natural_frequency:
         raise ValueError(
             f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only where the disc turns faster than "
             f"the natural frequency {pin.natural_frequency:g} rad/s, in either sense"
         )
+
+
+def _equilibrium_deflection(pin: PinOnDisc) -> float:
+    """Return the deflection in m of the support that pulls by μN."""
+    return Support.of(pin).deflection(pin.friction_force)
 
 
 def _require_positive(pin: PinOnDisc, *names: str) -> None:

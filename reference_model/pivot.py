@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from reference_model.contact import PointsOnRing
 from reference_model.disc import DiscMotion
-from reference_model.slip import Coordinates
+from reference_model.slip import Coordinates, stop_edges
 from reference_model.stepping import Thresholds
 from reference_model.systems import FloatArray
 
@@ -109,13 +109,24 @@ class OnePoint:
         def slow_slip(y: Sequence[float]) -> float:
             return min(slow, passing * abs(y[3]))
 
-        return Coordinates(self.slipping_rates, 2, slow_slip, self._pace, self._standard, angle=2)
+        edges = stop_edges(self.motion.centre.support)
+        return Coordinates(
+            self.slipping_rates, 2, slow_slip, self._pace, self._standard, angle=2, edges=edges
+        )
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
         """Return the coordinates of the disc that turns about the point: its only slip is r."""
         slow = thresholds.slow_slip * self.motion.centre.friction
+        edges = stop_edges(self.motion.centre.support)
         return Coordinates(
-            self.pivoting_rates, 1, lambda _: slow, self._pace, self._standard, angle=2, grip=self.grip
+            self.pivoting_rates,
+            1,
+            lambda _: slow,
+            self._pace,
+            self._standard,
+            angle=2,
+            grip=self.grip,
+            edges=edges,
         )
 
     @property

@@ -145,14 +145,11 @@ class PointsBody(DiscBody):
     def _share(self, y: Sequence[float], delays: FloatArray | float = 0.0) -> tuple[ComplexArray, float]:
         """Return force and moment that friction must hold, as shares in the frame of the disc."""
         centre = self.motion.centre
-        constant = centre.stiffness * centre.offset
-        turning = centre.pull(complex(y[0], y[1]), 0j) - constant
-        forces = (constant * np.exp(-1j * centre.disc_speed * np.atleast_1d(delays)) + turning) * np.exp(
-            -1j * y[2]
-        )
-        return forces / centre.friction, self.motion.turning_pull(
-            0.0
-        ) * self.motion.gyration / centre.friction
+        turns = np.exp(1j * centre.disc_speed * np.atleast_1d(delays))
+        pulls = np.array([centre.pull(place, 0j) for place in (complex(y[0], y[1]) * turns).tolist()])
+        forces = pulls / (turns * np.exp(1j * y[2]))
+        moment = self.motion.turning_pull(0.0) * self.motion.gyration
+        return forces / centre.friction, moment / centre.friction
 
     def holds_for(self, y: Sequence[float]) -> float:
         """As :meth:`Body.holds_for`: up to the first root of the margin, which is looked for through one turn."""
@@ -163,7 +160,7 @@ class PointsBody(DiscBody):
 
         if margin(0.0) < -ROUNDING:
             return 0.0
-        if centre.disc_speed == 0.0 or centre.offset * centre.stiffness == 0.0:
+        if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
             return math.inf  # seen from the disc, nothing turns
         delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), LOOKS + 1)
         margins = self.limit.margins(*self._share(y, delays))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from reference_model.contact import Contact, contact_of
+from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
@@ -71,13 +73,13 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     phases the heat is the work of force and moment that hold the body by eq. 6 on whatever creep the engine shows,
     which is none for exact friction. The drive's work is ω times the moment impulse on the body about the axis, and
     that is taken from its motion, not from a friction law: by its angular momentum about the axis,
-    ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + C·X0∫y dt + b∫(φ̇ − Ω)dt. So the residual vanishes only if force and motion
-    belong together: friction against the slip and of the magnitude μN, the damping β and b, the springs, energy
-    neither made nor lost by the integrator.
+    ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its
+    deflection. So the residual vanishes only if force and motion belong together: friction against the slip and of
+    the magnitude μN, the damping β and b, the springs, energy neither made nor lost by the integrator.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the
     sixth power of the distance of samples where the slip of every point is well away from zero, and more slowly
-    near it.
+    near it and where a stop begins to act.
 
     Parameters
     ----------
@@ -96,7 +98,8 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
         raise ValueError("the trajectory has one time only: a power balance takes at least two")
     body = trajectory.system
     law = contact_of(body, contact)
-    m, C, beta, omega, X0 = body.mass, body.stiffness, body.damping, body.disc_speed, body.offset
+    m, beta, omega, X0 = body.mass, body.damping, body.disc_speed, body.offset
+    support = Support.of(body)
     inertia, b, Omega = 0.0, 0.0, 0.0
     if isinstance(body, DiscOnDisc):
         inertia, b, Omega = body.polar_inertia, body.shaft_damping, body.shaft_speed
@@ -105,8 +108,9 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     for kind, t, state in _spans(trajectory):
         z, angle, v, spin = _motion(body, state)
         u = v - 1j * omega * z
+        springs = _of_deflection(support.secant, z - X0)
         if kind == "stick":
-            holding = -m * omega**2 * z + 1j * beta * omega * z + C * (z - X0)
+            holding = -m * omega**2 * z + 1j * beta * omega * z + springs * (z - X0)
             heating: FloatArray = b * (omega - Omega) * (omega - spin) - (holding.conj() * u).real
         else:
             slip = _mean_slip(law, u, omega - spin, angle)
@@ -114,24 +118,33 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
             share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
             heating = body.friction_force * share * slip
         lag = spin - Omega
-        rates: FloatArray = np.column_stack((heating, abs(v) ** 2, (z.conj() * v).imag, z.imag, lag, lag**2))
+        rates: FloatArray = np.column_stack(
+            (heating, abs(v) ** 2, (z.conj() * v).imag, springs * z.imag, lag, lag**2)
+        )
         growth = _integral(t, rates)
         times.append(t)
         states.append(state)
         integrals.append(total + growth)
         total = total + growth[-1]
     z, _, v, spin = _motion(body, np.concatenate(states))
-    friction_heat, squared_speed, areal, deflection, lag, squared_lag = np.concatenate(integrals).T
+    friction_heat, squared_speed, areal, across, lag, squared_lag = np.concatenate(integrals).T
     momentum = m * (z.conj() * v).imag + inertia * spin
-    impulse = momentum - momentum[0] + beta * areal + C * X0 * deflection + b * lag
+    impulse = momentum - momentum[0] + beta * areal + X0 * across + b * lag
     return PowerBalance(
         times=np.concatenate(times),
         drive_work=omega * impulse,
         friction_heat=friction_heat,
         damper_heat=beta * squared_speed + b * squared_lag,
         shaft_work=b * Omega * lag,
-        stored_energy=0.5 * m * abs(v) ** 2 + 0.5 * inertia * spin**2 + 0.5 * C * abs(z - X0) ** 2,
+        stored_energy=0.5 * m * abs(v) ** 2
+        + 0.5 * inertia * spin**2
+        + _of_deflection(support.energy, z - X0),
     )
+
+
+def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> FloatArray:
+    """Return a function of the support at deflections from (X0, 0), shape (n,)."""
+    return np.array([function(d) for d in abs(w).tolist()])
 
 
 def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:

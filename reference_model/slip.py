@@ -20,7 +20,8 @@ import numpy as np
 from scipy.integrate import DenseOutput
 from scipy.optimize import brentq
 
-from reference_model.stepping import TIGHTEST, Run, Sampler, Stepper
+from reference_model.stepping import TIGHTEST, Edge, Run, Sampler, Stepper
+from reference_model.support import Support
 from reference_model.systems import FloatArray
 
 Rates = Callable[[Sequence[float]], Sequence[float]]
@@ -49,8 +50,8 @@ class Coordinates:
         Which unknown is an angle, if one is: it counts by its absolute error.
     grip : callable or None
         How much more could be held of what friction holds in this motion, which ends when that falls to zero.
-    edge : callable or None
-        Takes the unknowns and changes sign where friction is continuous but not smooth.
+    edges : tuple of Edge
+        Where friction or support are continuous but not smooth.
 
     """
 
@@ -61,7 +62,7 @@ class Coordinates:
     standard: Callable[[FloatArray], FloatArray] = lambda y: y
     angle: int | None = None
     grip: Callable[[Sequence[float]], float] | None = None
-    edge: Callable[[Sequence[float]], float] | None = None
+    edges: tuple[Edge, ...] = ()
 
     def speed(self, y: Sequence[float]) -> float:
         """Return the slip speed."""
@@ -73,6 +74,20 @@ class Coordinates:
         if self.angle is not None:
             result[self.angle] = TIGHTEST
         return result
+
+
+def stop_edges(support: Support) -> tuple[Edge, ...]:
+    """Return where the stop of a support begins, for unknowns of which x and y are the first; none without one."""
+    if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
+        return ()
+
+    def beyond(y: list[float]) -> float:
+        return math.hypot(y[0] - support.offset, y[1]) - support.stop_gap
+
+    def outward(y: list[float], rates: list[float]) -> float:
+        return (y[0] - support.offset) * rates[0] + y[1] * rates[1]
+
+    return (Edge(beyond, outward),)
 
 
 class Outcome(NamedTuple):
@@ -98,7 +113,7 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
     def rates(_: float, y: FloatArray) -> Sequence[float]:
         return motion.rates(y.tolist())
 
-    solver = Stepper(run, rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edge)
+    solver = Stepper(run, rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
     lost = None
     while t < run.end:
         solver.step(t)
@@ -159,13 +174,17 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
 
         return sample
 
-    at_edge = motion.edge
-    edge = None if at_edge is None else lambda stretched: at_edge(unknowns(stretched)[0])
+    def stretched(edge: Edge) -> Edge:
+        # Time goes on with the stretched time and x and y are unknowns themselves, so that the trend is the same.
+        return Edge(lambda stretched: edge.value(unknowns(stretched)[0]), edge.trend)
+
     speed = motion.speed(y)
     # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
     relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
-    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, edge)
+    solver = Stepper(
+        run, rates, initial, (0.0, math.inf), relative, [stretched(edge) for edge in motion.edges]
+    )
     t = start
     while True:
         solver.step(t)

@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.contact import Contact, IsotropicContact, contact_of, isotropic_contact_of
-from reference_model.pin_formulas import equilibrium_radius, whirl_frequency, whirl_radius
+from reference_model.pin_formulas import (
+    equilibrium_position,
+    equilibrium_radius,
+    largest_load_in_words,
+    whirl_frequency,
+    whirl_radius,
+)
+from reference_model.support import Support
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System, checked_state
 
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -38,8 +45,8 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     Raises
     ------
     ValueError
-        If a point of the contact is at rest, where Coulomb friction has no derivative; if the state is none; or
-        if a pin is given a contact.
+        If a point of the contact is at rest, where Coulomb friction has no derivative; if the stop of the support
+        just begins; if the state is none; or if a pin is given a contact.
 
     """
     state = checked_state(system, state)
@@ -47,14 +54,13 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     x, y = state[:2]
     vx, vy = state[size : size + 2]
     angle, spin = 0.0, 0.0
-    inertia, stiffness, damping = (
-        np.full(size, value) for value in (system.mass, system.stiffness, system.damping)
-    )
+    inertia, damping = (np.full(size, value) for value in (system.mass, system.damping))
     if isinstance(system, DiscOnDisc):
         angle, spin = state[ANGLE], state[-1]
-        inertia[ANGLE], stiffness[ANGLE], damping[ANGLE] = system.polar_inertia, 0.0, system.shaft_damping
+        inertia[ANGLE], damping[ANGLE] = system.polar_inertia, system.shaft_damping
 
-    by_place, by_rates = -np.diag(stiffness), -np.diag(damping)
+    by_place, by_rates = np.zeros((size, size)), -np.diag(damping)
+    by_place[:2, :2] = -Support.of(system).stiffness_matrix(complex(x, y))
     law = contact_of(system, contact)
     if system.friction_force > 0.0:
         omega = system.disc_speed
@@ -95,7 +101,8 @@ def equilibrium_eigenvalues(
     mλ² + (β + μN/(|ω|ρ*))λ + C. That is why the equilibrium is always stable, as the paper says below (5),
     provided that β > 0.
 
-    Those of a disc are the eigenvalues of :func:`sliding_jacobian` without the angle.
+    Those of a disc, and of a pin on a support that is not linear, are the eigenvalues of :func:`sliding_jacobian`
+    without the angle.
 
     Parameters
     ----------
@@ -123,10 +130,14 @@ def equilibrium_eigenvalues(
     if system.friction_force > 0.0:
         if radius == 0.0:
             raise ValueError(
-                f"friction_force = {system.friction_force:g} N = stiffness·|offset|: the equilibrium is on the "
-                "axis, where the pin does not slide"
+                f"friction_force = {system.friction_force:g} N = {largest_load_in_words(system)}: the equilibrium is "
+                "on the axis, where the pin does not slide"
             )
         friction_damping = system.friction_force / (abs(system.disc_speed) * radius)
+    if not system.linear_support:
+        return slowest_first(
+            np.linalg.eigvals(sliding_jacobian(system, [*equilibrium_position(system), 0, 0]))
+        )
     return slowest_first(
         root
         for damping in (system.damping, system.damping + friction_damping)
@@ -195,8 +206,9 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
-    A motion z ~ exp(±ikt) in the sense of ω neither grows nor decays where μN·g(|ω| − k) = βk|S|, which is linear
-    in μN. Above, up to the load at which the disc sticks (b|ω − Ω| = μN·M), the centred rotation is unstable.
+    C is the stiffness for small deflections, so that hardening does not matter, nor a stop that has a gap. A motion
+    z ~ exp(±ikt) in the sense of ω neither grows nor decays where μN·g(|ω| − k) = βk|S|, which is linear in μN.
+    Above, up to the load at which the disc sticks (b|ω − Ω| = μN·M), the centred rotation is unstable.
 
     Parameters
     ----------
@@ -214,7 +226,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
     """
     law = isotropic_contact_of(disc, contact, "the onset")
-    speed, k = abs(disc.disc_speed), disc.natural_frequency
+    speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
     if disc.offset != 0.0:
         raise ValueError(f"offset = {disc.offset:g} m: the centre rests on the axis only without an offset")
     if speed <= k:

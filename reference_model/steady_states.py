@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import overload
@@ -12,12 +13,16 @@ from reference_model.contact import IsotropicContact, contact_of, isotropic_cont
 from reference_model.disc_balance import circles, least_load_with_whirl, resting_places
 from reference_model.disc_formulas import held_pin, pin_of, shaft_torque
 from reference_model.pin_formulas import (
+    circling_speed,
     equilibrium_position,
+    largest_load_in_words,
     largest_load_with_equilibrium,
+    require_drive,
     whirl_frequency,
     whirl_radius,
 )
 from reference_model.stability import equilibrium_eigenvalues, whirl_eigenvalues
+from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, require_system
 
 
@@ -138,6 +143,10 @@ def self_centred_equilibria(
     - for ω = 0 with friction: a pin at rest on a disc at rest sticks;
     - for C = 0: with friction nothing balances it, and without friction every position is as good.
 
+    On a support that hardens or has a stop, its force at the deflection |X0| takes the place of C·|X0|, for a disc
+    too, and a disc's (Cρ)² + (μN·F)² = (C·X0)² below is ρ² + d² = X0² with the deflection d at which the force is
+    μN·F.
+
     Of a disc there is one where friction can't hold it at rest on the axis against springs and shaft, and on the
     continuous ring no other: at a given radius the torsional balance leaves one spin, and with a larger radius the
     force of friction grows as that of the springs does, (Cρ)² + (μN·F)² = (C·X0)², because F and M are derivatives
@@ -208,6 +217,12 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     The same conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
     :func:`why_no_whirl` tells which condition fails.
 
+    A support that hardens or has a stop turns the pin the faster the larger its circle is. At the speed μN/β there is
+    one circle only, see :func:`reference_model.pin_formulas.whirl_radius`; it is a whirl where the disc turns faster.
+    Where it does not the pin ends by sticking, at the radius at which the support carries it round with the disc; so
+    it does for β = 0. The circles of a disc, where friction has a share along the circle only, are smaller and slower
+    than the pin's: it may have whirls where a pin sticks.
+
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
@@ -237,11 +252,11 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
             ),
         )
     law = isotropic_contact_of(system, contact, "steady motions")
-    if _why_no_whirl_of_pin(pin_of(system)) is not None:
+    if _why_no_circle_of_disc(system) is not None:
         return ()
-    frequency = whirl_frequency(pin_of(system))
     found = []
     for radius, spin in circles(system, law):
+        frequency = math.copysign(circling_speed(pin_of(system), radius), system.disc_speed)
         eigenvalues = whirl_eigenvalues(system, _circling(radius, frequency, spin), law)
         found.append(
             SpinningWhirl(
@@ -264,7 +279,7 @@ def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) 
         return None
     if isinstance(system, PinOnDisc):
         return _why_no_equilibrium_of_pin(system)
-    if system.stiffness == 0.0 and 0.0 in (system.disc_speed, system.friction_force):
+    if not Support.of(system).centring and 0.0 in (system.disc_speed, system.friction_force):
         return "stiffness = 0 N/m: without springs the disc rests in every place, and in none more than in another"
     if system.friction_force == 0.0:
         return (
@@ -279,8 +294,8 @@ def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) 
         )
     return (
         f"friction_force = {system.friction_force:g} N: beside the moment of the shaft, {torque:g} N m, friction "
-        f"holds a force of {held.friction_force:g} N, not less than that of the springs, stiffness·|offset| = "
-        f"{largest_load_with_equilibrium(held):g} N: the disc sticks on the axis"
+        f"holds a force of {held.friction_force:g} N, not less than that of the springs, "
+        f"{largest_load_in_words(held)} = {largest_load_with_equilibrium(held):g} N: the disc sticks on the axis"
     )
 
 
@@ -291,14 +306,20 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
     """
     if whirls(system, contact):
         return None
-    pin = system if isinstance(system, PinOnDisc) else pin_of(system)
-    reason = _why_no_whirl_of_pin(pin)
-    if reason is None and isinstance(system, DiscOnDisc):
-        reason = (
-            f"friction_force = {system.friction_force:g} N: a whirl exists only above "
-            f"{smallest_load_with_whirl(system, contact):g} N; below, the disc rotates about the axis"
+    if isinstance(system, PinOnDisc):
+        return _why_no_whirl_of_pin(system)
+    reason = _why_no_circle_of_disc(system)
+    if reason is not None:
+        return reason
+    if not system.linear_support:
+        return (
+            f"friction_force = {system.friction_force:g} N: on no circle do the support, which turns the disc the "
+            "faster the larger it is, and the shaft balance friction that slips"
         )
-    return reason
+    return (
+        f"friction_force = {system.friction_force:g} N: a whirl exists only above "
+        f"{smallest_load_with_whirl(system, contact):g} N; below, the disc rotates about the axis"
+    )
 
 
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
@@ -318,7 +339,8 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
     Raises
     ------
     ValueError
-        If there is no whirl at any load, see :func:`whirls`.
+        If there is no whirl at any load, see :func:`whirls`; if the support is not linear, so that whirls may begin
+        and end at several loads.
 
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
@@ -330,12 +352,17 @@ def _why_no_equilibrium_of_pin(pin: PinOnDisc) -> str | None:
     reason = _refusal(equilibrium_position, pin)
     limit = largest_load_with_equilibrium(pin)
     if reason is None and 0.0 < pin.friction_force == limit:
-        return f"friction_force = {pin.friction_force:g} N = stiffness·|offset|: the pin sticks on the axis"
+        return f"friction_force = {pin.friction_force:g} N = {largest_load_in_words(pin)}: the pin sticks on the axis"
     return reason
 
 
 def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
     return _refusal(whirl_radius, pin)
+
+
+def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
+    """Return why a disc has no whirl at any load; shared-out friction may drive one where that of a pin may not."""
+    return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
 
 
 def _refusal(formula: Callable[[PinOnDisc], object], pin: PinOnDisc) -> str | None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NoReturn
+from typing import Literal, NamedTuple, NoReturn
 
 import numpy as np
 from scipy.integrate import DOP853, DenseOutput
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -142,6 +142,23 @@ class Run:
             self._recorded = stop
 
 
+class Edge(NamedTuple):
+    """Where the rates are continuous but not smooth.
+
+    Parameters
+    ----------
+    value : callable
+        Takes the unknowns and changes sign there.
+    trend : callable or None
+        Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. If there is
+        one, a step that crosses the edge and comes back is noticed too.
+
+    """
+
+    value: Callable[[list[float]], float]
+    trend: Callable[[list[float], list[float]], float] | None = None
+
+
 class Stepper:
     """SciPy's eighth-order Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
 
@@ -160,8 +177,8 @@ class Stepper:
         When to begin and to end.
     relative_tolerance : array of shape (unknowns,)
         Of each unknown; the absolute tolerance is that of the run.
-    edge : callable or None
-        Takes the unknowns and changes sign at an edge.
+    edges : sequence of Edge
+        The edges.
 
     """
 
@@ -172,12 +189,13 @@ class Stepper:
         y: Sequence[float],
         span: tuple[float, float],
         relative_tolerance: FloatArray,
-        edge: Callable[[list[float]], float] | None = None,
+        edges: Sequence[Edge] = (),
     ) -> None:
-        self._run, self._rates, self._edge = run, rates, edge
+        self._run, self._rates, self._edges = run, rates, edges
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
-        self._landed, self._usual_step = False, math.inf
+        self._landed: tuple[Edge, float] | None = None  # an edge, and the sign beyond
+        self._usual_step = math.inf
         self._start(span[0], np.array(y), self._end)
 
     @property
@@ -205,21 +223,58 @@ class Stepper:
     def step(self, since: float) -> None:
         """Take one step; ``since`` is the time to tell if that fails."""
         if self._solver.status == "finished" and self.t < self._end:
-            self._landed = True  # it is on an edge
             self._start(self.t, self.y, self._end, self._usual_step)
         solver = self._solver
-        t, y = solver.t, solver.y
+        t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
-        if self._edge is None or solver.t_bound != self._end or self._landed:
-            self._landed = False
+        if not self._edges or solver.t_bound != self._end:
             return
-        if self._edge(y.tolist()) * self._edge(solver.y.tolist()) < 0.0:
-            dense, edge = self.dense_output(), self._edge
-            crossing = float(brentq(lambda tau: edge(dense(tau).tolist()), t, solver.t, rtol=TIGHTEST))
-            if t < crossing < solver.t:
-                self._usual_step = float(solver.t - t)
-                self._start(t, y, crossing, crossing - t)
-                self._run.step(self._solver, since)
+        landed, self._landed = self._landed, None
+        crossings = []
+        for edge in self._edges:
+            side = landed[1] if landed is not None and landed[0] is edge else None
+            crossing = self._crossing(edge, side, t, y.tolist(), rates.tolist())
+            if crossing is not None and t < crossing[0] < solver.t:
+                crossings.append((*crossing, edge))
+        if crossings:
+            place, beyond, edge = min(crossings, key=lambda crossing: crossing[0])
+            self._landed = edge, beyond
+            self._usual_step = float(solver.t - t)
+            self._start(t, y, place, place - t)
+            self._run.step(self._solver, since)
+
+    def _crossing(
+        self, edge: Edge, side: float | None, t: float, y: list[float], rates: list[float]
+    ) -> tuple[float, float] | None:
+        """Return where in the last step, from ``t`` on, an edge was crossed, and the sign of its value beyond.
+
+        ``side`` is the sign at ``t`` if the step began on the edge, where the value is nothing but rounding.
+        """
+        on_edge = side is not None
+        if on_edge and edge.trend is None:
+            return None  # one step on, it is on one side again
+        if side is None:
+            side = math.copysign(1.0, edge.value(y))
+        crossed = side * edge.value(self.y.tolist()) < 0.0
+        dips = edge.trend is not None and side * edge.trend(y, rates) < 0.0 < side * edge.trend(
+            self.y.tolist(), self.rates.tolist()
+        )
+        if not crossed and not dips:
+            return None
+        dense = self.dense_output()
+
+        def inside(tau: float) -> float:
+            return side * edge.value(dense(tau).tolist())
+
+        first, last = t, self.t
+        if not crossed or on_edge:
+            sign = -1.0 if crossed else 1.0  # off the edge and back, or towards it and back
+            span = {"bounds": (t, self.t), "method": "bounded", "options": {"xatol": 1e-9 * (last - first)}}
+            extreme = float(minimize_scalar(lambda tau: sign * inside(tau), **span).x)
+            first, last = (extreme, last) if crossed else (first, extreme)
+        if not inside(first) > 0.0 > inside(last):
+            return None
+        return float(brentq(inside, first, last, rtol=TIGHTEST)), -side
 
     def _start(self, t: float, y: FloatArray, end: float, first_step: float | None = None) -> None:
         first_step = None if first_step is None else min(first_step, end - t)

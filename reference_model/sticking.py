@@ -30,6 +30,12 @@ An excess δ at the peak of the holding force lasts for √(8δ)/ω and moves th
 than rounding of the position.
 """
 
+NARROW = 1e-5
+"""Angle in rad down to which the first release is looked for.
+
+A pull that exceeds friction for less moves the pin by some NARROW³ of its way: it is passed over.
+"""
+
 ROUNDING = 1e-12
 """Angle in rad within which a pin counts as being at the limit of what friction can hold."""
 
@@ -45,8 +51,11 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning
     pull q of the position: a single harmonic, whose first upward crossing has a closed form. It is derived here
     from the equations of motion: ``pin_formulas.release_time``, which is eq. 7 as printed, is there to judge it.
+    On a support that is not linear the pull of the position depends on the angle too, see :func:`_first_release`.
     """
-    constant = motion.stiffness * motion.offset
+    if not motion.support.linear:
+        return _first_release(motion, z)
+    constant = motion.support.stiffness * motion.support.offset
     turning = motion.pull(z, 0.0) - constant
     p, q, g = abs(constant), abs(turning), motion.friction
     if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
@@ -61,6 +70,54 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     if 2.0 * math.pi - turn < ROUNDING:
         turn = 0.0  # at the limit already
     return turn / abs(motion.disc_speed)
+
+
+def _first_release(motion: SlipMotion, z: complex) -> float:
+    """Do as :func:`release_delay` by search for the first root over a turn of the disc.
+
+    Seen from the disc the pin rests and the offset turns, by X0·h in length while the disc turns by h. So what
+    friction has left over the pull changes by Λh at most, with Λ = |X0| times the tangent stiffness at the largest
+    deflection on the way, or, seen from rest, |z|·(that + |ω² − iωβ/m|); and the deflection is not more than the mean
+    of those at both ends + min(|X0|, |z|)·h/2. That says how low the margin can fall between two angles. Where this
+    is below zero the way is halved, the first half first, down to where there is room for one root only.
+    """
+    if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
+        return math.inf  # the pull only turns
+    g, radius, offset = motion.friction, abs(z), abs(motion.support.offset)
+    sense = math.copysign(1.0, motion.disc_speed)
+    carried = abs(complex(motion.damping, motion.disc_speed) * motion.disc_speed)
+
+    def at(turn: float) -> complex:
+        return z * cmath.exp(1j * sense * turn)
+
+    def spare(turn: float) -> float:
+        return g - abs(motion.pull(at(turn), 0j))
+
+    def deflection(turn: float) -> float:
+        return abs(at(turn) - motion.support.offset)
+
+    held = firmly = 0.0  # firmly: with something to spare, not just up to grazing
+    waiting = [2.0 * math.pi]
+    while waiting:
+        firmly = held if spare(held) > 0.0 else firmly
+        end = waiting[-1]
+        h = end - held
+        tangent = motion.support.tangent(0.5 * (deflection(held) + deflection(end) + min(offset, radius) * h))
+        slope = min(offset * tangent, radius * (carried + tangent))
+        least = 0.5 * (spare(held) + spare(end) - slope * h)
+        if least >= -GRAZING * g:
+            held = end
+            waiting.pop()
+        elif h > NARROW:
+            waiting.append(0.5 * (held + end))
+        elif spare(end) >= -GRAZING * g:
+            held = end
+            waiting.pop()
+        else:
+            if spare(firmly) > 0.0:
+                firmly = float(brentq(spare, firmly, end, xtol=1e-15, rtol=1e-15))
+            return firmly / abs(motion.disc_speed)
+    return math.inf
 
 
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
@@ -141,6 +198,8 @@ class SlipStart:
 def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
     """Return how slip grows from a pin at rest on the disc at ``z`` whose pull is not less than friction.
 
+    On a linear support.
+
     In polar slip coordinates w = s·exp(iθ) and with b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b.
     At rest θ is the direction of the pull. Where the pull exceeds friction, slip grows linearly and the
     series converges. Where it is just equal (release from a stick phase), slip grows quadratically with its
@@ -168,7 +227,7 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
         position[k] = velocity[k - 1] / k
         slip[k] = np.dot(speed[1 : k + 1], direction[k - 1 :: -1])
         velocity[k] = slip[k] + omega * position[k]
-        pull[k] = -(motion.damping + omega) * velocity[k] - motion.stiffness * position[k]
+        pull[k] = -(motion.damping + omega) * velocity[k] - motion.support.stiffness * position[k]
         # Coefficient k of exp(iθ) and of b = a·exp(−iθ) but for the terms with θ_k itself.
         direction[k] = 1j * np.dot(order[1:k] * theta[1:k], direction[k - 1 : 0 : -1]) / k
         b = np.dot(pull[: k + 1], direction[k::-1].conj())

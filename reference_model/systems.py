@@ -25,6 +25,9 @@ class _SupportedMass:
     friction_force: float
     disc_speed: float
     offset: float = 0.0
+    hardening: float = 0.0
+    stop_gap: float = 0.0
+    stop_stiffness: float = 0.0
 
     state_size: ClassVar[int]
     _units: ClassVar[dict[str, str]] = {
@@ -32,9 +35,19 @@ class _SupportedMass:
         "stiffness": "N/m",
         "damping": "N s/m",
         "friction_force": "N",
+        "hardening": "N/m³",
+        "stop_gap": "m",
+        "stop_stiffness": "N/m",
     }
     _positive: ClassVar[tuple[str, ...]] = ("mass",)
-    _not_negative: ClassVar[tuple[str, ...]] = ("stiffness", "damping", "friction_force")
+    _not_negative: ClassVar[tuple[str, ...]] = (
+        "stiffness",
+        "damping",
+        "friction_force",
+        "hardening",
+        "stop_gap",
+        "stop_stiffness",
+    )
 
     def __post_init__(self) -> None:
         """Refuse what no system can be."""
@@ -49,8 +62,13 @@ class _SupportedMass:
 
     @property
     def natural_frequency(self) -> float:
-        """k = √(C/m) of eq. 11, in rad/s."""
+        """k = √(C/m) of eq. 11, in rad/s: of the spring alone, which a hardening or a stop adds to."""
         return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def linear_support(self) -> bool:
+        """Whether the support is the paper's: a spring alone, neither hardening nor with a stop."""
+        return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +91,12 @@ class PinOnDisc(_SupportedMass):
         ω in rad/s, of either sign.
     offset : float
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
+    hardening : float
+        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 its springs pull with C·|w| + C₃·|w|³.
+    stop_gap : float
+        Play in m before the stop of the support, >= 0.
+    stop_stiffness : float
+        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) where |w| is beyond the gap. 0 for none.
 
     Raises
     ------
@@ -113,6 +137,12 @@ class DiscOnDisc(_SupportedMass):
         Ω of the shaft in rad/s, of either sign.
     offset : float
         X0 in m: the springs are relaxed at (X0, 0), the master disc turns about (0, 0).
+    hardening : float
+        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 its springs pull with C·|w| + C₃·|w|³.
+    stop_gap : float
+        Play in m before the stop of the support, >= 0.
+    stop_stiffness : float
+        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) where |w| is beyond the gap. 0 for none.
     contact_points : int or None
         Number of points that the contact consists of, from 3 to 1000: point i is at the angle φ + 2πi/n and carries
         N/n. None for the continuous ring of (20).

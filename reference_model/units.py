@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from reference_model.disc import DiscMotion
 from reference_model.pin import SlipMotion
+from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 
@@ -28,7 +29,8 @@ class Units:
 
         Time goes by the fastest of springs and master disc; without them by the dampers; and without these by the
         time in which friction takes the slip away. Length goes by the motion of the centre: a fast spin must not
-        hide it.
+        hide it. Hardening and stop make time faster where the motion may reach them, and length smaller as much,
+        which leaves the unit of speed.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
@@ -40,19 +42,26 @@ class Units:
             slip = math.hypot(speed, gyration * (state[5] - system.disc_speed))
             decay = max(decay, system.shaft_damping / system.polar_inertia)
         rate = max(system.natural_frequency, abs(system.disc_speed)) or decay
+        place = max(math.hypot(*state[:2]), abs(system.offset))
+        support = Support.of(system).scaled(1.0 / system.mass)
+        hard = 0.0
+        if not support.linear:
+            # As far as springs let it go by its speed or by friction.
+            reach = max(place, support.circle(speed**2), support.deflection(friction))
+            hard = math.sqrt(support.tangent(reach)) if reach < math.inf else 0.0
         if rate == 0.0:  # free on a resting disc
-            rate = friction / slip if friction > 0.0 < slip else 1.0
-        length = max(math.hypot(*state[:2]), abs(system.offset), speed / rate, friction / rate**2)
-        return cls(length if length > 0.0 else 1.0, 1.0 / rate)
+            rate = hard or (friction / slip if friction > 0.0 < slip else 1.0)
+        length = max(place, speed / rate, friction / rate**2)
+        faster = max(hard / rate, 1.0)
+        return cls((length if length > 0.0 else 1.0) / faster, 1.0 / (faster * rate))
 
     def of_pin(self, motion: SlipMotion) -> SlipMotion:
         """Return the equations of motion of a pin, or of a disc's centre, in these units."""
         return SlipMotion(
             damping=motion.damping * self.time,
-            stiffness=motion.stiffness * self.time**2,
+            support=motion.support.scaled(self.time**2, self.length),
             friction=motion.friction * self.time**2 / self.length,
             disc_speed=motion.disc_speed * self.time,
-            offset=motion.offset / self.length,
         )
 
     def of_disc(self, motion: DiscMotion) -> DiscMotion:

@@ -18,6 +18,9 @@ ComplexArray = NDArray[np.complex128]
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
 
+BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
+"""Parameters of a support that are zero in the paper."""
+
 FLOW_TOLERANCE = 1e-11
 """Of the simulations that are subtracted from each other."""
 
@@ -27,10 +30,12 @@ def parameters_of(
 ) -> dict[str, float | str]:
     """Return the parameters of ``system`` for a claim, but those that it sweeps; ``changes`` adds or replaces some.
 
-    A disc without contact points has "continuous ring" in their place.
+    A disc without contact points has "continuous ring" in their place; what no linear support has is left out.
     """
     parameters: dict[str, float | str] = {
-        name: "continuous ring" if value is None else value for name, value in asdict(system).items()
+        name: "continuous ring" if value is None else value
+        for name, value in asdict(system).items()
+        if name not in BEYOND_THE_SPRING or value != 0.0
     }
     return {name: value for name, value in parameters.items() if name not in without} | changes
 

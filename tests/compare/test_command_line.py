@@ -162,6 +162,9 @@ def test_simulate_writes_files(tmp_path, capsys):
         "friction_force": 0.09,
         "disc_speed": -1.25,
         "offset": 0.1,
+        "hardening": 0.0,
+        "stop_gap": 0.0,
+        "stop_stiffness": 0.0,
     }
     assert content["states"][0] == [-0.1, 0.0, -0.03, 1.0]
     assert content["times"] == [0.0, 1.0, 2.0]

@@ -21,6 +21,13 @@ def test_parameters_of_a_claim_name_the_ring_in_words():
     assert parameters_of(FIG5)["offset"] == FIG5.offset
 
 
+def test_parameters_of_a_claim_tell_of_hardening_and_stop_where_there_are_any():
+    assert not {"hardening", "stop_gap", "stop_stiffness"} & set(parameters_of(FIG5))
+    hard = parameters_of(replace(FIG5, hardening=2.0, stop_stiffness=3.0))
+    assert (hard["hardening"], hard["stop_stiffness"]) == (2.0, 3.0)
+    assert set(hard) - set(parameters_of(FIG5)) == {"hardening", "stop_stiffness"}
+
+
 @pytest.mark.parametrize("angle", [0.7, -2.0, 100.0])
 def test_turning_a_state_keeps_radius_speed_and_spin(angle):
     pin, disc = np.array([1.0, 2.0, 3.0, -4.0]), np.array([1.0, 2.0, 0.5, 3.0, -4.0, 7.0])

@@ -52,13 +52,17 @@ def rates(disc, friction, state):
     x, y, angle, vx, vy, spin = state
     omega = disc.disc_speed
     force_x, force_y, moment = friction(vx + omega * y, vy - omega * x, omega - spin, angle)
+    squared = (x - disc.offset) ** 2 + y**2
+    stiffness = disc.stiffness + disc.hardening * squared
+    if squared.real > disc.stop_gap**2:
+        stiffness += disc.stop_stiffness * (1.0 - disc.stop_gap / np.sqrt(squared))
     return np.array(
         [
             vx,
             vy,
             spin,
-            (-disc.damping * vx - disc.stiffness * (x - disc.offset) + force_x) / disc.mass,
-            (-disc.damping * vy - disc.stiffness * y + force_y) / disc.mass,
+            (-disc.damping * vx - stiffness * (x - disc.offset) + force_x) / disc.mass,
+            (-disc.damping * vy - stiffness * y + force_y) / disc.mass,
             (-disc.shaft_damping * (spin - disc.shaft_speed) + moment) / disc.polar_inertia,
         ]
     )
@@ -87,6 +91,9 @@ def disc_in_units(disc, mass, length, time):
         friction_force=disc.friction_force * mass * length / time**2,
         disc_speed=disc.disc_speed / time,
         offset=disc.offset * length,
+        hardening=disc.hardening * mass / time**2 / length**2,
+        stop_gap=disc.stop_gap * length,
+        stop_stiffness=disc.stop_stiffness * mass / time**2,
         contact_radius=disc.contact_radius * length,
         shaft_damping=disc.shaft_damping * mass * length**2 / time,
         shaft_speed=disc.shaft_speed / time,

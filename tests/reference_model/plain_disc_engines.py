@@ -18,9 +18,12 @@ def stuck_disc(disc, z, angle):
 
 def forces_of_support(disc, z, v, spin):
     """Force of springs and dampers in N, and moment of the shaft in N m."""
-    return -disc.stiffness * (z - disc.offset) - disc.damping * v, -disc.shaft_damping * (
-        spin - disc.shaft_speed
-    )
+    w = z - disc.offset
+    beyond = max(abs(w) - disc.stop_gap, 0.0)
+    springs = disc.stiffness * w + disc.hardening * abs(w) ** 2 * w
+    if beyond > 0.0:
+        springs += disc.stop_stiffness * beyond * w / abs(w)
+    return -springs - disc.damping * v, -disc.shaft_damping * (spin - disc.shaft_speed)
 
 
 def slide_disc(disc, state, times, contact=None, **options):

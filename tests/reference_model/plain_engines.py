@@ -18,9 +18,15 @@ def slip_velocity(pin, state):
 
 
 def support_force(pin, state):
-    """Force of springs and dampers on the pin."""
+    """Force of springs, stop and dampers on the pin."""
     x, y, vx, vy = state
-    springs = -pin.stiffness * np.array([x - pin.offset, y])
+    deflection = np.array([x - pin.offset, y])
+    springs = -pin.stiffness * deflection
+    if not pin.linear_support:
+        d = math.hypot(*deflection)
+        springs -= pin.hardening * d**2 * deflection
+        if d > pin.stop_gap:
+            springs -= pin.stop_stiffness * (d - pin.stop_gap) * deflection / d
     return springs - pin.damping * np.array([vx, vy])
 
 
@@ -57,6 +63,25 @@ def slide(pin, state, times, **options):
     solution = solve_ivp(lambda _, s: rates(pin, s, law), (times[0], times[-1]), state, **options)
     assert solution.status >= 0, solution.message
     return solution
+
+
+def slide_past_stop(pin, state, times):
+    """States at ``times`` of pure slip, integrated from each time at which the stop begins or ends to act."""
+
+    def beyond(_, s):
+        return math.hypot(s[0] - pin.offset, s[1]) - pin.stop_gap
+
+    beyond.terminal = True
+    states, t, state = [np.array(state)], times[0], np.array(state)
+    while t < times[-1]:
+        # The first of it without looking: on the edge rounding would end it at once.
+        for events, end in ((None, min(t + 1e-4, times[-1])), (beyond, times[-1])):
+            if end > t:
+                run = slide(pin, state, [t, end], events=events, t_eval=None, max_step=0.2, dense_output=True)
+                inside = times[(times > t) & (times <= run.t[-1])]
+                states.extend(run.sol(inside).T if len(inside) else [])
+                t, state = float(run.t[-1]), run.y[:, -1]
+    return np.array(states)
 
 
 def stick_time_bounds(pin, state, start, longest, slip=2e-10):
@@ -160,6 +185,9 @@ def in_units(pin, mass, length, time):
         friction_force=pin.friction_force * mass * length / time**2,
         disc_speed=pin.disc_speed / time,
         offset=pin.offset * length,
+        hardening=pin.hardening * mass / time**2 / length**2,
+        stop_gap=pin.stop_gap * length,
+        stop_stiffness=pin.stop_stiffness * mass / time**2,
     )
 
 

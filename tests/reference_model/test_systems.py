@@ -19,7 +19,10 @@ from reference_model import (
 from reference_model.systems import checked_times, checked_tolerance
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
-PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
+PARAMETERS = (
+    "mass", "stiffness", "damping", "friction_force", "disc_speed", "offset", "hardening", "stop_gap",
+    "stop_stiffness",
+)  # fmt: skip
 
 
 def refusal(function, *args, **kwargs):
@@ -42,6 +45,9 @@ def refusal(function, *args, **kwargs):
         ("stiffness", -1.0, "stiffness = -1 N/m: it must be >= 0"),
         ("damping", -0.1, "damping = -0.1 N s/m: it must be >= 0"),
         ("friction_force", -1e-300, "friction_force = -1e-300 N: it must be >= 0"),
+        ("hardening", -2.0, "hardening = -2 N/m³: it must be >= 0"),
+        ("stop_gap", -1e-3, "stop_gap = -0.001 m: it must be >= 0"),
+        ("stop_stiffness", -5.0, "stop_stiffness = -5 N/m: it must be >= 0"),
     ],
 )
 def test_value_outside_of_its_range_is_refused_with_its_unit_and_range(parameter, value, message):
@@ -125,6 +131,13 @@ def test_parameters_need_their_names_and_do_not_change():
         FIG_5.mass = 2.0
     assert replace(FIG_5) == FIG_5
     assert len({FIG_5, replace(FIG_5), replace(FIG_5, mass=2.0)}) == 2
+
+
+def test_support_is_linear_unless_it_hardens_or_has_a_stop():
+    assert FIG_5.linear_support
+    assert replace(FIG_5, stop_gap=0.1).linear_support  # a gap to a stop of no stiffness
+    assert not replace(FIG_5, hardening=0.1).linear_support
+    assert not replace(FIG_5, stop_stiffness=0.1).linear_support
 
 
 def test_natural_frequency_is_that_of_the_free_oscillator():
