@@ -19,6 +19,7 @@ lint: $(VENV)/installed
 
 benchmarks: $(VENV)/installed
 	$(BIN)/python benchmarks/exudyn_contact.py
+	$(BIN)/python benchmarks/exudyn_solvers.py
 	$(BIN)/python benchmarks/reference_evaluations.py
 
 clean:

@@ -2,6 +2,11 @@
 
 Run as ``python benchmarks/exudyn_contact.py``; prints tables. Figures of one run compare with each other: the
 least of several repetitions, interleaved so that a busy machine hits all rows alike.
+
+What else was tried for the call, as the last column of the table of contacts counts it: numba's own dispatch by type,
+1.9 for a ring; a C callback through ctypes, 2.0 for a pin; a NumPy array in place of the forces' list, 0.15 more;
+Exudyn's symbolic functions, 1.0 for a pin, but over 5 for a ring, because they evaluate what is shared by several
+terms once for each of them; Exudyn's build without range checks, no difference.
 """
 
 from __future__ import annotations
@@ -10,6 +15,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from types import FunctionType
 from typing import Any
 
 import exudyn as exu
@@ -21,50 +27,57 @@ import reference_model
 from compare.paper import FIG5, FIG11
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
-from exudyn_models.planar_pairs import _force_on_rotor
-from exudyn_models.strength import NumberOrFunction, Strength
+from exudyn_models.native_contact import add_native_friction
+from exudyn_models.strength import NumberOrFunction
 
-STEPS = 20_000
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+STEPS = 3_000
 EVALUATIONS_PER_STEP = 5  # four stages of RK44, and the acceleration at the end of the step
-REPETITIONS = 7
+REPETITIONS = 25
+SECTION = {"friction_coefficient": 1.0, "normal_load": FIG5.friction_force, "regularisation": 1e-6}
+PIN: dict[str, Any] = {"contact_radius": 0.0}
+RING: dict[str, Any] = {"contact_radius": 0.12}
+SIX_POINTS, POINTS_24 = RING | {"contact_points": 6}, RING | {"contact_points": 24}
+ANNULUS = {"inner_radius": 0.08, "outer_radius": 0.12}
 
-AddContact = Callable[[Any, Any, Any], None]
+AddContact = Callable[[Any, Any, Any], Any]
+"""Adds a contact between the nodes of master and disc to a model."""
 
 
-def ours(normal_load: NumberOrFunction = FIG5.friction_force, **geometry: Any) -> AddContact:
+def ours(geometry: dict[str, Any], normal_load: NumberOrFunction = FIG5.friction_force) -> AddContact:
     """Add the connector as it is used."""
+    contact = SECTION | geometry | {"normal_load": normal_load}
+    return lambda mbs, master, disc: add_ring_friction(mbs, master, disc, **contact)
+
+
+def built_in(geometry: dict[str, Any]) -> AddContact:
+    """Add Exudyn's own contact of spheres and a triangle."""
+    contact = SECTION | geometry | {"reach": 2.0}
+    return lambda mbs, master, disc: add_native_friction(mbs, master, disc, **contact)
+
+
+def native(connector: str, marker: str, count: int) -> AddContact:
+    """Add ``count`` of Exudyn's own connectors between the ground and the disc."""
 
     def add(mbs: Any, master: Any, disc: Any) -> None:
-        add_ring_friction(
-            mbs,
-            master,
-            disc,
-            friction_coefficient=1.0,
-            normal_load=normal_load,
-            regularisation=1e-6,
-            **geometry,
-        )
+        bodies = range(mbs.systemData.NumberOfObjects())
+        body = next(i for i in bodies if int(mbs.GetObject(i).get("nodeNumber", -1)) == int(disc))
+        ground = mbs.AddObject(items.ObjectGround())
+        markers = [mbs.AddMarker(getattr(items, marker)(bodyNumber=number)) for number in (ground, body)]
+        for _ in range(count):
+            mbs.AddObject(getattr(items, connector)(markerNumbers=markers))
 
     return add
 
 
-def with_force(force: Callable[..., list[float]]) -> AddContact:
-    """Add the same connector with another force function."""
-
-    def add(mbs: Any, master: Any, disc: Any) -> None:
-        mbs.AddObject(
-            exudyn.itemInterface.ObjectGenericODE2(
-                nodeNumbers=[master, disc], massMatrix=np.zeros((4, 4)), forceUserFunction=force
-            )
+def with_force(force: Callable[..., Any]) -> AddContact:
+    """Add the connector between rotor and disc with another force function."""
+    return lambda mbs, master, disc: mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=[master, disc], massMatrix=np.zeros((4, 4)), forceUserFunction=force
         )
-
-    return add
-
-
-def kernel(function: Callable[..., Any], radius: float, points: int) -> AddContact:
-    """Add the connector with its force evaluated by a given kernel."""
-    strength = Strength((radius, points, 1.0, 1e-6, NONE_HELD, radius), 1.0, FIG5.friction_force)
-    return with_force(_force_on_rotor(function, 0.0, 0.0, 0.0, strength, constant))
+    )
 
 
 def constant(*arguments: Any) -> list[float]:
@@ -72,16 +85,81 @@ def constant(*arguments: Any) -> list[float]:
     return [0.0, 0.0, 0.0, 0.0]
 
 
-CONTACTS: dict[str, AddContact | None] = {
-    "no friction, native springs only": None,
-    "a user function that returns constants": with_force(constant),
-    "pin, connector as used": ours(contact_radius=0.0),
-    "pin, numba": kernel(ring_friction, 0.0, 1),
-    "six points, connector as used": ours(contact_radius=0.12, contact_points=6),
-    "24 points, connector as used": ours(contact_radius=0.12, contact_points=24),
-    "continuous ring, connector as used": ours(contact_radius=0.12),
-    "the same under a load of time": ours(lambda t: FIG5.friction_force, contact_radius=0.12),
-    "annulus, connector as used": ours(inner_radius=0.08, outer_radius=0.12),
+def plain_python(radius: float, points: int) -> AddContact:
+    """Add the connector with the same law, not compiled."""
+    law, contact = in_python(ring_friction), (radius, points, FIG5.friction_force, 1e-6, NONE_HELD, radius)
+
+    def force(mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
+        _, x, y, angle = q
+        master_spin, vx, vy, spin = q_t
+        fx, fy, moment, master_moment = law(x, y, angle, vx, vy, master_spin, spin, contact)
+        return [master_moment, fx, fy, moment]
+
+    return with_force(force)
+
+
+def in_python(function: Any) -> Callable[..., Any]:
+    """Return a compiled function, and all that it calls, as Python runs them."""
+    plain = function.py_func
+    names = {
+        name: in_python(value) if hasattr(value, "py_func") else value
+        for name, value in plain.__globals__.items()
+        if name in plain.__code__.co_names or name == "__builtins__"
+    }
+    return FunctionType(plain.__code__, names)
+
+
+def pin_without_friction() -> tuple[Any, Any, Any]:
+    """Return a model with native springs only, and its nodes."""
+    without = replace(FIG5, friction_force=0.0)
+    model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
+    return model.mbs, exu.NodeIndex(0), exu.NodeIndex(1)
+
+
+def free_spatial_bodies() -> tuple[Any, Any, Any]:
+    """Return a model of two bodies without support, and their nodes."""
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = []
+    for spin in (1.5, 0.0):
+        node = mbs.AddNode(
+            items.NodeRigidBodyRxyz(
+                referenceCoordinates=[0.0] * 6, initialVelocities=[0.0, 0.05 * spin, 0.0, 0.0, 0.0, spin]
+            )
+        )
+        mbs.AddObject(
+            items.ObjectRigidBody(nodeNumber=node, mass=1.0, inertia=[1.0, 1.0, 2.0, 0.0, 0.0, 0.0])
+        )
+        nodes.append(node)
+    return mbs, *nodes
+
+
+CALL = "a user function that returns constants"
+FOUR = "ring, no acceleration at the end of a step"
+
+PLANAR: dict[str, AddContact] = {
+    "no friction, native springs only": lambda mbs, master, disc: None,
+    "a CartesianSpringDamper more": native("CartesianSpringDamper", "MarkerBodyPosition", 1),
+    "six RigidBodySpringDampers more": native("RigidBodySpringDamper", "MarkerBodyRigid", 6),
+    CALL: with_force(constant),
+    "pin": ours(PIN),
+    "six points": ours(SIX_POINTS),
+    "24 points": ours(POINTS_24),
+    "ring": ours(RING),
+    "ring under a load of time": ours(RING, lambda time: FIG5.friction_force),
+    "ring under a load of the radius": ours(RING, lambda radius: FIG5.friction_force),
+    "ring with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
+    "annulus": ours(ANNULUS),
+    FOUR: ours(RING),
+    "pin, plain Python": plain_python(0.0, 1),
+    "six points, plain Python": plain_python(0.12, 6),
+    "pin, built-in contact": built_in(PIN),
+    "six points, built-in contact": built_in(SIX_POINTS),
+    "24 points, built-in contact": built_in(POINTS_24),
+}
+
+SPATIAL: dict[str, AddContact] = {
+    "two spatial bodies, no friction": lambda mbs, master, disc: None,
+    "the same with a ring": ours(RING),
 }
 
 
@@ -117,13 +195,11 @@ def cost_of_kernels() -> None:
             print(f"{name + ', ' + where:<42}{best / count * 1e9:>15.1f}")
 
 
-def seconds(add_contact: AddContact | None) -> float:
-    """Return the time that ``STEPS`` steps of RK44 take."""
-    without = replace(FIG5, friction_force=0.0)
-    model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
-    if add_contact is not None:
-        add_contact(model.mbs, exu.NodeIndex(0), exu.NodeIndex(1))
-    model.mbs.Assemble()
+def seconds(model: tuple[Any, Any, Any], add_contact: AddContact, accelerations: bool = True) -> float:
+    """Return the processor's time that ``STEPS`` steps of RK44 take: what other processes take does not count."""
+    mbs, master, disc = model
+    add_contact(mbs, master, disc)
+    mbs.Assemble()
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 1e9
@@ -131,23 +207,31 @@ def seconds(add_contact: AddContact | None) -> float:
     options.verboseMode = 0
     options.numberOfSteps, options.endTime = STEPS, STEPS * 1e-3
     options.solverType = exu.DynamicSolverType.RK44
+    options.explicit.computeEndOfStepAccelerations = accelerations
     solver: Any = exu.MainSolverExplicit()
-    began = time.perf_counter()
-    solver.SolveSystem(model.mbs, settings)
-    return time.perf_counter() - began
+    began = time.process_time()
+    solver.SolveSystem(mbs, settings)
+    return time.process_time() - began
 
 
 def cost_of_contacts() -> None:
-    """Print the table of costs per step and per evaluation."""
-    best = dict.fromkeys(CONTACTS, math.inf)
+    """Print the table of costs per step and per evaluation, and their ratios to no friction and to the mere call."""
+    models = ((pin_without_friction, PLANAR), (free_spatial_bodies, SPATIAL))
+    best = dict.fromkeys([*PLANAR, *SPATIAL], math.inf)
     for _ in range(REPETITIONS):
-        for name, contact in CONTACTS.items():
-            best[name] = min(best[name], seconds(contact))
-    bare = best["no friction, native springs only"]
-    print(f"\n{'RK44, fixed step':<42}{'us/step':>9}{'ratio':>8}{'ns/evaluation of the contact':>30}")
-    for name, value in best.items():
-        extra = (value - bare) / STEPS / EVALUATIONS_PER_STEP * 1e9
-        print(f"{name:<42}{value / STEPS * 1e6:>9.2f}{value / bare:>8.2f}{extra:>30.0f}")
+        for build, contacts in models:
+            for name, contact in contacts.items():
+                best[name] = min(best[name], seconds(build(), contact, name != FOUR) / STEPS)
+    call = best[CALL] - best[next(iter(PLANAR))]
+    print(f"\n{'RK44, fixed step':<42}{'us/step':>9}{'ratio':>8}{'ns/evaluation':>15}{'of the call':>13}")
+    for _, contacts in models:
+        bare = best[next(iter(contacts))]
+        for name in contacts:
+            extra = best[name] - bare
+            row = f"{name:<42}{best[name] * 1e6:>9.2f}{best[name] / bare:>8.2f}"
+            if name != FOUR:
+                row += f"{extra / EVALUATIONS_PER_STEP * 1e9:>15.0f}{extra / call:>13.2f}"
+            print(row)
 
 
 def choice_of_regularisation() -> None:

@@ -21,6 +21,7 @@ release leaves an error of ε^0.8 behind, here all errors are of first order in 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -41,6 +42,17 @@ The inner radius is R, but of an annulus, whose outer radius is R. The friction 
 slip: it models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
 linear, and can not throw off Newton's iteration.
 """
+
+CONTACT_SIZE = 6
+"""Numbers of a ``Contact``."""
+
+
+@compiled
+def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
+    """Return the ``Contact`` whose numbers ``parameters`` begin with, and the rest of them."""
+    radius, points, friction, epsilon, held, inner = parameters[:CONTACT_SIZE]
+    return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
+
 
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
@@ -127,7 +139,7 @@ def _force_of_points(
     force, moment, mean, slowest, lowest = 0j, 0.0, 0.0, 0, math.inf
     for i in range(points):
         slip = slip_of_centre + 1j * rim * arm
-        speed = abs(slip)
+        speed = _length(slip)
         push = slip * (-share / speed) if speed > 0.0 else 0j
         force += push
         moment += (arm.conjugate() * push).imag
@@ -147,7 +159,7 @@ def _force_of_points(
     arm = complex(math.cos(angle), math.sin(angle))
     for i in range(points):
         slip = slip_of_centre + 1j * rim * arm - (drawn * slow_slip if i != slow else 0j)
-        speed = abs(slip)
+        speed = _length(slip)
         if i == slow and viscous:
             push = slip * (-share / delta)
         else:
@@ -156,6 +168,12 @@ def _force_of_points(
         moment += (arm.conjugate() * push).imag
         arm *= turn
     return force.real, force.imag, radius * moment
+
+
+@compiled
+def _length(vector: complex) -> float:
+    """Return |v|. abs(), which stays in range where |v|² does not, would nearly double what a point costs."""
+    return math.sqrt(vector.real * vector.real + vector.imag * vector.imag)
 
 
 BEND = 4.0 / 3.0

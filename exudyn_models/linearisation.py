@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from exudyn_models.creep import creep_ratios
 from exudyn_models.models import build
 from exudyn_models.solving import quiet
-from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System, checked_state
 
 REGULARISATION = 1e-12
 """ε in m/s: friction is Coulomb's wherever the contact slips by more."""
@@ -44,25 +44,37 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
             f"state = {start.tolist()}: the contact, or a point of it, is at rest, where friction has no derivative"
         )
     model = build(system, start, regularisation=REGULARISATION)
-    own = slice(model.first, model.first + model.size)
-    solver: Any = exu.MainSolverStatic()  # its Jacobian holds no terms of a time integration
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-
-    def jacobian(**factors: float) -> NDArray[np.float64]:
-        zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
-        solver.ComputeJacobianODE2RHS(model.mbs, **(zero | factors))
-        return np.array(solver.GetSystemJacobian())[own, own]
-
-    with quiet():
-        solver.InitializeSolver(model.mbs, settings)
-        solver.ComputeMassMatrix(model.mbs)
-        mass = np.array(solver.GetSystemMassMatrix())[own, own]
-        stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
-        solver.FinalizeSolver(model.mbs, settings)
-    lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
-    upper = np.hstack((np.zeros_like(mass), np.eye(model.size)))
-    matrix = np.vstack((upper, lower))
+    matrix = state_matrix(model.mbs, slice(model.first, model.first + model.size))
     if isinstance(system, DiscOnDisc) and system.contact_points is None:
         matrix = np.delete(np.delete(matrix, ANGLE, 0), ANGLE, 1)
     return np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+
+
+def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
+    """Return A of d(x, ẋ)/dt = A·(x, ẋ), small motions about the initial values of an assembled model.
+
+    x are its coordinates of second order, or ``own`` of them. Where loads or a friction's normal load are functions
+    of the user's that read the motion by themselves, they are taken as they are at that state.
+    """
+    solver: Any = exu.MainSolverStatic()  # its Jacobian holds no terms of a time integration
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    size = mbs.systemData.ODE2Size()
+
+    def part(matrix: Any) -> FloatArray:
+        return np.array(matrix)[:size, :size][own, own]
+
+    def jacobian(**factors: float) -> FloatArray:
+        zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
+        solver.ComputeJacobianODE2RHS(mbs, **(zero | factors))
+        return part(solver.GetSystemJacobian())
+
+    with quiet():
+        solver.InitializeSolver(mbs, settings)
+        solver.ComputeMassMatrix(mbs)
+        mass = part(solver.GetSystemMassMatrix())
+        stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
+        solver.FinalizeSolver(mbs, settings)
+    lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
+    upper = np.hstack((np.zeros_like(mass), np.eye(len(mass))))
+    return np.vstack((upper, lower))

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 from exudyn_models.creep import WHOLE, creep_ratios, creeping
 from exudyn_models.friction_laws import CONTINUOUS, point_regularisation
 from exudyn_models.ring_friction import checked_contact, checked_kind
+from exudyn_models.scales import support_energy
 from exudyn_models.simulate import simulate
 from exudyn_models.slip_and_creep import Friction, Part
 from exudyn_models.slip_map import PLANAR, ROTOR
@@ -97,16 +98,13 @@ def _add_friction(
 def _reach(system: System, state: FloatArray, span: float) -> float:
     """Return a distance in m > 0 from the master's axis that no contact point exceeds within ``span`` (s).
 
-    Friction can raise w of w² = |v|² + k²|r − X0|² by no more than μN/m a second, and all else only lowers it. So
-    |v| <= w takes the centre no further than w·span, and the spring stretches to no more than w/k.
+    Friction can raise w of the energy m·w²/2 of centre and support by no more than μN/m a second, and all else only
+    lowers it. So |v| <= w takes the centre no further than w·span, and the spring stretches to no more than w/k.
     """
-    position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
     k = system.natural_frequency
-    w = (
-        math.hypot(abs(velocity), k * abs(position - system.offset))
-        + system.friction_force / system.mass * span
-    )
-    reach = abs(position) + w * span
+    w = math.sqrt(2.0 * support_energy(system, state) / system.mass)
+    w += system.friction_force / system.mass * span
+    reach = math.hypot(*state[:2]) + w * span
     if k > 0.0:
         reach = min(reach, abs(system.offset) + w / k)
     if isinstance(system, DiscOnDisc):

@@ -1,167 +1,129 @@
-"""Friction of a planar disc on a rotor or on a planar master: in closed form, at half the cost of other pairs."""
+"""Friction of a planar disc on a rotor or on a planar master: in closed form, at a third of the cost of other pairs.
+
+Their arguments are those of the functions for any pair, in ``slip_map``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, cast
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from exudyn_models.friction_laws import ring_friction, ring_friction_derivatives
-from exudyn_models.slip_map import PLANAR, ROTOR, Kinds
-from exudyn_models.strength import Strength
+from exudyn_models.compiled import compiled
+from exudyn_models.friction_laws import contact_of, ring_friction, ring_friction_derivatives
+from exudyn_models.slip_map import PLANAR, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
 
-Kernel = Callable[..., tuple[float, float, float, float]]
 
-ForceFunction = Callable[[Any, float, int, Sequence[float], Sequence[float]], list[float]]
-JacobianFunction = Callable[[Any, float, int, Sequence[float], Sequence[float], float, float], FloatArray]
-
-
-def is_planar(kinds: Kinds) -> bool:
-    """Return whether a pair of nodes is one of those."""
-    return kinds[0] in (ROTOR, PLANAR) and kinds[1] == PLANAR
+@compiled
+def force_on_rotor(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+    """Return the generalised forces on a rotor and a planar disc."""
+    contact, _ = contact_of(parameters)
+    fx, fy, moment, master_moment = ring_friction(*_on_rotor(parameters, q, q_t), contact)
+    return master_moment, fx, fy, moment
 
 
-def on_planar_pair(
-    kinds: Kinds,
-    reference: FloatArray,
-    strength: Strength,
-    force: ForceFunction,
-    jacobian: JacobianFunction,
-) -> tuple[ForceFunction, JacobianFunction]:
-    """Return the connector's force and Jacobian as functions for Exudyn.
+@compiled
+def force_on_planar(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+    """Return the generalised forces on a planar master and a planar disc."""
+    contact, _ = contact_of(parameters)
+    fx, fy, moment, master_moment = ring_friction(*_on_planar(parameters, q, q_t), contact)
+    return -fx, -fy, master_moment, fx, fy, moment
 
-    ``force`` and ``jacobian`` are those for any pair of nodes, for a strength that depends on the motion.
-    """
-    # .tolist(): one NumPy number in the kernel would make all its arithmetic NumPy's, which is far slower.
-    *place, x, y, angle = reference.tolist()
-    # A pin's force is so short that the call into compiled code would cost more than it saves.
-    kernel: Kernel = cast(Any, ring_friction).py_func if strength.contact_radius == 0.0 else ring_friction
-    if kinds[0] == ROTOR:
-        return (
-            _force_on_rotor(kernel, x, y, angle, strength, force),
-            _jacobian_on_rotor(x, y, angle, strength, jacobian),
-        )
-    x, y = x - place[0], y - place[1]
-    return (
-        _force_on_planar_master(kernel, x, y, angle, strength, force),
-        _jacobian_on_planar_master(x, y, angle, strength, jacobian),
+
+@compiled
+def jacobian_on_rotor(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (4, 4)."""
+    contact, _ = contact_of(parameters)
+    derivatives = ring_friction_derivatives(*_on_rotor(parameters, q, q_t), contact)
+    return _over_both_nodes(
+        derivatives,
+        position_factor,
+        velocity_factor,
+        _FORCES_ON_ROTOR,
+        _POSITIONS_ON_ROTOR,
+        _VELOCITIES_ON_ROTOR,
     )
 
 
-def _force_on_rotor(
-    kernel: Kernel, x0: float, y0: float, angle0: float, strength: Strength, otherwise: ForceFunction
-) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact
-        if contact is None:
-            if strength.depends_on_motion:
-                return otherwise(mbs, t, item, q, q_t)
-            contact = strength.contact_at(t)
-        _, x, y, angle = q
-        master_spin, vx, vy, spin = q_t
-        fx, fy, moment, master_moment = kernel(
-            x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin, contact
-        )
-        return [master_moment, fx, fy, moment]
+@compiled
+def jacobian_on_planar(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (6, 6)."""
+    contact, _ = contact_of(parameters)
+    derivatives = ring_friction_derivatives(*_on_planar(parameters, q, q_t), contact)
+    return _over_both_nodes(
+        derivatives,
+        position_factor,
+        velocity_factor,
+        _FORCES_ON_PLANAR,
+        _POSITIONS_ON_PLANAR,
+        _VELOCITIES_ON_PLANAR,
+    )
 
-    return force
 
-
-def _force_on_planar_master(
-    kernel: Kernel, x0: float, y0: float, angle0: float, strength: Strength, otherwise: ForceFunction
-) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact
-        if contact is None:
-            if strength.depends_on_motion:
-                return otherwise(mbs, t, item, q, q_t)
-            contact = strength.contact_at(t)
-        xm, ym, _, x, y, angle = q
-        vxm, vym, master_spin, vx, vy, spin = q_t
-        fx, fy, moment, master_moment = kernel(
-            x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin, contact
-        )
-        return [-fx, -fy, master_moment, fx, fy, moment]
-
-    return force
-
+LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
+    (ROTOR, PLANAR): (force_on_rotor, jacobian_on_rotor),
+    (PLANAR, PLANAR): (force_on_planar, jacobian_on_planar),
+}
+"""Force and Jacobian on these pairs."""
 
 Relative = tuple[float, float, float, float, float, float, float]
 """What the kernel takes of the motion: dx, dy, angle, dvx, dvy and both spins."""
 
-Maps = tuple[FloatArray, FloatArray, FloatArray]
-"""Generalised forces from (F_x, F_y, M, M_master); the kernel's positions and velocities from those of the nodes."""
 
+@compiled
+def _on_rotor(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
+    _, (_, _, _, x, y, angle) = contact_of(parameters)
+    return x + q[1], y + q[2], angle + q[3], q_t[1], q_t[2], q_t[0], q_t[3]
+
+
+@compiled
+def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
+    _, (_, _, xm, ym, _, x, y, angle) = contact_of(parameters)
+    dx, dy = (x + q[3]) - (xm + q[0]), (y + q[4]) - (ym + q[1])
+    return dx, dy, angle + q[5], q_t[3] - q_t[0], q_t[4] - q_t[1], q_t[2], q_t[5]
+
+
+# Generalised forces from (F_x, F_y, M, M_master), and what the kernel takes of positions and velocities of the nodes.
 _FORCES_ON_ROTOR = np.array([[0, 0, 0, 1], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], dtype=float)
-_ON_ROTOR: Maps = (
-    _FORCES_ON_ROTOR,
-    np.hstack((np.zeros((3, 1)), np.eye(3))),
-    np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float),
-)
-_ON_PLANAR: Maps = (
-    np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR)).astype(float),
-    np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3))),
-    np.array([[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float),
+_POSITIONS_ON_ROTOR = np.hstack((np.zeros((3, 1)), np.eye(3)))
+_VELOCITIES_ON_ROTOR = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float)
+_FORCES_ON_PLANAR = np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR))
+_POSITIONS_ON_PLANAR = np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3)))
+_VELOCITIES_ON_PLANAR = np.array(
+    [[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float
 )
 
 
+@compiled
 def _over_both_nodes(
-    derivatives: FloatArray, position_factor: float, velocity_factor: float, maps: Maps
+    derivatives: FloatArray,
+    position_factor: float,
+    velocity_factor: float,
+    forces: FloatArray,
+    positions: FloatArray,
+    velocities: FloatArray,
 ) -> FloatArray:
-    """Return the Jacobian over the coordinates of both nodes from the derivatives of the kernel.
-
-    Exudyn takes the derivative of the left-hand side, where the force stands with a minus.
-    """
-    forces, positions, velocities = maps
-    weighted = (
-        -position_factor * derivatives[:, :3] @ positions - velocity_factor * derivatives[:, 3:] @ velocities
-    )
-    return np.asarray(forces @ weighted)
-
-
-def _jacobian_on_rotor(
-    x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
-) -> JacobianFunction:
-    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
-        _, x, y, angle = q
-        master_spin, vx, vy, spin = q_t
-        return x0 + x, y0 + y, angle0 + angle, vx, vy, master_spin, spin
-
-    return _jacobian_of_pair(arguments, _ON_ROTOR, strength, otherwise)
-
-
-def _jacobian_on_planar_master(
-    x0: float, y0: float, angle0: float, strength: Strength, otherwise: JacobianFunction
-) -> JacobianFunction:
-    def arguments(q: Sequence[float], q_t: Sequence[float]) -> Relative:
-        xm, ym, _, x, y, angle = q
-        vxm, vym, master_spin, vx, vy, spin = q_t
-        return x0 + x - xm, y0 + y - ym, angle0 + angle, vx - vxm, vy - vym, master_spin, spin
-
-    return _jacobian_of_pair(arguments, _ON_PLANAR, strength, otherwise)
-
-
-def _jacobian_of_pair(
-    arguments: Callable[[Sequence[float], Sequence[float]], Relative],
-    maps: Maps,
-    strength: Strength,
-    otherwise: JacobianFunction,
-) -> JacobianFunction:
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        if strength.depends_on_motion:
-            return otherwise(mbs, t, item, q, q_t, position_factor, velocity_factor)
-        contact = strength.contact or strength.contact_at(t)
-        derivatives = ring_friction_derivatives(*arguments(q, q_t), contact)
-        return _over_both_nodes(derivatives, position_factor, velocity_factor, maps)
-
-    return jacobian
+    """Return minus the derivatives over the coordinates of both nodes from those of the kernel."""
+    by_position = derivatives[:, :3].copy() @ positions  # a product of matrices takes whole ones only
+    by_velocity = derivatives[:, 3:].copy() @ velocities
+    return -(forces @ (position_factor * by_position + velocity_factor * by_velocity))

@@ -9,25 +9,17 @@ momentum between two free bodies.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol, cast
+from typing import Any, Protocol
 
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.friction_laws import (
-    CONTINUOUS,
-    NONE_HELD,
-)
+from exudyn_models.friction_laws import CONTINUOUS, NONE_HELD
 from exudyn_models.friction_sensors import RingFriction
-from exudyn_models.planar_pairs import ForceFunction, JacobianFunction, is_planar, on_planar_pair
-from exudyn_models.slip_map import (
-    KINDS,
-    Kinds,
-    friction_derivatives_on_nodes,
-    friction_on_nodes,
-)
+from exudyn_models.pair_functions import functions_of_pair
+from exudyn_models.slip_map import KINDS
 from exudyn_models.strength import NumberOrFunction, Strength
-from reference_model.systems import FloatArray, finite_number
+from reference_model.systems import finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
@@ -76,23 +68,35 @@ def add_ring_friction(
     ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The plane of contact goes through the disc's node across the
     z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load presses
     nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False, because the
-    nodes are shared with their bodies.
+    nodes are shared with their bodies; Exudyn says so.
+
+    Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
+
+    - ``time`` in s,
+    - ``radius`` in m, the distance of the disc's node from the master's axis,
+    - ``slip_speed`` in m/s, the mean slip speed P of the contact,
+
+    as ``lambda time: ...`` or ``lambda radius, slip_speed: ...``. They may read sensors of ``mbs``, as a controller
+    does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by radius and
+    slip speed, not what comes by way of sensors.
+
+    A static solver keeps the velocities with which the nodes start, so that it finds the equilibrium of a disc on a
+    master that turns.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         Not yet assembled, with both nodes.
     master_node, disc_node : NodeIndex
-        Of the two bodies.
+        Of the two bodies, in ``mbs``: an index of a node in another model is that of the node that has it here.
     contact_radius : float
         R in m, >= 0; the contact is a pin if it is 0.
     inner_radius, outer_radius : float
         In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
     friction_coefficient : float or callable
-        μ >= 0, or a function that returns it for the mean slip speed of the contact in m/s (Stribeck's curve).
+        μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one.
     normal_load : float or callable
-        N in N of the whole contact, >= 0, or a function that returns it for the time in s. The function may read
-        sensors of ``mbs``, as a controller does. Derivatives of N are not part of the Jacobian.
+        N in N of the whole contact, >= 0, or a function that returns it.
     regularisation : float
         ε in m/s, > 0.
     contact_points : int or None
@@ -103,8 +107,9 @@ def add_ring_friction(
     Raises
     ------
     ValueError
-        If a number is out of its range or a node is of a kind that can't be used. Where a function returns such a
-        number in a run, Exudyn ends it with an error that tells it and for which argument.
+        If a number is out of its range, a function takes other arguments, or a node is none of ``mbs`` or of a kind
+        that can't be used. Where a function returns such a number in a run, Exudyn ends it with an ``ExudynError``
+        that tells it with its time and arguments.
 
     """
     if inner_radius is None and outer_radius is None:
@@ -125,10 +130,7 @@ def add_ring_friction(
     reference = np.hstack(
         [mbs.GetNodeParameter(node, "referenceCoordinates") for node in (master_node, disc_node)]
     )
-    force = _force_on_any(kinds, reference, strength)
-    jacobian = _jacobian_on_any(kinds, reference, strength)
-    if is_planar(kinds):
-        force, jacobian = on_planar_pair(kinds, reference, strength, force, jacobian)
+    force, jacobian = functions_of_pair(kinds, reference, strength)
     size = len(reference)
     item = mbs.AddObject(
         items.ObjectGenericODE2(
@@ -186,47 +188,20 @@ def checked_regularisation(value: float) -> float:
     return epsilon
 
 
-def _force_on_any(kinds: Kinds, reference: FloatArray, strength: Strength) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact or strength.contact_at(t)
-        forces, slip_speed = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
-        if strength.depends_on_motion:
-            forces *= strength.coefficient(slip_speed)
-        return cast(list[float], forces.tolist())
-
-    return force
-
-
-def _jacobian_on_any(kinds: Kinds, reference: FloatArray, strength: Strength) -> JacobianFunction:
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        contact = strength.contact or strength.contact_at(t)
-        state = kinds, reference + q, np.array(q_t)
-        derivatives, mean_derivatives = friction_derivatives_on_nodes(
-            *state, position_factor, velocity_factor, contact
-        )
-        if strength.depends_on_motion:
-            forces, slip_speed = friction_on_nodes(*state, contact)
-            derivatives *= strength.coefficient(slip_speed)
-            derivatives += strength.coefficient_slope(slip_speed) * np.outer(forces, mean_derivatives)
-        return -derivatives  # Exudyn takes those of the left-hand side
-
-    return jacobian
-
-
 def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
     """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
-    kind = mbs.GetNode(node)["nodeType"]
+    try:
+        kind = mbs.GetNode(node)["nodeType"]
+    except exudyn.ExudynIndexError:
+        count = mbs.systemData.NumberOfNodes()
+        raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
+    except exudyn.ExudynTypeError:
+        raise ValueError(
+            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex, as AddNode returns it"
+        ) from None
     if KINDS.get(kind) in allowed:
         return KINDS[kind]
     names = [f"Node{key}" for key, value in KINDS.items() if value in allowed]
     raise ValueError(
-        f"{name} {int(node)} is a Node{kind}: ring friction takes a {' or '.join(', '.join(names).rsplit(', ', 1))}"
+        f"{name} {int(node)} is a Node{kind}: it must be a {' or '.join(', '.join(names).rsplit(', ', 1))}"
     )

@@ -6,19 +6,34 @@ import math
 
 import numpy as np
 
+from exudyn_models.radial_support import Law, potential, secant_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 
 def time_scale(system: System, state: FloatArray, span: float) -> float:
     """Return the time in s in which the motion changes: the shortest of 1/k, 1/|ω|, m/β, or all of ``span``.
 
-    A disc adds its spin, that of its shaft and J/b.
+    A disc adds its spin, that of its shaft and J/b. Of a support that hardens k is that at the largest deflection
+    that the energy at the start allows; friction may make it grow further, until the whirl turns with ω. A stop
+    counts as if it were touched.
     """
-    rates = [system.natural_frequency, abs(system.disc_speed), system.damping / system.mass]
+    # C·d²/2 + C₃·d⁴/4 = E has the solution C₃·d² = √(C² + 4·C₃·E) − C.
+    hardening = math.sqrt(system.stiffness**2 + 4.0 * system.hardening * support_energy(system, state))
+    hardening -= system.stiffness
+    stiffest = system.stiffness + 3.0 * hardening + system.stop_stiffness
+    rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]
     if isinstance(system, DiscOnDisc):
         rates += [abs(system.shaft_speed), abs(state[5]), system.shaft_damping / system.polar_inertia]
     rate = max(rates)
     return min(1.0 / rate, span) if rate > 0.0 else span
+
+
+def support_energy(system: System, state: FloatArray) -> float:
+    """Return the energy in J of the centre's motion and of its support, from the place where that is relaxed."""
+    position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
+    return system.mass * abs(velocity) ** 2 / 2.0 + potential(
+        abs(position - system.offset) ** 2, _law_of(system)
+    )
 
 
 def motion_scale(system: System, state: FloatArray) -> float:
@@ -44,7 +59,8 @@ def angle_rounding(system: System, state: FloatArray, span: float) -> float:
 def force_scale(system: System, state: FloatArray) -> float:
     """Return the size in N of the forces on the body, or in N m that of the moments where it is smaller; > 0."""
     position, velocity = state.reshape(2, -1)
-    spring = system.stiffness * (math.hypot(*position[:2]) + abs(system.offset))
+    deflection = math.hypot(*position[:2]) + abs(system.offset)
+    spring = secant_stiffness(deflection**2, _law_of(system)) * deflection
     force = system.friction_force + spring + system.damping * math.hypot(*velocity[:2])
     moment = 0.0
     if isinstance(system, DiscOnDisc):
@@ -52,6 +68,16 @@ def force_scale(system: System, state: FloatArray) -> float:
             system.shaft_speed - velocity[2]
         )
     return float(min((size for size in (force, moment) if size > 0.0), default=system.mass))
+
+
+def _law_of(system: System) -> Law:
+    return (
+        system.stiffness,
+        system.hardening,
+        system.stop_gap,
+        system.stop_stiffness,
+        system.damping,
+    )
 
 
 RELAXATIONS = 40.0

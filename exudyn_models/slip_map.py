@@ -12,13 +12,22 @@ imaginary axis (Squire & Trapp, SIAM Review 40 (1998) 110).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
+import numba.np.unsafe.ndarray
 import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.compiled import compiled
-from exudyn_models.friction_laws import Contact, derivatives_by_slip, friction_of_slip, mean_slip_speed
+from exudyn_models.friction_laws import (
+    CONTACT_SIZE,
+    Contact,
+    contact_of,
+    derivatives_by_slip,
+    friction_of_slip,
+    mean_slip_speed,
+)
 from reference_model.systems import FloatArray
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN = 0, 1, 2, 3
@@ -41,6 +50,10 @@ IMAGINARY_STEP = 1e-30
 
 Kinds = tuple[int, int]
 """Of the nodes of master and disc."""
+
+Floats = Sequence[float]
+
+to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than it is told to be
 
 Array = NDArray[Any]
 """Of real numbers, or of complex ones where derivatives are asked for."""
@@ -74,17 +87,40 @@ def slip_map(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any,
 
 
 @compiled
+def place_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> tuple[Any, Any]:
+    """Return the place of the disc's node over the axis of the master with ``axes``, in two of these, in m."""
+    master, disc = kinds
+    x = y = 0.0 * coordinates[0]
+    for i in range(max(TRANSLATIONS[master], TRANSLATIONS[disc])):
+        apart = 0.0 * coordinates[0]
+        if i < TRANSLATIONS[disc]:
+            apart += coordinates[SIZES[master] + i]
+        if i < TRANSLATIONS[master]:
+            apart -= coordinates[i]
+        x += apart * axes[i, 0]
+        y += apart * axes[i, 1]
+    return x, y
+
+
+@compiled
+def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> Any:
+    """Return the distance in m of the disc's node from the axis of the master with ``axes``, across it."""
+    x, y = place_of_disc(kinds, coordinates, axes)
+    return np.sqrt(x * x + y * y)
+
+
+@compiled
 def friction_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
-) -> tuple[FloatArray, float]:
-    """Return the generalised forces on both nodes, shape (n,), and the mean slip speed P in m/s."""
-    to_slip, _, (cosine, sine) = slip_map(kinds, coordinates)
+) -> tuple[FloatArray, float, float]:
+    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, and P in m/s."""
+    to_slip, axes, (cosine, sine) = slip_map(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    return fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2], mean_slip_speed(
-        ux, uy, spin, angle, contact
-    )
+    forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
+    radius = radius_of_disc(kinds, coordinates, axes)
+    return forces, radius, mean_slip_speed(ux, uy, spin, angle, contact)
 
 
 @compiled
@@ -96,7 +132,7 @@ def friction_derivatives_on_nodes(
     velocity_factor: float,
     contact: Contact,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of the generalised forces, shape (n, n), and of the mean slip speed, shape (n,).
+    """Return the derivatives of the generalised forces, shape (n, n), and of radius and slip speed, shape (2, n).
 
     They are weighted sums of those by the coordinates and by the velocities.
     """
@@ -110,11 +146,13 @@ def friction_derivatives_on_nodes(
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
     size = len(coordinates)
-    by_nodes, mean_by_nodes = np.zeros((size, size)), np.zeros(size)
+    by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((2, size))
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, _, (stepped_cosine, stepped_sine) = slip_map(kinds, stepped)
+        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_map(kinds, stepped)
+        stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
+        motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
         map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
         turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
         turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
@@ -122,9 +160,49 @@ def friction_derivatives_on_nodes(
         force_change = by_slip[:, :3].copy() @ slip_change + by_slip[:, 3] * turn
         for i in range(3):
             by_nodes[:, j] += force[i] * map_change[i] + force_change[i] * to_slip[i]
-            mean_by_nodes[j] += slope * force[i] * slip_change[i]
-        mean_by_nodes[j] -= slope * (force[1] * ux - force[0] * uy) * turn
-    return by_nodes, mean_by_nodes
+            motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
+        motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
+    return by_nodes, motion_by_nodes
+
+
+@compiled
+def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+    """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
+
+    These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
+    """
+    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    forces, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
+    result: Floats = to_tuple(forces, len(q))
+    return result
+
+
+@compiled
+def jacobian_on_any(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (n, n)."""
+    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    return -friction_derivatives_on_nodes(
+        kinds, coordinates, velocities, position_factor, velocity_factor, contact
+    )[0]
+
+
+@compiled
+def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
+    contact, kinds = contact_of(parameters)
+    coordinates, velocities = np.empty(len(q)), np.empty(len(q))
+    for i in range(len(q)):
+        coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
+        velocities[i] = q_t[i]
+    return contact, (int(kinds[0]), int(kinds[1])), coordinates, velocities
 
 
 @compiled

@@ -52,6 +52,9 @@ def joined(parts: Sequence[Steps]) -> Steps:
     )
 
 
+NOT_FINITE = "the state is not finite any more"
+"""Where Exudyn itself would go on and report success."""
+
 Watch = Callable[[float, list[float]], bool]
 """Called with time (s) and state after every step; returns False to end the run there."""
 
@@ -110,8 +113,8 @@ def solve(
     def after_step(mbs: Any, t: float) -> bool:
         nonlocal failure, stopped, previous
         state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
-        if not math.isfinite(sum(state)):  # Exudyn would go on and report success
-            failure = "the state is not finite any more"
+        if not math.isfinite(sum(state)):
+            failure = NOT_FINITE
         elif start < t < end and t - previous <= smallest:
             failure = f"the step fell to {t - previous:.1g} s"
         previous = t
@@ -122,16 +125,13 @@ def solve(
         try:
             if explicit:
                 first_acceleration = _initial_acceleration(model, start)
-            model.mbs.SetPostStepUserFunction(after_step)
-            success = solver.SolveSystem(model.mbs, settings)
+            with after_every_step(model.mbs, after_step):
+                success = solver.SolveSystem(model.mbs, settings)
         except exu.ExudynError as error:
-            if "KeyboardInterrupt" in str(error):  # Ctrl-C arrived while Exudyn was in a user function
-                raise KeyboardInterrupt from error
-            raise SimulationError(_advice(integrator, solver.it.currentTime, str(error))) from error
-        finally:
-            model.mbs.SetPostStepUserFunction(0)
+            raise_interrupt(error)
+            raise SimulationError(advice(integrator, solver.it.currentTime, str(error))) from error
     if failure or not success:
-        raise SimulationError(_advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
+        raise SimulationError(advice(integrator, solver.it.currentTime, failure or "the solver gave up"))
     recorded = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     times = recorded[0][:, 0]
     if not stopped:  # what fixed steps add up to may differ from it in the last digits
@@ -178,22 +178,45 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()
     if not solver.SolveSystem(model.mbs, settings):
-        raise SimulationError(_advice("GeneralizedAlpha", start, "no initial acceleration"))
+        raise SimulationError(advice("GeneralizedAlpha", start, "no initial acceleration"))
     return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1 : 1 + model.size]
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Keep Exudyn from printing."""
-    before = exu.config.printToConsole
-    exu.config.printToConsole = False
+def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> Iterator[None]:
+    """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
+    before = mbs.GetPostStepUserFunction()
+    own: Any = before["function"] if before else 0
+
+    def both(mbs: Any, t: float) -> bool:
+        return function(mbs, t) and bool(own(mbs, t))
+
+    mbs.SetPostStepUserFunction(both if own else function)
     try:
         yield
     finally:
-        exu.config.printToConsole = before
+        mbs.SetPostStepUserFunction(own)
 
 
-def _advice(integrator: str, time: float, what: str) -> str:
+def raise_interrupt(error: exu.ExudynError) -> None:
+    """Raise the ``KeyboardInterrupt`` that arrived while Exudyn was in a user function, if ``error`` is that."""
+    if "KeyboardInterrupt" in str(error):
+        raise KeyboardInterrupt from error
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep Exudyn from printing, and from warnings that Python functions allocate memory."""
+    before = exu.config.printToConsole, exu.config.suppressWarnings
+    exu.config.printToConsole, exu.config.suppressWarnings = False, True
+    try:
+        yield
+    finally:
+        exu.config.printToConsole, exu.config.suppressWarnings = before
+
+
+def advice(integrator: str, time: float, what: str) -> str:
+    """Return a sentence on a run that failed at ``time`` (s after its start)."""
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
         "take a smaller step, a larger tolerance or a larger regularisation, or the other solver"

@@ -8,6 +8,7 @@ from typing import Any
 import exudyn as exu
 import exudyn.itemInterface
 
+from exudyn_models.radial_support import add_radial_support
 from reference_model.systems import FloatArray, System
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -65,17 +66,17 @@ def add_supported_body(mbs: Any, system: System, initial_state: FloatArray, pola
             initialVelocities=velocity + turn,
         )
     )
-    body = mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=polar_inertia))
-    support = mbs.AddObject(items.ObjectGround(referencePosition=[system.offset, 0.0, 0.0]))
-    mbs.AddObject(
-        items.CartesianSpringDamper(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=support)),
-                mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body)),
-            ],
-            stiffness=[system.stiffness, system.stiffness, 0.0],
-            damping=[system.damping, system.damping, 0.0],
-        )
+    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=polar_inertia))
+    add_radial_support(
+        mbs,
+        None,
+        node,
+        stiffness=system.stiffness,
+        damping=system.damping,
+        hardening=system.hardening,
+        stop_gap=system.stop_gap,
+        stop_stiffness=system.stop_stiffness,
+        offset=(system.offset, 0.0),
     )
     return node
 

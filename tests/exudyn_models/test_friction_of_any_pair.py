@@ -5,24 +5,23 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import planar_body, rotor, run_explicitly, spatial_body, spatial_energy, spatial_momenta
+from free_bodies import run_explicitly
+from pairs_of_bodies import (
+    DISC,
+    MASTER,
+    PAIRS,
+    SPATIAL,
+    assert_implicit_order_is_two,
+    assert_jacobian_is_derivative,
+    body,
+    conserved,
+    momenta_and_energy,
+)
 
 from exudyn_models import add_ring_friction
 
 items: Any = exudyn.itemInterface
 
-KINDS = {
-    "rotor": None,
-    "planar": None,
-    "rotation vector": items.NodeRigidBodyRotVecLG,
-    "Tait-Bryan": items.NodeRigidBodyRxyz,
-}
-SPATIAL = ("rotation vector", "Tait-Bryan")
-PAIRS = list(product(KINDS, repeat=2))
-
-# Mass, principal moments of inertia, position and rotation, velocity and turn rates: tilted and out of line.
-MASTER = (2.0, [0.5, 0.6, 0.7], [0.3, -0.2, 0.1, 0.2, -0.1, 0.1], [0.1, 0.05, -0.03, 0.02, 0.1, 2.0])
-DISC = (1.0, [0.012, 0.013, 0.02], [0.5, 0.1, 0.35, -0.15, 0.1, 0.4], [-0.2, 0.3, 0.02, 0.1, -0.1, -1.0])
 CONTACT = {
     "contact_radius": 0.12,
     "friction_coefficient": 0.25,
@@ -30,15 +29,12 @@ CONTACT = {
     "regularisation": 1e-3,
     "contact_points": 6,
 }
+OF_EVERYTHING = {
+    "contact_points": None,
+    "friction_coefficient": lambda slip_speed, radius: 0.2 + 0.1 * np.exp(-slip_speed) + 0.1 * radius,
+    "normal_load": lambda radius, time, slip_speed: (3.0 + time + slip_speed) / (1.0 + 4.0 * radius**2),
+}
 ANNULUS = {"contact_radius": None, "contact_points": None, "inner_radius": 0.08, "outer_radius": 0.12}
-
-
-def body(mbs, kind, mass, inertia, position, velocity):
-    if kind == "rotor":
-        return rotor(mbs, inertia[2], velocity[5])
-    if kind == "planar":
-        return planar_body(mbs, mass, inertia[2], [*position[:2], position[5]], [*velocity[:2], velocity[5]])
-    return spatial_body(mbs, KINDS[kind], mass, inertia, position, velocity)
 
 
 def pair_of(kinds, **contact):
@@ -47,30 +43,12 @@ def pair_of(kinds, **contact):
     return mbs, nodes, add_ring_friction(mbs, *nodes, **CONTACT | contact)
 
 
-def momenta_and_energy(mbs, kinds, nodes):
-    total, energy = np.zeros(6), 0.0
-    for kind, node, (mass, inertia, *_) in zip(kinds, nodes, (MASTER, DISC), strict=True):
-        if kind == "rotor":
-            spin = float(np.squeeze(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t)))
-            total[5] += inertia[2] * spin
-            energy += inertia[2] * spin**2 / 2.0
-        else:
-            total += spatial_momenta(mbs, node, mass, inertia)
-            energy += spatial_energy(mbs, node, mass, np.array(inertia))
-    return total, energy
-
-
-def conserved(kinds):
-    """Components of momentum and angular momentum that no bearing of a rotor or plane takes up."""
-    if set(kinds) <= set(SPATIAL):
-        return [0, 1, 2, 3, 4, 5]
-    return [5] if "rotor" in kinds else [0, 1, 5]
-
-
 @pytest.mark.parametrize(
     ("kinds", "contact"),
-    [*product(PAIRS, [{}]), *product([("planar", "planar"), ("Tait-Bryan", "rotation vector")], [ANNULUS])],
-    ids=lambda value: " on ".join(value) if isinstance(value, tuple) else "annulus" if value else "points",
+    [
+        *product(PAIRS, [{}, OF_EVERYTHING]),
+        *product([("planar", "planar"), ("Tait-Bryan", "rotation vector")], [ANNULUS]),
+    ],
 )
 def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_into_heat(kinds, contact):
     mbs, nodes, friction = pair_of(kinds, **contact)
@@ -87,6 +65,85 @@ def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_i
     assert float(mbs.GetSensorValues(heat)) == pytest.approx(lost, rel=1e-10)
 
 
+THIRD = (1.5, [0.3, 0.2, 0.4], [0.2, 0.3, -0.2, 0.1, 0.2, -0.3], [0.3, -0.1, 0.05, -0.1, 0.05, -2.0])
+
+
+@pytest.mark.parametrize(
+    "kinds",
+    [
+        ("rotor", "planar", "rotor"),
+        ("planar", "rotor", "rotation vector"),
+        ("planar", "planar", "planar"),
+        ("rotation vector", "planar", "Tait-Bryan"),
+        ("rotation vector", "rotation vector", "Tait-Bryan"),
+        ("Tait-Bryan", "Tait-Bryan", "rotation vector"),
+    ],
+    ids=" on ".join,
+)
+def test_two_clutches_in_a_chain_on_shafts_out_of_line_keep_all_momenta_and_add_up_their_heat(kinds):
+    bodies = (MASTER, DISC, THIRD)
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = [body(mbs, kind, *data) for kind, data in zip(kinds, bodies, strict=True)]
+    clutches = [
+        add_ring_friction(mbs, *nodes[:2], **CONTACT),
+        add_ring_friction(mbs, *nodes[1:], **CONTACT | OF_EVERYTHING),
+    ]
+    heats = [clutch.add_sensor("heat") for clutch in clutches]
+    mbs.Assemble()
+    before, energy_before = momenta_and_energy(mbs, kinds, nodes, bodies)
+    run_explicitly(mbs, 0.15, 500)  # all points still slip: no bend of the law disturbs the order
+    after, energy_after = momenta_and_energy(mbs, kinds, nodes, bodies)
+    change = (after - before)[conserved(kinds)]
+    np.testing.assert_allclose(change, 0.0, rtol=0.0, atol=1e-12 * np.abs(before).max())
+    turned = [float(mbs.GetSensorValues(heat)) for heat in heats]
+    assert min(turned) > 0.01  # both did act
+    assert sum(turned) == pytest.approx(energy_before - energy_after, rel=1e-10)
+
+
+@pytest.mark.parametrize("kinds", [("planar", "planar"), ("Tait-Bryan", "rotation vector")], ids=" on ".join)
+@pytest.mark.parametrize("contact", [{}, OF_EVERYTHING], ids=["numbers", "functions"])
+def test_a_clutch_with_two_facings_is_one_with_twice_the_load(kinds, contact):
+    ends = []
+    for facings in (1, 2):
+        mbs, nodes, friction = pair_of(kinds, **contact)
+        if facings == 2:
+            add_ring_friction(mbs, *nodes, **CONTACT | contact)
+        else:
+            load = (CONTACT | contact)["normal_load"]
+            doubled = (
+                (lambda radius, time, slip_speed, load=load: 2.0 * load(radius, time, slip_speed))
+                if callable(load)
+                else 2.0 * load
+            )
+            friction.change(normal_load=doubled)
+        mbs.Assemble()
+        run_explicitly(mbs, 0.2, 200)
+        ends.append(np.hstack([mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()]))
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0.0, atol=1e-13 * np.abs(ends[0]).max())
+
+
+@pytest.mark.parametrize("kinds", [("planar", "planar"), ("Tait-Bryan", "rotation vector")], ids=" on ".join)
+def test_a_run_goes_on_under_changed_functions_with_all_momenta_kept(kinds):
+    ends = []
+    for changed in ({}, OF_EVERYTHING):
+        mbs, nodes, friction = pair_of(kinds, contact_points=None)
+        mbs.Assemble()
+        before, _ = momenta_and_energy(mbs, kinds, nodes)
+        for start in (0.0, 0.2):
+            settings = exu.SimulationSettings()
+            settings.solution.file.write = False
+            options = settings.timeIntegration
+            options.startTime, options.endTime = start, start + 0.2
+            options.numberOfSteps, options.verboseMode = 400, 0
+            mbs.SolveDynamic(settings, exu.DynamicSolverType.RK67, updateInitialValues=True)
+            friction.change(**{name: changed.get(name) for name in ("friction_coefficient", "normal_load")})
+        after, energy = momenta_and_energy(mbs, kinds, nodes)
+        change = (after - before)[conserved(kinds)]
+        np.testing.assert_allclose(change, 0.0, rtol=0.0, atol=1e-12 * np.abs(before).max())
+        ends.append(energy)
+    assert abs(ends[1] - ends[0]) > 1e-3 * ends[0]
+
+
 @pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
 @pytest.mark.parametrize(
     "contact",
@@ -94,16 +151,21 @@ def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_i
         {"contact_radius": 0.7, "contact_points": 3},
         {"contact_points": None},
         ANNULUS,
-        ANNULUS | {"regularisation": 100.0, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
+        ANNULUS
+        | {
+            "regularisation": 100.0,
+            "friction_coefficient": lambda slip_speed: 0.2 + 0.1 * np.exp(-slip_speed),
+        },
         {"contact_radius": 0.0},
         {"contact_points": None, "regularisation": 100.0},
-        {"contact_points": None, "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v)},
+        {"contact_points": None, "friction_coefficient": lambda slip_speed: 0.2 + 0.1 * np.exp(-slip_speed)},
         {
             "contact_radius": 0.7,
             "contact_points": 3,
-            "friction_coefficient": lambda v: 0.2 + 0.1 * np.exp(-v),
-            "normal_load": lambda t: 3.0 + t,
+            "friction_coefficient": lambda slip_speed: 0.2 + 0.1 * np.exp(-slip_speed),
+            "normal_load": lambda time: 3.0 + time,
         },
+        OF_EVERYTHING,
     ],
     ids=[
         "points",
@@ -114,31 +176,34 @@ def test_any_two_bodies_exchange_momentum_and_angular_momentum_and_turn_energy_i
         "creeping ring",
         "Stribeck's ring",
         "Stribeck's points, load of time",
+        "load of radius, slip speed and time",
     ],
 )
 def test_jacobian_of_any_pair_is_the_derivative_of_the_force(kinds, contact):
-    mbs, nodes, friction = pair_of(kinds, **contact)
-    functions = mbs.GetObject(friction.item)
-    force, jacobian = (functions[f"{name}UserFunction"]["function"] for name in ("force", "jacobian"))
-    size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
-    rng = np.random.default_rng(3)
-    q, v = 0.5 * rng.normal(size=size), rng.normal(size=size)
-    h, t = 1e-5, 0.7
+    mbs, _, friction = pair_of(kinds, **contact)
+    assert_jacobian_is_derivative(mbs, friction)
 
-    def difference(dq, dv):
-        plus, minus = (
-            np.array(force(mbs, t, 0, (q + s * dq).tolist(), (v + s * dv).tolist())) for s in (h, -h)
-        )
-        return (plus - minus) / (2.0 * h)
 
-    zero = np.zeros(size)
-    by_position = np.array([difference(e, zero) for e in np.eye(size)]).T
-    by_velocity = np.array([difference(zero, e) for e in np.eye(size)]).T
-    for factors in ((1.0, 0.0), (0.0, 1.0), (3.0, -0.5)):
-        expected = -factors[0] * by_position - factors[1] * by_velocity
-        found = jacobian(mbs, t, 0, q.tolist(), v.tolist(), *factors)
-        # Differences have an error of h² = 1e-10 times third derivatives, and of 1e-16/h.
-        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * max(1.0, np.abs(expected).max()))
+@pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
+def test_a_load_is_given_the_distance_of_the_disc_from_the_masters_axis(kinds):
+    seen = []
+
+    def load(radius):
+        seen.append(radius)
+        return 1.0
+
+    mbs, nodes, _ = pair_of(kinds, normal_load=load)
+    mbs.Assemble()
+    outputs = exu.OutputVariableType
+    place, disc_place = (
+        np.zeros(3) if kind == "rotor" else mbs.GetNodeOutput(node, outputs.Position)
+        for kind, node in zip(kinds, nodes, strict=True)
+    )
+    axis = np.array([0.0, 0.0, 1.0])
+    if kinds[0] in SPATIAL:
+        axis = mbs.GetNodeOutput(nodes[0], outputs.RotationMatrix).reshape(3, 3)[:, 2]
+    run_explicitly(mbs, 1e-6, 1)
+    assert seen[0] == pytest.approx(np.linalg.norm(np.cross(disc_place - place, axis)), rel=1e-14, abs=1e-15)
 
 
 @pytest.mark.parametrize("master", ["rotor", "planar"])
@@ -164,19 +229,4 @@ def test_a_spatial_disc_in_the_plane_moves_as_a_planar_one(master, node, points)
 
 @pytest.mark.parametrize("kinds", [("rotation vector", "Tait-Bryan"), ("Tait-Bryan", "rotation vector")])
 def test_the_implicit_solver_converges_to_the_explicit_one_with_order_two(kinds):
-    ends = []
-    for steps in (None, 20, 40, 80):
-        mbs, nodes, _ = pair_of(kinds)
-        mbs.Assemble()
-        if steps is None:
-            run_explicitly(mbs, 0.2, 400)
-        else:
-            settings = exu.SimulationSettings()
-            settings.solution.file.write = False
-            options = settings.timeIntegration
-            options.endTime, options.numberOfSteps, options.verboseMode = 0.2, steps, 0
-            assert exu.MainSolverImplicitSecondOrder().SolveSystem(mbs, settings)
-        ends.append(np.hstack([spatial_momenta(mbs, node, 1.0, [0.0] * 3) for node in nodes]))
-    errors = [np.abs(end - ends[0]).max() for end in ends[1:]]
-    orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    np.testing.assert_allclose(orders, 2.0, atol=0.1, err_msg=str(errors))
+    assert_implicit_order_is_two(lambda: pair_of(kinds)[:2])

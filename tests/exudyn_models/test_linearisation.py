@@ -29,7 +29,7 @@ def analytic_eigenvalues(system, state):
     by_state[1, [0, 4]] = -omega, 1.0
     by_state[2, 5], by_state[3, 2] = -1.0, 1.0
     forces = system.friction_force * by_slip @ by_state
-    forces[[0, 1], [0, 1]] -= system.stiffness
+    forces[:2, :2] -= support_stiffness(system, x - system.offset, y)
     forces[[0, 1], [3, 4]] -= system.damping
     inertias = [system.mass, system.mass, 1.0]
     if isinstance(system, DiscOnDisc):
@@ -45,6 +45,19 @@ def analytic_eigenvalues(system, state):
     return np.linalg.eigvals(matrix[np.ix_(own, own)])
 
 
+def support_stiffness(system, *deflection):
+    """Derivative of the support's force: the tangent along the deflection, the secant across it."""
+    d = np.hypot(*deflection)
+    force = (
+        system.stiffness * d + system.hardening * d**3 + system.stop_stiffness * max(0.0, d - system.stop_gap)
+    )
+    tangent = system.stiffness + 3.0 * system.hardening * d**2
+    tangent += system.stop_stiffness if d > system.stop_gap else 0.0
+    along = np.outer(deflection, deflection) / d**2 if d > 0.0 else np.zeros((2, 2))
+    secant = force / d if d > 0.0 else system.stiffness
+    return tangent * along + secant * (np.eye(2) - along)
+
+
 def largest_difference(found, expected):
     """Between two sets, each value of one with the nearest of the other."""
     assert len(found) == len(expected)
@@ -57,9 +70,13 @@ def largest_difference(found, expected):
     [
         PIN,
         replace(PIN, disc_speed=-1.5),
+        replace(PIN, hardening=20.0),
+        replace(PIN, hardening=5.0, stop_gap=0.01, stop_stiffness=0.7),
         DISC,  # centred rotation
         replace(DISC, offset=0.1),
         replace(DISC, offset=0.1, disc_speed=-0.8, shaft_speed=-0.5),
+        replace(DISC, offset=0.1, hardening=20.0),
+        replace(DISC, offset=0.1, stop_stiffness=0.7),
     ],
 )
 def test_exudyns_linearisation_has_the_analytic_eigenvalues_of_every_equilibrium(system):

@@ -28,6 +28,17 @@ def test_friction_of_an_annulus_is_that_of_the_reference(inner, outer):
         np.testing.assert_allclose(scale * found, scale * exact, rtol=0.0, atol=2e-6)
 
 
+@pytest.mark.parametrize("gap", [0.3, 0.1, 0.01, 1e-3])
+def test_friction_of_an_annulus_is_smooth_where_a_point_of_it_would_rest_just_outside(gap):
+    inner, outer = 0.08, 0.12
+    reference = Annulus(inner, outer, rings=160)
+    scale = np.array([outer, 1.0, 1.0 / outer])
+    for speed in (inner * (1.0 - gap), outer * (1.0 + gap)):
+        slopes = reference.slopes(speed, 1.0)
+        found, exact = mean_slip_hessian(speed, 1.0, inner, outer), (slopes[0], slopes[1], slopes[3])
+        np.testing.assert_allclose(scale * found, scale * exact, rtol=0.0, atol=1e-11)
+
+
 @pytest.mark.parametrize(("inner", "outer"), RADII)
 def test_annulus_that_only_spins_has_the_moment_of_a_clutch_and_one_that_only_slips_none(inner, outer):
     # M = μN·(2/3)(R³ − r³)/(R² − r²), the textbook's clutch under uniform pressure.

@@ -377,5 +377,5 @@ def test_nonsense_is_refused_with_its_name_and_value(change, message):
 def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve():
     mbs = exu.SystemContainer().AddSystem()
     master = rotor(mbs, 1.0, 0.0)
-    with pytest.raises(ValueError, match="disc_node 0 is a Node1D: ring friction takes a NodeRigidBody2D"):
+    with pytest.raises(ValueError, match="disc_node 0 is a Node1D: it must be a NodeRigidBody2D"):
         add_native_friction(mbs, master, master, **CONTACT, reach=1.0)

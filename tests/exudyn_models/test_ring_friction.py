@@ -182,8 +182,27 @@ def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve(node, nam
     nodes = {"master_node": rotor(mbs, 1.0, 0.0), "disc_node": rotor(mbs, 1.0, 0.0)}
     nodes[name] = mbs.AddNode(node)
     kinds = "Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz"
-    with pytest.raises(ValueError, match=rf"{name} 2 is a Node\w+: ring friction takes a {kinds}$"):
+    with pytest.raises(ValueError, match=rf"{name} 2 is a Node\w+: it must be a {kinds}$"):
         add_ring_friction(mbs, **nodes, **CONTACT)
+
+
+@pytest.mark.parametrize(
+    ("index", "message"),
+    [
+        (exu.NodeIndex(7), "7 is none of the 2 nodes of this model"),
+        (exu.NodeIndex(), "-1 is none of the 2 nodes of this model"),
+        (exu.ObjectIndex(0), "= 0 is of type ObjectIndex: it must be a NodeIndex, as AddNode returns it"),
+        (exu.MarkerIndex(1), "= 1 is of type MarkerIndex: it must be a NodeIndex"),
+        (1.0, r"= 1\.0 is of type float: it must be a NodeIndex"),
+        (None, "= None is of type NoneType: it must be a NodeIndex"),
+    ],
+)
+@pytest.mark.parametrize("name", ["master_node", "disc_node"])
+def test_what_is_no_node_of_the_model_is_refused(index, message, name):
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = {"master_node": rotor(mbs, 1.0, 0.0), "disc_node": rotor(mbs, 1.0, 0.0)}
+    with pytest.raises(ValueError, match=f"^{name} {message}"):
+        add_ring_friction(mbs, **nodes | {name: index}, **CONTACT)
 
 
 def test_a_body_has_no_friction_with_itself():

@@ -9,7 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import reference_model
-from exudyn_models import simulate, simulate_fixed_step
+from exudyn_models import add_ring_friction, simulate, simulate_fixed_step
+from exudyn_models.creep import creeping
+from exudyn_models.slip_and_creep import Friction
 from reference_model import SimulationError
 from reference_model.systems import PinOnDisc
 
@@ -229,44 +231,50 @@ def test_one_time_gives_the_initial_state():
     assert trajectory.phases[0].start == trajectory.phases[0].end == 2.0
 
 
+def friction_with(change):
+    """Friction whose force function is replaced by what ``change`` makes of it."""
+
+    def add(mbs, *nodes, **contact):
+        connector = add_ring_friction(mbs, *nodes, **contact)
+        force = mbs.GetObject(connector.item)["forceUserFunction"]["function"]
+        mbs.SetObjectParameter(connector.item, "forceUserFunction", change(force))
+        return connector
+
+    return Friction(add, creeping)
+
+
 @pytest.mark.parametrize("solver", ["explicit", "implicit"])
-def test_evaluations_are_those_that_were_made(monkeypatch, solver):
-    from exudyn_models import ring_friction
-
+def test_evaluations_are_those_that_were_made(solver):
     calls = 0
-    original = ring_friction.ring_friction.py_func
 
-    class Counted:
-        @staticmethod
-        def py_func(*arguments):
+    def counted(force):
+        def function(*arguments):
             nonlocal calls
             calls += 1
-            return original(*arguments)
+            return force(*arguments)
 
-    monkeypatch.setattr(ring_friction, "ring_friction", Counted)
-    trajectory = simulate(PIN, STICKING_START, [0.0, 12.0], tolerance=1e-7, solver=solver)
+        return function
+
+    trajectory = simulate(
+        PIN, STICKING_START, [0.0, 12.0], tolerance=1e-7, solver=solver, friction=friction_with(counted)
+    )
     assert trajectory.solution.evaluations == pytest.approx(calls, rel=0.01)
 
 
-def test_a_force_that_is_not_a_number_raises_and_tells_when(monkeypatch):
-    from exudyn_models import ring_friction
+def test_a_force_that_is_not_a_number_raises_and_tells_when():
+    def broken(force):
+        def function(mbs, t, item, q, q_t):
+            return force(mbs, t, item, q, q_t) if q[1] > 0.0 else [float("nan")] * 4
 
-    original = ring_friction.ring_friction.py_func
-
-    class Broken:
-        @staticmethod
-        def py_func(dx, *arguments):
-            result = original(dx, *arguments)
-            return result if dx > 0.0 else (float("nan"),) * 4
+        return function
 
     exact = slip_motion(PIN, [0.1, 0.0, 0.03, 0.0], np.linspace(0.0, 4.0, 4001))
     crossing = np.argmax(exact[:, 0] < 0.0) * 1e-3
-    monkeypatch.setattr(ring_friction, "ring_friction", Broken)
     for solver in ("explicit", "implicit"):
         with pytest.raises(
             SimulationError, match=r"failed (\d+\.?\d*) s after the start: .*; take a smaller"
         ) as caught:
-            simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver)
+            simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver, friction=friction_with(broken))
         time = float(str(caught.value).split("failed ")[1].split(" s")[0])
         assert time == pytest.approx(crossing, abs=0.1)
 
@@ -275,17 +283,15 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(monkeypatch):
 @pytest.mark.parametrize(
     ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
 )
-def test_what_is_raised_inside_of_a_run_comes_out_of_it(monkeypatch, solver, raised, seen):
-    from exudyn_models import ring_friction
-
-    class Interrupted:
-        @staticmethod
-        def py_func(*arguments):
+def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
+    def interrupted(force):
+        def function(*arguments):
             raise raised
 
-    monkeypatch.setattr(ring_friction, "ring_friction", Interrupted)
+        return function
+
     with pytest.raises(seen):
-        simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver)
+        simulate(PIN, STICKING_START, [0.0, 10.0], solver=solver, friction=friction_with(interrupted))
 
 
 def test_an_explicit_step_too_large_for_sticking_raises_instead_of_returning_infinity():

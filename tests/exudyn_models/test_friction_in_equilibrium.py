@@ -1,0 +1,160 @@
+"""Static and eigenvalue analysis, and Newton's iteration, of a disc on springs over a master that turns."""
+
+from itertools import pairwise
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+import pytest
+from free_bodies import coordinates, planar_body, rotor, spatial_body
+
+from exudyn_models import add_ring_friction
+
+items: Any = exudyn.itemInterface
+
+MASS, STIFFNESS, DAMPING, OFFSET, SPEED = 2.0, 1.3, 0.1, 0.1, 1.5
+KINDS = {
+    "planar": None,
+    "rotation vector": items.NodeRigidBodyRotVecLG,
+    "Tait-Bryan": items.NodeRigidBodyRxyz,
+}
+LENGTH = 0.15
+
+
+def coefficient(slip_speed):
+    return 0.2 + 0.1 * np.exp(-slip_speed / 0.3)
+
+
+def falling(radius):
+    """Load over the load on the axis."""
+    return 1.0 / (1.0 + (radius / LENGTH) ** 2)
+
+
+def supported_disc(kind, place, contact, spin=0.0, held=False):
+    """A disc on springs to (X₀, 0, 0) at rest in ``place`` over a master disc; its other motions have springs too."""
+    mbs = exu.SystemContainer().AddSystem()
+    master = rotor(mbs, 1e30, SPEED)
+    if kind == "planar":
+        disc = planar_body(mbs, MASS, 0.02, [*place, 0.0], [0.0, 0.0, spin])
+    else:
+        motion = [0.0] * 5 + [spin]
+        disc = spatial_body(mbs, KINDS[kind], MASS, [0.02, 0.03, 0.04], [*place, *[0.0] * 4], motion)
+    ground = mbs.AddNode(items.NodePointGround())
+    reference = mbs.GetNodeParameter(disc, "referenceCoordinates")
+    relaxed = [OFFSET] + [0.0] * (len(reference) - 1)
+    springs = [(disc, i, relaxed[i] - reference[i]) for i in range(len(reference))]
+    for node, coordinate, offset in [*springs, (master, 0, 0.0)] if held else springs:
+        mbs.AddObject(
+            items.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=[
+                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0)),
+                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)),
+                ],
+                stiffness=STIFFNESS,
+                damping=DAMPING if node == disc else 0.0,
+                offset=offset,
+            )
+        )
+    friction = add_ring_friction(mbs, master, disc, **{"regularisation": 1e-9} | contact)
+    return mbs, disc, friction
+
+
+def self_centred(radius):
+    """Place of the disc's centre at a distance from the axis, and the friction that holds it there (eq. 3 and 4)."""
+    arm = np.sqrt(OFFSET**2 - radius**2)  # μN/C
+    return np.array([radius**2 / OFFSET, arm * radius / OFFSET]), STIFFNESS * arm
+
+
+RADIUS = 0.07
+PLACE, FRICTION = self_centred(RADIUS)
+NUMBERS = {"friction_coefficient": 0.25, "normal_load": FRICTION / 0.25}
+LOAD = FRICTION / coefficient(SPEED * RADIUS) / falling(RADIUS)  # on the axis
+FUNCTIONS = {"friction_coefficient": coefficient, "normal_load": lambda radius: LOAD * falling(radius)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("strength", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
+@pytest.mark.parametrize(
+    ("contact", "spin"),
+    [({"contact_radius": 0.0}, 0.0), ({"contact_radius": 0.12}, SPEED)],
+    ids=["pin", "ring that turns with the master"],
+)
+def test_static_solver_finds_the_self_centred_equilibrium(kind, strength, contact, spin):
+    # All of a ring that turns with the master slips alike, as a pin does. A static run keeps the initial velocities.
+    mbs, disc, _ = supported_disc(kind, [0.08, 0.03], contact | strength, spin, held=True)
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    options = settings.staticSolver
+    options.verboseMode = 0
+    options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, 1e-13
+    mbs.SolveStatic(settings)
+    np.testing.assert_allclose(coordinates(mbs, disc)[0][:2], PLACE, rtol=0.0, atol=1e-12)
+    assert mbs.sys["staticSolver"].it.newtonStepsCount <= 8
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("strength", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
+def test_eigenvalues_are_those_of_the_linearised_pin(kind, strength):
+    # m r̈ = −βṙ − C(r − X0) − μ(v)N(ρ)·e, e = u/v, u = ṙ − ω×r: d(F e) = F(1 − e⊗e)/v·du + e(F_v e·du + F_ρ e_ρ·dr).
+    turn = SPEED * np.array([[0.0, -1.0], [1.0, 0.0]])
+    slip = -turn @ PLACE
+    speed = np.hypot(*slip)
+    direction, outward = slip / speed, PLACE / RADIUS
+    by_slip = FRICTION * (np.eye(2) - np.outer(direction, direction)) / speed
+    by_place = -by_slip @ turn
+    if strength is FUNCTIONS:
+        steep = FRICTION / coefficient(speed) * (0.2 - coefficient(speed)) / 0.3  # F_v = N·dμ/dv
+        fall = -FRICTION * 2.0 * RADIUS / LENGTH**2 * falling(RADIUS)  # F_ρ = μ·dN/dρ
+        along = np.outer(direction, direction)
+        by_slip = by_slip + steep * along
+        by_place = by_place - steep * along @ turn + fall * np.outer(direction, outward)
+    matrix = np.zeros((4, 4))
+    matrix[:2, 2:] = np.eye(2)
+    matrix[2:, :2] = -(STIFFNESS * np.eye(2) + by_place) / MASS
+    matrix[2:, 2:] = -(DAMPING * np.eye(2) + by_slip) / MASS
+    expected = np.linalg.eigvals(matrix)
+
+    mbs, *_ = supported_disc(kind, PLACE, strength | {"contact_radius": 0.0})
+    mbs.Assemble()
+    found, _ = mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
+    # The others belong to the springs alone and to the master.
+    errors = np.abs(np.asarray(found)[:, None] - expected).min(axis=0)
+    np.testing.assert_allclose(errors, 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("solver", ["GeneralizedAlpha", "TrapezoidalIndex2"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_newtons_iteration_converges_quadratically_at_large_steps(kind, solver):
+    contact = {
+        "contact_radius": 0.05,
+        "friction_coefficient": coefficient,
+        "normal_load": lambda radius: 0.5 * falling(radius),
+    }
+    mbs, *_ = supported_disc(kind, [0.3, 0.0], contact)
+    mbs.Assemble()
+    iterates: dict[float, list[Any]] = {}
+
+    def record(mbs, t, *details):
+        iterates.setdefault(t, []).append(mbs.systemData.GetODE2Coordinates().copy())
+        return True
+
+    mbs.SetPreNewtonResidualUserFunction(record)
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = 10.0, 20, 0  # 16 steps in a period
+    options.adaptiveStep = False
+    options.newton.useModifiedNewton = False
+    options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-10, 1e-12
+    mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver))
+    assert mbs.sys["dynamicSolver"].it.newtonStepsCount <= 4 * 20
+    orders = []
+    for states in iterates.values():
+        steps = [float(np.abs(after - before).max()) for before, after in pairwise(states)]
+        steps = [step for step in steps if step > 1e-14]  # the others are rounding
+        if len(steps) >= 3:
+            orders.append(np.log(steps[-1] / steps[-2]) / np.log(steps[-2] / steps[-3]))
+    assert len(orders) > 5
+    assert min(orders) > 1.7, orders
