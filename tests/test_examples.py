@@ -1,23 +1,35 @@
-"""The examples and the README's code run, and give what they say."""
+"""The examples and the code in README and docs run, and give what they say."""
 
+import ast
 import re
 import runpy
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reference_model import simulate
+from exudyn_models import PASSENGER_CAR
+from reference_model import DiscOnDisc, self_centred_equilibria, simulate
 
 ROOT = Path(__file__).parents[1]
+DOCUMENTS = ["README.md", "docs/friction-in-your-own-model.md"]
+
+VALUE = re.compile(r"True|False|-?\d+(?:\.(\d+))?")
+"""In a comment; digits after the point say to how many it is rounded."""
 
 
+@cache
 def run(name):
     return runpy.run_path(str(ROOT / "examples" / name))
 
 
-def test_the_two_motions_end_at_rest_in_space_and_on_the_whirl():
-    example = run("01_two_motions.py")
+def code_of(document):
+    return re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
+
+
+def test_the_two_motions_of_the_pin_end_at_rest_in_space_and_on_the_whirl():
+    example = run("01_pin.py")
     # Eq. 3: ρ* = √(X0² − (μN/C)²) = √(0.1² − 0.09²).
     assert example["to_equilibrium"].radius[-1] == pytest.approx(np.sqrt(0.1**2 - 0.09**2), abs=1e-8)
     assert example["to_whirl"].radius[-1] > 0.8
@@ -26,8 +38,8 @@ def test_the_two_motions_end_at_rest_in_space_and_on_the_whirl():
     assert "9 stick phases" in example["describe"](example["to_whirl"])
 
 
-def test_the_steady_motions_are_those_of_the_formulas():
-    example = run("02_steady_motions.py")
+def test_the_steady_motions_of_the_pin_are_those_of_the_formulas():
+    example = run("01_pin.py")
     assert (example["equilibrium"].x, example["equilibrium"].y) == pytest.approx(
         (0.019, 0.9 * np.sqrt(0.0019))
     )
@@ -40,19 +52,8 @@ def test_the_steady_motions_are_those_of_the_formulas():
     assert power.drive_work[-1] == pytest.approx(heat, rel=1e-9)
 
 
-def test_the_engine_of_the_example_slides_as_the_reference_does():
-    engine = run("03_your_own_engine.py")["simulate"]
-    pin = run("02_steady_motions.py")["pin"]
-    times = np.linspace(0.0, 30.0, 31)
-    start = (0.9, 0.0, 0.0, 0.9)
-    exact = simulate(pin, start, times, tolerance=1e-12).states
-    errors = [np.max(np.abs(engine(pin, start, times, tolerance=t).states - exact)) for t in (1e-6, 1e-8)]
-    assert errors[0] < 1e-5
-    assert errors[1] < 0.1 * errors[0]
-
-
 def test_the_whirl_of_the_disc_gives_way_to_a_modulated_cycle():
-    example = run("04_friction_disc.py")
+    example = run("02_disc.py")
     assert example["whirl"].eigenvalues[1].real > 0.0 > example["by_23"].eigenvalues[1].real
     swings = [motion.radius[-2500:] for motion in (example["trajectory"], example["in_exudyn"])]
     for radius in swings:
@@ -61,21 +62,104 @@ def test_the_whirl_of_the_disc_gives_way_to_a_modulated_cycle():
     assert swings[1] == pytest.approx(swings[0], abs=1e-6)
 
 
+def test_the_disc_of_two_rotors_comes_to_rest_where_the_reference_has_its_equilibrium():
+    example = run("03_two_rotors.py")
+    speed, spin = example["flywheel_speed"][-1, 0], example["disc_velocity"][-1, 2]
+    x, y = example["place"][-1, :2]
+    offset, drag = example["OFFSET"], example["DRAG"]
+    (expected,) = self_centred_equilibria(
+        DiscOnDisc(
+            mass=0.6,
+            polar_inertia=0.01,
+            stiffness=1e4,
+            damping=20.0,
+            friction_force=0.3 * 800.0,
+            disc_speed=speed,
+            offset=offset,
+            contact_radius=0.1,
+            shaft_damping=drag,
+            shaft_speed=0.0,
+        )
+    )
+    # The slowest to settle is the flywheel, with droop over inertia = 12 1/s: exp(−24) = 4e-11 of it is left, and the
+    # disc follows at once.
+    assert (x, y) == pytest.approx((expected.x, expected.y), abs=1e-10 * offset)
+    assert spin == pytest.approx(expected.spin, abs=1e-10 * speed)
+    # The shaft's force −C(z − X0) has the moment −C·X0·y about the flywheel's axis. Friction hands on all of it.
+    moments = example["MOTOR_TORQUE"] - example["MOTOR_DROOP"] * speed - drag * spin - 1e4 * offset * y
+    assert moments == pytest.approx(0.0, abs=1e-10 * example["MOTOR_TORQUE"])
+
+
+def test_the_energy_of_two_rotors_is_accounted_for_to_a_share_of_its_smallest_part():
+    balance = run("03_two_rotors.py")["balance"]
+    smallest = balance.losses["shaft"][-1]
+    assert 0.0 < smallest < 1e-5 * balance.losses["friction"][-1]
+    assert np.max(np.abs(balance.residual)) < 1e-3 * smallest
+
+
+def test_controlled_slip_falls_with_the_time_constant_of_the_closed_form():
+    example = run("04_slip_control.py")
+    times, slip, start, target = (example[name] for name in ("times", "slip", "START", "TARGET"))
+    # RK44 multiplies the solution of s' = −s/T by 1 − x + x²/2 − x³/6 + x⁴/24, x = h/T, in every step.
+    x = example["RATE"] * (times[1] - times[0])
+    growth = 1.0 - x + x**2 / 2.0 - x**3 / 6.0 + x**4 / 24.0
+    by_rk44 = target + (start - target) * growth ** np.arange(len(times))
+    np.testing.assert_allclose(slip, by_rk44, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(by_rk44, example["closed_form"], rtol=0.0, atol=1e-4)
+    # At last the clutch gives the vehicle its share of the engine's torque.
+    engine, vehicle = example["ENGINE"], example["VEHICLE"]
+    assert example["torque"][-1] == pytest.approx(example["TORQUE"] * vehicle / (engine + vehicle), rel=1e-6)
+
+
+def test_the_engine_of_the_example_slides_as_the_reference_does():
+    engine = run("05_your_own_engine.py")["simulate"]
+    pin = run("01_pin.py")["pin"]
+    times = np.linspace(0.0, 30.0, 31)
+    start = (0.9, 0.0, 0.0, 0.9)
+    exact = simulate(pin, start, times, tolerance=1e-12).states
+    errors = [np.max(np.abs(engine(pin, start, times, tolerance=t).states - exact)) for t in (1e-6, 1e-8)]
+    assert errors[0] < 1e-5
+    assert errors[1] < 0.1 * errors[0]
+
+
+def test_the_drivetrain_centres_its_clutch_disc_and_lets_it_whirl_against_its_stop_at_speed():
+    example = run("06_drivetrain.py")
+    motion, speed, radius, deflection = (example[n] for n in ("motion", "speed", "radius", "deflection"))
+    assert np.max(np.abs(motion.energy.residual)) < 1e-6 * motion.energy.turnover
+    # The engine's ripple alone moves the slip by T·r/(J·2ω) either way.
+    ripple = example["TORQUE"] / PASSENGER_CAR.engine_inertia / (2.0 * motion.engine_speed[0])
+    np.testing.assert_allclose(motion.slip, example["SLIP"], rtol=0.0, atol=ripple)
+    below, above = (speed > 2250.0) & (speed < 2500.0), speed > 3300.0
+    assert radius[below].max() < PASSENGER_CAR.offset
+    assert deflection[below].max() < PASSENGER_CAR.stop_gap < deflection[above].max()
+    # The stop holds it: a whirl with k that runs into it head-on gets that far, ½·C_s·p² = ½·m·(k·gap)².
+    whirl = PASSENGER_CAR.stop_gap * np.sqrt(PASSENGER_CAR.radial_stiffness / PASSENGER_CAR.stop_stiffness)
+    assert deflection.max() < PASSENGER_CAR.stop_gap + whirl
+
+
 def test_the_engine_of_the_readme_is_that_of_the_example():
-    code = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
-    example = run("03_your_own_engine.py")
-    names = {name: example[name] for name in ("solve_ivp", "Phase", "Solution", "Trajectory")}
-    exec(code, names)
-    arguments = (run("02_steady_motions.py")["pin"], (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 10.0, 11))
-    assert np.array_equal(names["simulate"](*arguments).states, example["simulate"](*arguments).states)
+    (code,) = [code for code in code_of("README.md") if "def simulate" in code]
+    assert code in (ROOT / "examples" / "05_your_own_engine.py").read_text()
 
 
-def test_the_code_of_the_readme_gives_the_values_in_its_comments():
-    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL).group(1)
-    names = {}
-    exec(code, names)
-    trajectory = names["trajectory"]
-    assert f"{trajectory.radius[-1]:.6f}" in code
-    assert len(trajectory.stick_phases) == 9
-    assert names["self_centred_equilibria"](names["pin"])[0].stable
-    assert repr(names["whirl_orbit"](names["pin"]).mean.round(6)) in code
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names, compared = {}, 0
+    for code in code_of(document):
+        lines = code.splitlines()
+        for statement in ast.parse(code).body:
+            if not isinstance(statement, ast.Expr):
+                exec(compile(ast.Module([statement], []), document, "exec"), names)
+                continue
+            value = eval(compile(ast.Expression(statement.value), document, "eval"), names)
+            _, mark, comment = lines[statement.end_lineno - 1].partition("  # ")
+            if mark and value is not None:
+                said = list(VALUE.finditer(comment))
+                for found, match in zip(np.ravel(value), said, strict=False):
+                    digits = len(match[1] or "")
+                    assert round(float(found), digits) == float(ast.literal_eval(match[0])), comment
+                assert len(said) >= np.size(value), f"no value is said of {lines[statement.lineno - 1]}"
+                compared += 1
+    assert compared >= 3
+    assert not list(tmp_path.iterdir()), "a run has left files"

@@ -1,17 +1,27 @@
-"""What a pin can do for ever: rest in space, stick, whirl; each found as such, with its stability."""
+"""The pin of Fig. 5: nearly the same start, two motions; and what it can do for ever, each found as such."""
 
 from dataclasses import replace
 
+import numpy as np
+
+import exudyn_models
 from reference_model import (
     PinOnDisc,
+    Trajectory,
     power_balance,
     self_centred_equilibria,
+    simulate,
     sticking_radius,
     whirl_orbit,
     whirls,
 )
 
 pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+times = np.linspace(0.0, 400.0, 4001)
+
+to_equilibrium = simulate(pin, [0.1, 0.0, 0.00, 0.0], times)  # x, y, vx, vy
+to_whirl = simulate(pin, [0.1, 0.0, 0.03, 0.0], times)
+in_exudyn = exudyn_models.simulate(pin, [0.1, 0.0, 0.03, 0.0], times)  # same call, same result
 
 (equilibrium,) = self_centred_equilibria(pin)  # eq. 3; an empty tuple where there is none
 (whirl,) = whirls(replace(pin, offset=0.0))  # eq. 11, without the offset
@@ -19,7 +29,20 @@ orbit = whirl_orbit(pin)  # with it: a periodic orbit, found by shooting
 radius = sticking_radius(replace(pin, friction_force=0.12))  # eq. 9; this load is too small for it
 power = power_balance(orbit.trajectory)  # of one turn of the whirl
 
+
+def describe(trajectory: Trajectory) -> str:
+    """Say where a motion ends, and how often it stuck on the way."""
+    sticks = trajectory.stick_phases
+    return (
+        f"radius {trajectory.radius[-1]:.6f} m after {len(sticks)} stick phases, the first from "
+        f"t = {sticks[0].start:.6f} to {sticks[0].end:.6f} s"
+    )
+
+
 if __name__ == "__main__":
+    print("reference, to the equilibrium:", describe(to_equilibrium))
+    print("reference, to the whirl:      ", describe(to_whirl))
+    print("Exudyn, to the whirl:         ", describe(in_exudyn))
     print(f"rests at ({equilibrium.x:.4f}, {equilibrium.y:.4f}) m, stable: {equilibrium.stable}")
     print(f"whirls at {whirl.radius:.4f} m with {whirl.frequency:.4f} rad/s, stable: {whirl.stable}")
     print(f"with the offset about {orbit.mean.round(6)} m with {orbit.frequency:.6f} rad/s")

@@ -1,6 +1,6 @@
 """A third engine for the comparison: implement one function. Judge it with
 
-cd examples && friction-discs report fig03 --engine 03_your_own_engine:simulate
+cd examples && friction-discs report fig03 --engine 05_your_own_engine:simulate
 """  # noqa: D400, D415
 
 from scipy.integrate import solve_ivp

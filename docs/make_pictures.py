@@ -1,0 +1,55 @@
+"""Draw the picture of the guide that is no result of a run: run as ``python docs/make_pictures.py``."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+MASTER, DISC, FRICTION = "tab:blue", "tab:orange", "tab:red"
+CENTRE, SHAFT, RADIUS = 0.55 + 0.5j, 1.3 + 0.0j, 0.9
+SLIP = -0.75j * CENTRE  # of a centre at rest
+
+
+def xy(place):
+    """Return a complex place as Matplotlib takes it."""
+    return place.real, place.imag
+
+
+def arrow(panel, start, end, colour, name="", beside=0j):
+    """Draw an arrow, with its name beside the end."""
+    look = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 15}
+    panel.annotate("", xy=xy(end), xytext=xy(start), arrowprops=look)
+    panel.text(*xy(end + beside), name, color=colour, ha="center", va="center", fontsize=13)
+
+
+def turning(panel, centre, radius, degrees, colour, name):
+    """Draw an arrow round a centre from the first to the last of ``degrees``."""
+    way = centre + radius * np.exp(1j * np.radians(np.linspace(*degrees, 50)))
+    panel.plot(way.real, way.imag, color=colour)
+    arrow(panel, way[-2], way[-1] + (way[-1] - way[-2]), colour)
+    place = centre + (radius + 0.13) * np.exp(1j * np.radians(np.mean(degrees)))
+    panel.text(*xy(place), name, color=colour, ha="center", va="center", fontsize=13)
+
+
+figure = Figure(figsize=(6.0, 4.8), layout="constrained")
+panel = figure.subplots()
+panel.add_patch(Circle((0.0, 0.0), 1.75, facecolor=MASTER, edgecolor="none", alpha=0.12))
+panel.add_patch(Circle(xy(CENTRE), RADIUS, fill=False, color=DISC, linewidth=7, alpha=0.5))
+panel.plot(*xy(0j), "+", color=MASTER, markersize=13, markeredgewidth=2)
+panel.plot(*xy(SHAFT), "kx", markersize=10, markeredgewidth=2)
+panel.text(*xy(SHAFT + 0.15), "$X_0$", ha="center", va="center", fontsize=13)
+panel.plot(*np.array([xy(SHAFT), xy(CENTRE)]).T, "k:", linewidth=1)
+panel.plot(*xy(CENTRE), "o", color=DISC, markersize=9)
+arrow(panel, 0j, CENTRE, "0.4", "$z$", -0.22 - 0.38j)
+arrow(panel, CENTRE, CENTRE + SLIP, DISC, "$u$", -0.04 - 0.13j)
+arrow(panel, CENTRE, CENTRE - 0.6 * SLIP, FRICTION, "$F$", -0.1 + 0.07j)
+arrow(panel, 0j, 0.6 * SLIP, FRICTION, "$-F$, $-M - z\\times F$", -0.66 - 0.13j)
+arrow(panel, CENTRE, CENTRE + RADIUS * np.exp(1.4j), "0.4", "$R$", 0.1 - 0.4j)
+turning(panel, 0j, 1.5, (150.0, 200.0), MASTER, r"$\omega$")
+turning(panel, CENTRE, 1.1, (345.0, 380.0), DISC, r"$\dot\varphi$")
+turning(panel, CENTRE, 0.35, (-20.0, 60.0), FRICTION, "$M$")
+panel.set(xlim=(-1.85, 1.95), ylim=(-1.8, 1.8), aspect="equal", xlabel="x", ylabel="y", xticks=[], yticks=[])
+
+if __name__ == "__main__":
+    figure.savefig(Path(__file__).parent / "conventions.png", dpi=100)
