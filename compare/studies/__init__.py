@@ -7,6 +7,11 @@ from collections.abc import Iterable
 from compare.engines import known
 from compare.studies.connector import STUDY as CONNECTOR
 from compare.studies.contact_laws import STUDY as CONTACT_LAWS
+from compare.studies.drivetrain_frozen import STUDY as DRIVETRAIN_FROZEN
+from compare.studies.drivetrain_launch import STUDY as DRIVETRAIN_LAUNCH
+from compare.studies.drivetrain_momentum import STUDY as DRIVETRAIN_MOMENTUM
+from compare.studies.drivetrain_reduced import STUDY as DRIVETRAIN_REDUCED
+from compare.studies.drivetrain_run_up import STUDY as DRIVETRAIN_RUN_UP
 from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.fig03_self_centring import STUDY as FIG03
 from compare.studies.fig04_whirl_shift import STUDY as FIG04
@@ -16,6 +21,7 @@ from compare.studies.fig08_disc_spin import STUDY as FIG08
 from compare.studies.fig09_disc_branches import STUDY as FIG09
 from compare.studies.fig11_modulated_cycle import STUDY as FIG11
 from compare.studies.free_ring import STUDY as FREE_RING
+from compare.studies.nonlinear_support import STUDY as NONLINEAR_SUPPORT
 from compare.studies.power_balance import STUDY as POWER_BALANCE
 from compare.studies.stability_map import STUDY as STABILITY_MAP
 from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
@@ -29,12 +35,18 @@ STUDIES: tuple[Study, ...] = (
     FIG06,
     STICKING_DOMAIN,
     WHIRL_STABILITY,
+    NONLINEAR_SUPPORT,
     FIG08,
     FIG09,
     FIG11,
     STABILITY_MAP,
     CONTACT_LAWS,
     FREE_RING,
+    DRIVETRAIN_RUN_UP,
+    DRIVETRAIN_FROZEN,
+    DRIVETRAIN_LAUNCH,
+    DRIVETRAIN_REDUCED,
+    DRIVETRAIN_MOMENTUM,
     POWER_BALANCE,
     CONNECTOR,
     ENGINE_CONVERGENCE,

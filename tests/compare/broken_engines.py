@@ -101,6 +101,13 @@ def simulate(
             return ring(slip, relative_spin, system.contact_radius, epsilon)
         return on_points(slip, relative_spin, angle, system.contact_radius, points, law, epsilon)
 
+    def pull(z):
+        """Return the force of springs and stop against the deflection, and 0 at none."""
+        w = z - X0
+        d = abs(w)
+        stop = system.stop_stiffness * max(0.0, d - system.stop_gap)
+        return (C + system.hardening * d**2) * w + (stop * w / d if stop > 0.0 else 0.0)
+
     def rates(_, state):
         nonlocal evaluations
         evaluations += 1
@@ -108,9 +115,10 @@ def simulate(
         (x, y), (vx, vy) = places[:2], velocities[:2]
         angle, spin = (places[2], velocities[2]) if is_disc else (0.0, 0.0)
         force, moment = contact(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
+        spring = pull(complex(x, y))
         forces = [
-            (friction * force.real - beta * vx - C * (x - X0)) / m,
-            (friction * force.imag - beta * vy - C * y) / m,
+            (friction * force.real - beta * vx - spring.real) / m,
+            (friction * force.imag - beta * vy - spring.imag) / m,
         ]
         if not is_disc:
             return (vx, vy, *forces)
@@ -126,7 +134,7 @@ def simulate(
         if is_disc:
             return math.inf, -1.0
         x, y, vx, vy = state
-        needed = complex(C - m * omega**2, beta * omega) * complex(x, y) - C * X0
+        needed = complex(-m * omega**2, beta * omega) * complex(x, y) + pull(complex(x, y))
         return math.hypot(vx + omega * y, vy - omega * x), friction - abs(needed)
 
     # The tolerance is of the end, not of a step. Where slip starts and ends, the law has a bend.

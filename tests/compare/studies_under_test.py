@@ -1,13 +1,27 @@
 """What the tests of the studies share."""
 
+from dataclasses import replace
+
 import pytest
 from broken_engines import broken_engines
 
-from compare.engines import engines
+from compare.engines import EVERY_KIND, Engine, engines
+from reference_model import simulate
 
 for_every_sound_engine = pytest.mark.parametrize(
     "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
 )
+
+
+def altered(**factors):
+    """Return the reference with parameters that are wrong by ``factors``."""
+
+    def simulated(system, initial_state, times, *, tolerance=1e-9):
+        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
+        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
+        return replace(trajectory, system=system)
+
+    return Engine("altered", simulated, EVERY_KIND)
 
 
 def verdicts(findings):

@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import verdicts
+from studies_under_test import altered, verdicts
 
 from compare.claim import Verdict
-from compare.engines import Engine, engines
+from compare.engines import engines
 from compare.studies import fig04_whirl_shift as study
-from reference_model import simulate
 from reference_model.pin_formulas import first_order_whirl_shift, whirl_shift
 
 FEW = {"speeds": (1.5,), "claim_speeds": (1.5,)}
@@ -19,17 +18,6 @@ THREE = {"speeds": study.CLAIM_SPEEDS, "claim_speeds": study.CLAIM_SPEEDS}
 CLAIMS = (study.EQ18, study.ORDER, study.LIMIT)
 
 SEES, BLIND = Verdict.DIFFERS, Verdict.AGREES
-
-
-def altered(**factors):
-    """Return the reference with parameters that are wrong by ``factors``."""
-
-    def simulated(system, initial_state, times, *, tolerance=1e-9):
-        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
-        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
-        return replace(trajectory, system=system)
-
-    return Engine("altered", simulated)
 
 
 FAULTS = {

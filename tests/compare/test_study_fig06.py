@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import verdicts
+from studies_under_test import altered, verdicts
 
 from compare.claim import Verdict
-from compare.engines import Engine, engines
+from compare.engines import engines
 from compare.studies import fig06_branches as study
-from reference_model import simulate, whirl_orbit
+from reference_model import whirl_orbit
 from reference_model.pin_formulas import equilibrium_radius, sticking_radius
 
 EQUILIBRIUM_LOADS = (0.04, 0.095)  # of broken engines
@@ -32,17 +32,6 @@ CLAIMS = {
     study.CYCLE: study.cycle_claim,
     study.CYCLE_STABLE: study.cycle_stability_claim,
 }
-
-
-def altered(**factors):
-    """Return the reference with parameters that are wrong by ``factors``."""
-
-    def simulated(system, initial_state, times, *, tolerance=1e-9):
-        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
-        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
-        return replace(trajectory, system=system)
-
-    return Engine("altered", simulated)
 
 
 FAULTS = broken_engines() | {

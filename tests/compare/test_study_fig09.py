@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies_under_test import verdicts
+from studies_under_test import altered, verdicts
 
 from compare.claim import Verdict
-from compare.engines import EVERY_KIND, Engine, engines
+from compare.engines import Engine, engines
 from compare.studies import fig09_disc_branches as study
 from compare.studies import fig09_theory as theory
 from reference_model import simulate
@@ -26,16 +26,6 @@ class OtherMoment(Ring):
     def slopes(self, slip_speed, relative_spin):
         f_u, f_s, m_u, m_s = super().slopes(slip_speed, relative_spin)
         return Slopes(f_u, f_s, 1.01 * m_u, 1.01 * m_s)
-
-
-def altered(**factors):
-    """Return the reference with parameters that are wrong by ``factors``."""
-
-    def simulated(system, state, times, *, tolerance=1e-9):
-        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
-        return simulate(replace(system, **wrong), state, times, tolerance=tolerance)
-
-    return Engine("altered", simulated, EVERY_KIND)
 
 
 def other_moment(system, state, times, *, tolerance=1e-9):

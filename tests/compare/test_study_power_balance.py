@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from broken_engines import broken_engines, broken_on_discs
-from studies_under_test import verdicts
+from studies_under_test import altered, verdicts
 
 from compare.claim import Verdict
 from compare.engines import EVERY_KIND, Engine, engines
@@ -31,17 +31,6 @@ SLIDING = {
     for name, motion in (MOTIONS | SHORT_OF_DISC).items()
     if name not in (STICKS, RING_TO_REST, SIX_TO_REST)
 }
-
-
-def altered(**factors):
-    """Return the reference with parameters that are wrong by ``factors``."""
-
-    def simulated(system, initial_state, times, *, tolerance=1e-9):
-        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
-        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
-        return replace(trajectory, system=system)
-
-    return Engine("altered", simulated, EVERY_KIND)
 
 
 def gaining(system, initial_state, times, *, tolerance=1e-9):
