@@ -45,8 +45,8 @@ STUDY = Study(
     "which it slows down, and a torsional spring, and its support has a stop. While the motion is steady, that is "
     "the paper's disc all the same: what the paper calls self-centring, loss of stability and limit cycle with large "
     "displacements must be found where the reference finds them for the reduced disc. While it is not, the inertia "
-    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: with 10 % too "
-    "much load its map shows a modulated whirl from 4,100 turns a minute on.",
+    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: with 10 % "
+    "too much load its map shows a modulated whirl from 4,100 turns a minute on.",
     measure=measure,
     theory=theory,
     draw=draw,
