@@ -108,7 +108,9 @@ def test_step_that_grazes_a_stop_on_its_way_does_not_miss_it(depth, tolerance):
     x, vx = np.sin(times) - push * np.sin(after), np.cos(times) - push * np.cos(after) * (after > 0.0)
     expected = np.column_stack((x, 0.5 * np.cos(times), vx, -0.5 * np.sin(times)))
     # The stop turns the pin back a little: its force is less by C_s times the square of half that time over m.
-    assert np.abs(found.states - expected).max() < 1e4 * 8.0 * max(depth, 0.0) / 3.0 * push + 3.0 * tolerance
+    # Rounding errors in place, up to 1e-13, become errors in speed √(C_s/m) = 100 times as large.
+    accuracy = 3.0 * max(tolerance, 1e-11)
+    assert np.abs(found.states - expected).max() < 1e4 * 8.0 * max(depth, 0.0) / 3.0 * push + accuracy
     assert (
         push == 0.0 or push > 10.0 * 1e4 * 8.0 * depth / 3.0 * push
     )  # so much of it is seen, if the tolerance lets
