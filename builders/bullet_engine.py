@@ -1,0 +1,198 @@
+"""Bullet as an engine: its friction cone on and off, and our law as a force of the user.
+
+Written for PyBullet 3.2.7, in double precision (``pip install pybullet``; wheels for Linux, elsewhere pip builds it).
+Pin or disc is a multibody on two sliding joints, a disc on a revolute one too. Below it are n feet, spheres on
+vertical joints of their own, so that each is pressed on the plate by its weight N/n and by nothing else: of several
+feet of one rigid body the solver would load the first alone. The plate turns at ω on a joint, too heavy to notice.
+
+What Bullet leaves to choose, and why so:
+
+- Damping of the whole body is 0.04, joints have motors and a greatest speed of 100, unless told otherwise.
+- The coefficient of friction is the product of two. Slop and the solver's own threshold for leaving off are 0.
+- Springs and dampers are forces that are set before each step, so that any support will do.
+
+What it can't do: a step, with friction against the slip at its end, is of order 1. With the cone off, friction is
+bounded for each axis of the world, up to √2 times too large at any step. With the cone on it acts on a disc not
+quite along the slip, but each component of the slip over what an impulse changes of it, which is R²·m/J off at any
+step. There is no continuous ring of contact.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import pybullet
+from common import (
+    Model,
+    contact_arms,
+    inertia_of,
+    mobility,
+    our_friction,
+    promising_pins_and_points,
+    simulate,
+)
+from numpy.typing import ArrayLike
+
+from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.trajectory import Trajectory
+
+ITERATIONS = 50
+"""Of the solver, its default. With ten, discs that stick on six points differ by less than 0.1 % of their error."""
+
+MOST_FEET = 100
+"""A body of PyBullet has at most 128 links."""
+
+
+def simulate_with_cone(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with Bullet's contact, by steps of order 1."""
+    return _simulate(system, initial_state, times, tolerance, "cone")
+
+
+def simulate_with_box(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with ``enableConeFriction`` off; it converges to the motion with friction for each axis."""
+    return _simulate(system, initial_state, times, tolerance, "box")
+
+
+def simulate_with_our_force(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with −μN·v/max(|v|, ε) in place of contact, set before each step: of order 1.
+
+    ε is what friction changes of the slip in a step.
+    """
+    return _simulate(system, initial_state, times, tolerance, "our force")
+
+
+SETTINGS = promising_pins_and_points(
+    {
+        "cone": simulate_with_cone,
+        "box": simulate_with_box,
+        "our force": simulate_with_our_force,
+    }
+)
+
+
+def _simulate(
+    system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float, friction: str
+) -> Trajectory:
+    build = partial(_World, friction)
+    return simulate("Bullet", build, system, initial_state, times, tolerance, linear=False)
+
+
+class _World(Model):
+    """Bullet with one body in it, and with a plate unless friction is our force."""
+
+    def __init__(self, friction: str, system: System, state: FloatArray, _: float) -> None:
+        self.system, self.state = system, state
+        self.arms = contact_arms("Bullet", system, MOST_FEET)
+        self.method = f"PyBullet {version('pybullet')}, semi-implicit Euler, {friction}"
+        disc = isinstance(system, DiscOnDisc)
+        self.joints = range(3 if disc else 2)
+        self.load = system.friction_force / len(self.arms)
+        self.native = friction != "our force"
+        self.client = pybullet.connect(pybullet.DIRECT)
+        pybullet.setPhysicsEngineParameter(
+            numSolverIterations=ITERATIONS,
+            solverResidualThreshold=0.0,
+            contactSlop=0.0,
+            enableConeFriction=int(friction == "cone"),
+            physicsClientId=self.client,
+        )
+        # Half of what mass and inertia allow is in the feet.
+        feet = self.arms if self.native else []
+        mass, inertia = system.mass, inertia_of(system)
+        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if disc else mass) / 2.0 / len(self.arms)
+        carriage = mass - foot * len(feet), inertia - foot * sum(abs(arm) ** 2 for arm in feet)
+        weightless = [(0.0, 0.0)] * (len(self.joints) - 1)
+        sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=1.0, physicsClientId=self.client)
+        self.body = self._body(
+            height=1.0,
+            links=[*weightless, carriage, *[(foot, 0.0)] * len(feet)],
+            shapes=[-1] * len(self.joints) + [sphere] * len(feet),
+            places=[0j] * len(self.joints) + feet,
+            parents=[*self.joints, *[len(self.joints)] * len(feet)],
+            axes=["x", "y", "turn"][: len(self.joints)] + ["z"] * len(feet),
+        )
+        for joint, (position, speed) in enumerate(state.reshape(2, -1).T.tolist()):
+            pybullet.resetJointState(self.body, joint, position, speed, physicsClientId=self.client)
+        if self.native:
+            pybullet.setGravity(0.0, 0.0, -self.load / foot, physicsClientId=self.client)
+            plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
+            plate = self._body(0.0, [(mass, 1e12 * inertia)], [plane], [0j], [0], ["turn"])
+            pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
+
+    def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
+        """Return a multibody on a fixed base, without damping and without motors; ``links`` are masses, inertias."""
+        none, unit = [[0.0, 0.0, 0.0]] * len(links), [[0.0, 0.0, 0.0, 1.0]] * len(links)
+        vectors = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1], "turn": [0, 0, 1]}
+        body: int = pybullet.createMultiBody(
+            basePosition=[0.0, 0.0, height],
+            linkMasses=[mass for mass, _ in links],
+            linkCollisionShapeIndices=shapes,
+            linkVisualShapeIndices=[-1] * len(links),
+            linkPositions=[[place.real, place.imag, 0.0] for place in places],
+            linkOrientations=unit,
+            linkInertialFramePositions=none,
+            linkInertialFrameOrientations=unit,
+            linkParentIndices=parents,
+            linkJointTypes=[
+                pybullet.JOINT_REVOLUTE if axis == "turn" else pybullet.JOINT_PRISMATIC for axis in axes
+            ],
+            linkJointAxis=[vectors[axis] for axis in axes],
+            physicsClientId=self.client,
+        )
+        # What is for the whole body goes to its base: a call with that for a link drops all that is for the link.
+        whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
+        awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
+        pybullet.changeDynamics(body, -1, activationState=awake, physicsClientId=self.client, **whole)
+        for link, (_, inertia) in enumerate(links):
+            own = {"jointDamping": 0.0, "lateralFriction": 1.0, "localInertiaDiagonal": [inertia] * 3}
+            pybullet.changeDynamics(body, link, physicsClientId=self.client, **own)
+            pybullet.setJointMotorControl2(
+                body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client
+            )
+        return body
+
+    def close(self) -> None:
+        pybullet.disconnect(self.client)
+
+    def advance(self, h: float, number: int) -> FloatArray:
+        pybullet.setPhysicsEngineParameter(fixedTimeStep=h, physicsClientId=self.client)
+        self.epsilon = 0.0 if self.native else h * mobility(self.system) * self.system.friction_force
+        forces, torque, client = self._forces(*self.state.tolist()), pybullet.TORQUE_CONTROL, self.client
+        for _ in range(number):
+            pybullet.setJointMotorControlArray(
+                self.body, self.joints, torque, forces=forces, physicsClientId=client
+            )
+            pybullet.stepSimulation(client)
+            positions, speeds, _, _ = zip(
+                *pybullet.getJointStates(self.body, self.joints, client), strict=True
+            )
+            forces = self._forces(*positions, *speeds)
+        self.state = np.array([*positions, *speeds])
+        self.steps += number
+        self.evaluations += number
+        return self.state
+
+    def _forces(self, *state: float) -> list[float]:
+        """Return the generalised forces of support, shaft and, if it is ours, friction."""
+        system = self.system
+        half = len(state) // 2
+        z, v = complex(*state[:2]), complex(*state[half : half + 2])
+        w = z - system.offset
+        stop = system.stop_stiffness * max(0.0, 1.0 - system.stop_gap / abs(w)) if w else 0.0
+        force = -(system.stiffness + system.hardening * abs(w) ** 2 + stop) * w - system.damping * v
+        forces = [force.real, force.imag]
+        if isinstance(system, DiscOnDisc):
+            forces.append(system.shaft_damping * (system.shaft_speed - state[5]))
+        if not self.native:
+            friction = our_friction(system, self.arms, state, self.epsilon)
+            forces = [a + b for a, b in zip(forces, friction, strict=True)]
+        return forces

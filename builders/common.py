@@ -1,0 +1,136 @@
+"""What the foreign engines share: checks, steps, places of contact, our law of friction, and the result."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.engines import UnsupportedSystemError
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    System,
+    checked_state,
+    checked_times,
+    checked_tolerance,
+)
+from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+
+Simulate = Callable[..., Trajectory]
+
+
+class Model:
+    """The bodies in an engine, in a state that moves on.
+
+    ``method`` names integrator and contact, ``epsilon`` is the slip speed in m/s that smooths the friction law,
+    ``steps`` and ``evaluations`` have been taken so far.
+    """
+
+    method = ""
+    epsilon = 0.0
+    steps = 0
+    evaluations = 0
+
+    def advance(self, h: float, number: int) -> FloatArray:
+        """Take ``number`` steps of ``h`` s, and return the state."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Give back what the engine holds."""
+
+
+def simulate(
+    engine: str,
+    build: Callable[[System, FloatArray, float], Model],
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    tolerance: float,
+    *,
+    finest: float = 0.0,
+    linear: bool = True,
+) -> Trajectory:
+    """Return the motion by the model that ``build`` makes of system, state and tolerance.
+
+    Steps are as long as 0.1·tolerance^(1/3) over the larger of k and ω, so that errors of first order fall by half
+    where they are estimated, but not below ``finest`` over that, and divide each interval of ``times``.
+    ``linear`` is for an engine that has no other springs.
+    """
+    state, grid = checked_state(system, initial_state), checked_times(times)
+    tolerance = checked_tolerance(tolerance)
+    if linear and not system.linear_support:
+        raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
+    longest = max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), finest) / rate(system)
+    states = [state]
+    began = time.perf_counter()
+    model = build(system, state, tolerance)
+    try:
+        for i, interval in enumerate(np.diff(grid).tolist(), 1):
+            number = math.ceil(interval / longest * (1.0 - 1e-9))
+            states.append(model.advance(interval / number, number))
+            if not np.all(np.isfinite(states[-1])):
+                raise SimulationError(f"{engine} diverged before t = {grid[i]:g} s: try a smaller tolerance")
+    finally:
+        model.close()
+    wall = time.perf_counter() - began
+    solution = Solution(model.method, tolerance, model.evaluations, model.steps, wall, model.epsilon)
+    phases = (Phase("slip", float(grid[0]), float(grid[-1]), state),)
+    return Trajectory(system, grid, np.array(states), phases, solution)
+
+
+def promising_pins_and_points(settings: dict[str, Simulate]) -> dict[str, Simulate]:
+    """Return ``settings``, functions by the name of a setting, each with what it promises to simulate."""
+    for function in settings.values():
+        function.kinds = ("pin", "points")  # type: ignore[attr-defined]
+    return settings
+
+
+def contact_arms(engine: str, system: System, most: float = math.inf) -> list[complex]:
+    """Return where the contact points are on the unturned disc, in m; ``most`` is how many ``engine`` takes."""
+    if not isinstance(system, DiscOnDisc):
+        return [0j]
+    n = system.contact_points
+    if n is None:
+        raise UnsupportedSystemError(f"{engine} does not simulate a disc on a continuous ring")
+    if n > most:
+        raise UnsupportedSystemError(
+            f"contact_points = {n}: {engine} does not simulate a disc on more than {most:g}"
+        )
+    return [cmath.rect(system.contact_radius, 2.0 * math.pi * i / n) for i in range(n)]
+
+
+def rate(system: System) -> float:
+    """Return the larger of k and ω in 1/s, and 1/s where both are zero."""
+    return max(system.natural_frequency, abs(system.disc_speed)) or 1.0
+
+
+def mobility(system: System) -> float:
+    """Return the largest change of slip in m/s that an impulse of 1 N s on the contact can cause."""
+    turning = system.contact_radius**2 / system.polar_inertia if isinstance(system, DiscOnDisc) else 0.0
+    return 1.0 / system.mass + turning
+
+
+def inertia_of(system: System) -> float:
+    """Return J, and for a pin, which does not turn, its mass as a number in the place of J."""
+    return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
+
+
+def our_friction(system: System, arms: list[complex], state: Sequence[float], epsilon: float) -> Any:
+    """Return the forces in N, and of a disc the moment in N m, of −μN·v/max(|v|, ε) at all points of contact."""
+    half = len(state) // 2
+    z, v = complex(*state[:2]), complex(*state[half : half + 2])
+    turned, spin = (cmath.rect(1.0, state[2]), state[5]) if half > 2 else (1.0 + 0j, 0.0)
+    load, omega, force, moment = system.friction_force / len(arms), system.disc_speed, 0j, 0.0
+    for unturned in arms:
+        arm = unturned * turned
+        slip = v + 1j * (spin * arm - omega * (z + arm))
+        friction = -load * slip / max(abs(slip), epsilon, 1e-300)
+        force += friction
+        moment += (arm.conjugate() * friction).imag
+    return (force.real, force.imag, moment)[:half]

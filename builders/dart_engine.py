@@ -1,0 +1,218 @@
+"""DART as an engine of the comparison: four of its contact solvers, and our law as a force of the user.
+
+Needs ``pip install dartpy`` (wheels for Linux, and from Python 3.12 on for macOS and Windows). Measured with 6.20.0.
+
+Pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints of their own, so that each is
+pressed on the plate by its weight N/n and by nothing else: a rigid contact would leave open which of several feet of
+one body carries how much. The plate turns at ω on a joint whose motion is prescribed.
+
+What DART leaves to choose, and why so:
+
+- A step is semi-implicit, of order 1: friction acts against the slip at its end, places follow from the new speeds.
+  Springs of joints are implicit, which damps like C·h. The support's spring is a force set before each step instead:
+  a fourth of the error. Dampers are those of the joint.
+- Bodies at rest fall asleep unless told otherwise, and a second solver takes over silently where the first one fails.
+- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two axes of the
+  world, and too large by up to √2 in between, which does not get better with the step. The other two know the cone.
+- What solvers that iterate leave is at most 1e-10 of an impulse: at 1e-12 rounding can keep them from ending.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import dartpy
+import numpy as np
+from common import (
+    Model,
+    contact_arms,
+    inertia_of,
+    mobility,
+    our_friction,
+    promising_pins_and_points,
+    simulate,
+)
+from numpy.typing import ArrayLike
+
+from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.trajectory import Trajectory
+
+SOLVER_TOLERANCE = 1e-10
+
+SHARE = 0.01
+"""Of mass and inertia that is in the feet."""
+
+PLATE = 1e4
+"""Half its width in m."""
+
+
+def simulate_nsgs(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with the cone, by nonsmooth Gauss–Seidel."""
+    return _simulate(system, initial_state, times, tolerance, "nsgs")
+
+
+def simulate_fbf(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with the cone, by forward-backward-forward splitting."""
+    return _simulate(system, initial_state, times, tolerance, "fbf")
+
+
+def simulate_dantzig(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with a box in place of the cone, by pivoting: DART's default."""
+    return _simulate(system, initial_state, times, tolerance, "dantzig")
+
+
+def simulate_pgs(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with a box in place of the cone, by projected Gauss–Seidel."""
+    return _simulate(system, initial_state, times, tolerance, "pgs")
+
+
+def simulate_with_our_force(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion with −μN·v/max(|v|, ε) in place of contact, at the start of each step.
+
+    ε is what friction changes of the slip in a step: with half of it the steps would not be stable.
+    """
+    return _simulate(system, initial_state, times, tolerance)
+
+
+SETTINGS = promising_pins_and_points(
+    {
+        "NSGS": simulate_nsgs,
+        "FBF": simulate_fbf,
+        "Dantzig": simulate_dantzig,
+        "PGS": simulate_pgs,
+        "our force": simulate_with_our_force,
+    }
+)
+
+
+def _simulate(
+    system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float, solver: str = ""
+) -> Trajectory:
+    build = partial(_Model, solver)
+    return simulate("DART", build, system, initial_state, times, tolerance)
+
+
+class _Model(Model):
+    """A world with native contact by ``solver``, or with our force if there is none."""
+
+    def __init__(self, solver: str, system: System, state: FloatArray, _: float) -> None:
+        self.system, self.native, self.half = system, bool(solver), len(state) // 2
+        self.arms = contact_arms("DART", system)
+        self.world, self.joint = _world(system, self.arms, solver)
+        self.joint.setPositions([*state[: self.half], 0.0][:3])
+        self.joint.setVelocities([*state[self.half :], 0.0][:3])
+        self.torque = system.shaft_damping * system.shaft_speed if isinstance(system, DiscOnDisc) else 0.0
+        self.method = f"DART {dartpy.__version__}, {solver or 'our law by force'}"
+
+    def advance(self, h: float, number: int) -> FloatArray:
+        system, joint = self.system, self.joint
+        self.world.setTimeStep(h)
+        if not self.native:
+            self.epsilon = h * mobility(system) * system.friction_force
+        for _ in range(number):
+            x, y, _ = joint.getPositions().tolist()
+            forces = [-system.stiffness * (x - system.offset), -system.stiffness * y, self.torque]
+            if not self.native:
+                friction = our_friction(system, self.arms, self._state().tolist(), self.epsilon)
+                forces[: self.half] = [a + b for a, b in zip(forces, friction, strict=False)]
+            joint.setCommands(forces)
+            self.world.step(False)
+        self.steps += number
+        self.evaluations += number
+        return self._state()
+
+    def _state(self) -> FloatArray:
+        places, speeds = self.joint.getPositions(), self.joint.getVelocities()
+        return np.concatenate((places[: self.half], speeds[: self.half]))
+
+
+def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
+    """Return the world and the joint of pin or disc, whose coordinates are x, y and the angle."""
+    dynamics, world = dartpy.dynamics, dartpy.simulation.World()
+    asleep = dartpy.simulation.DeactivationOptions()
+    asleep.mEnabled = False
+    world.setDeactivationOptions(asleep)
+    world.setCollisionDetector(dartpy.simulation.CollisionDetectorType.DART)
+    _choose(solver, world.getConstraintSolver())
+    inertia = inertia_of(system)
+    n = len(arms)
+    foot = (
+        SHARE * min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else math.inf) / n if solver else 0.0
+    )
+    spin = SHARE * inertia / n if solver else 0.0
+    world.setGravity([0.0, 0.0, -system.friction_force / n / (foot or 1.0)])
+
+    pieces = dynamics.Skeleton("disc")
+    joint, body = pieces.createPlanarJointAndBodyNodePair(None, dynamics.PlanarJointProperties())
+    body.setInertia(
+        _inertia(system.mass - n * foot, inertia - sum(foot * abs(arm) ** 2 + spin for arm in arms))
+    )
+    body.setGravityMode(False)
+    shaft = system.shaft_damping if isinstance(system, DiscOnDisc) else 0.0
+    for i, damping in enumerate((system.damping, system.damping, shaft)):
+        joint.setDampingCoefficient(i, damping)
+    if solver:
+        vertical = dynamics.PrismaticJointProperties()
+        vertical.mAxis = [0.0, 0.0, 1.0]
+        for arm in arms:
+            guide, pad = pieces.createPrismaticJointAndBodyNodePair(body, vertical)
+            guide.setTransformFromParentBodyNode(_shift(arm.real, arm.imag, 0.0))
+            pad.setInertia(_inertia(foot, spin))
+            _touching(
+                pad, dynamics.SphereShape(1.0), 1.0 - 1e-9
+            )  # a little below, for contact from the start
+        plate, axis = dynamics.Skeleton("plate"), dynamics.RevoluteJointProperties()
+        axis.mAxis = [0.0, 0.0, 1.0]
+        master, body = plate.createRevoluteJointAndBodyNodePair(None, axis)
+        master.setActuatorType(dynamics.ActuatorType.VELOCITY)
+        master.setCommand(0, system.disc_speed)
+        master.setVelocity(0, system.disc_speed)
+        _touching(body, dynamics.BoxShape([2.0 * PLATE, 2.0 * PLATE, 2.0]), -1.0)
+        world.addSkeleton(plate)
+    world.addSkeleton(pieces)
+    return world, joint
+
+
+def _choose(solver: str, constraints: Any) -> None:
+    second, kinds = constraints.getSecondaryBoxedLcpSolver(), dartpy.constraint
+    constraints.setSecondaryBoxedLcpSolver(None)
+    if solver == "pgs":
+        second.setOption(kinds.PgsBoxedLcpSolverOption(1000, 1e-15, SOLVER_TOLERANCE, 1e-15, False))
+        constraints.setBoxedLcpSolver(second)
+    elif solver in ("nsgs", "fbf"):
+        kind = {"nsgs": kinds.NsgsFrictionSolver, "fbf": kinds.FbfFrictionSolver}[solver]
+        options = kind.Options()
+        options.tolerance = SOLVER_TOLERANCE
+        constraints.setBoxedLcpSolver(kind(options))
+
+
+def _inertia(mass: float, polar: float) -> Any:
+    return dartpy.dynamics.Inertia(mass, [0.0, 0.0, 0.0], polar * np.eye(3))
+
+
+def _shift(x: float, y: float, z: float) -> Any:
+    result = dartpy.math.Isometry3()
+    result.set_translation([x, y, z])
+    return result
+
+
+def _touching(body: Any, shape: Any, height: float) -> None:
+    """Give ``body`` a ``shape`` at that ``height`` in m, with μ = 1 and no rebound."""
+    node = body.createShapeNode(shape)
+    node.setRelativeTransform(_shift(0.0, 0.0, height))
+    node.createCollisionAspect()
+    surface = node.createDynamicsAspect()
+    surface.setFrictionCoeff(1.0)
+    surface.setRestitutionCoeff(0.0)

@@ -1,0 +1,152 @@
+"""Measure foreign engines, and our own beside them, and write ``compare/foreign/<engine>.json`` for the report.
+
+    pip install --editable '.[engines]'
+    python builders/record.py                 # all engines: five minutes on an idle machine
+    python builders/record.py mujoco bullet   # or some of them
+
+Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
+of ``compare.accuracy.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is left out, with a
+sentence. Times are to be compared within one recording only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import inspect
+import json
+import platform
+import re
+import sys
+import time
+from collections.abc import Callable
+from datetime import datetime, timezone
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+import compare.engines
+from compare.accuracy import COARSENING
+from compare.foreign import COLUMNS, DIGITS, FOLDER
+from compare.foreign.cases import CASES, Case
+from reference_model import SimulationError, Trajectory
+
+LONGEST = 0.7
+"""Seconds: the first run that takes so long is the last of its ladder,"""
+
+LEAST = 5
+"""unless it has fewer runs than this, which an order takes."""
+
+TOLERANCES = 1e-2 / COARSENING ** np.arange(12)
+
+FOREIGN = {"mujoco": "MuJoCo", "bullet": "Bullet", "drake": "Drake", "dart": "DART"}
+"""By the name of the module, which is ``<name>_engine``."""
+
+PACKAGES = {
+    "mujoco": "mujoco",
+    "bullet": "pybullet",
+    "drake": "drake",
+    "dart": "dartpy",
+    "reference": "friction-discs",
+    "exudyn": "exudyn",
+    "exudyn-native": "exudyn",
+}
+
+WHEELS = {
+    "mujoco": "Linux, macOS and Windows",
+    "bullet": "Linux; elsewhere pip compiles it",
+    "drake": "Linux, and macOS with newer Pythons; none for Windows",
+    "dart": "Linux, and from Python 3.12 on macOS and Windows",
+}
+"""Where pip finds a package ready to use."""
+
+Simulate = Callable[..., Trajectory]
+
+
+def settings_of(name: str) -> dict[str, Simulate]:
+    """Return the functions that simulate with each setting of an engine; raise ``ImportError`` without it."""
+    if name in FOREIGN:
+        settings: dict[str, Simulate] = importlib.import_module(f"{name}_engine").SETTINGS
+        return settings
+    (engine,) = compare.engines.engines([name])
+    return {"": engine.simulate}
+
+
+def ladder(simulate: Simulate, case: Case) -> list[list[float | None]]:
+    """Return a row of ``COLUMNS`` for each tolerance, from the largest on."""
+    _timed(simulate, case, case.times[:2], TOLERANCES[0])  # what is compiled or loaded at the first call
+    rows: list[list[float | None]] = []
+    before = None
+    for tolerance in TOLERANCES.tolist():
+        trajectory, seconds, wall = _timed(simulate, case, case.times, tolerance)
+        if trajectory is None:
+            continue  # at a tolerance this large
+        found = case.quantity(trajectory)
+        error = float(np.max(np.abs(found - case.exact())))
+        change = None if before is None else float(np.max(np.abs(found - before)))
+        if change != 0.0:  # as where the longest or the shortest step of an engine comes before the tolerance
+            row = (tolerance, trajectory.solution.steps, error, change, seconds, wall)
+            rows.append([value and float(f"{value:.{DIGITS}g}") for value in row])
+            before = found
+        if seconds > LONGEST and len(rows) >= LEAST:
+            break
+    return rows
+
+
+def _timed(
+    simulate: Simulate, case: Case, times: Any, tolerance: float
+) -> tuple[Trajectory | None, float, float]:
+    wall, processor = time.perf_counter(), time.process_time()
+    try:
+        trajectory = simulate(case.system, case.start, times, tolerance=tolerance)
+    except SimulationError as error:
+        print(f"  tolerance {tolerance:g}: {error}")
+        return None, 0.0, 0.0
+    return trajectory, time.process_time() - processor, time.perf_counter() - wall
+
+
+def record(name: str) -> dict[str, Any]:
+    """Measure all settings of an engine; raise ``ImportError`` if it is not installed."""
+    settings = []
+    for setting, simulate in settings_of(name).items():
+        print(f"{name}: {setting}", flush=True)
+        says = " ".join((inspect.getdoc(simulate) or "").replace("``", "").split()) if setting else ""
+        runs = {key: ladder(simulate, case) for key, case in CASES.items()}
+        settings.append({"name": setting, "says": says.removeprefix("Return the motion "), "runs": runs})
+    return {
+        "engine": FOREIGN.get(name, name),
+        "version": version(PACKAGES[name]),
+        "recorded": f"{datetime.now(timezone.utc):%Y-%m-%d}",
+        "platform": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        "columns": COLUMNS,
+        "settings": settings,
+    }
+
+
+def written(found: dict[str, Any]) -> str:
+    """Return JSON with a line for each row of numbers."""
+    text = json.dumps(found, ensure_ascii=False, indent=1)
+    rows = re.sub(r"\[([^\[\]{}\"]+)\]", lambda row: "[" + " ".join(row[1].split()) + "]", text)
+    return rows + "\n"
+
+
+def main() -> None:
+    """Record the engines that are named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("engines", nargs="*", metavar="ENGINE", help=", ".join(PACKAGES))
+    names = parser.parse_args().engines or list(PACKAGES)
+    if unknown := set(names) - set(PACKAGES):
+        parser.error(f"no engine {', '.join(sorted(unknown))}: known are {', '.join(PACKAGES)}")
+    for name in names:
+        try:
+            found = record(name)
+        except ImportError as error:
+            wheels = f"; wheels of {PACKAGES[name]} are for {WHEELS[name]}" if name in WHEELS else ""
+            print(f"{name} is left out, it is not installed ({error}){wheels}", file=sys.stderr)
+            continue
+        (FOLDER / f"{name}.json").write_text(written(found), encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    main()
