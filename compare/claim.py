@@ -5,11 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.systems import FloatArray
+
+Kind = Literal["formula", "conservation", "order", "trajectory"]
+"""What the prediction is taken from.
+
+"formula": a closed form, an eigenvalue, the root of a balance, or which of several ends a theory says;
+"conservation": energy or momentum, with no other solution beside; "order": how an error falls; "trajectory": another
+simulation's motion, or what is read off it. An engine that shares a mistake with that simulation passes the last.
+"""
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 class Verdict(Enum):
@@ -63,6 +74,8 @@ class Claim:
         What is claimed, the same for every engine; it names the row of the matrix.
     equation : str
         Of the paper, as "(3)", or "" where the statement is ours.
+    kind : str
+        What the prediction is taken from, one of ``KINDS``.
     engine : str
         Name of the engine, or "theory" where no simulation takes part.
     predicted, measured : float or array of the same shape
@@ -82,6 +95,7 @@ class Claim:
 
     sentence: str
     equation: str
+    kind: Kind
     engine: str
     predicted: FloatArray
     measured: FloatArray
@@ -96,6 +110,7 @@ class Claim:
         sentence: str,
         *,
         equation: str,
+        kind: Kind = "formula",
         engine: str,
         predicted: ArrayLike,
         measured: ArrayLike,
@@ -108,6 +123,7 @@ class Claim:
         values = {
             "sentence": sentence,
             "equation": equation,
+            "kind": kind,
             "engine": engine,
             "predicted": np.asarray(predicted, dtype=float),
             "measured": np.asarray(measured, dtype=float),
@@ -119,6 +135,8 @@ class Claim:
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
+        if kind not in KINDS:
+            raise ValueError(f"claim {sentence!r}: kind = {kind!r}: it must be one of {', '.join(KINDS)}")
         if self.predicted.shape != self.measured.shape:
             raise ValueError(
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "

@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | simulate | errata``.
+"""The command line: ``friction-discs list | report | judge | simulate | errata``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from compare.faults import Fault
+    from compare.judge import Judged
     from compare.report.matrix import Matrix
     from compare.runner import Run
     from compare.study import Study
@@ -106,6 +108,7 @@ def friction_discs(
     Examples:
       friction-discs list
       friction-discs report
+      friction-discs judge
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs errata
@@ -203,6 +206,70 @@ def report(
             f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
         )
     return SOMETHING_DIFFERS if _wrong(result, matrix) else FINE
+
+
+@app.command()
+def judge(
+    context: typer.Context,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="FAULT", help="Faults to measure; all without any.", show_default=False),
+    ] = None,
+    study: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Study to measure them with, several times for several.",
+            show_default="trajectories and sticking-domain",
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option(metavar="DIR", help="Folder for the result.")] = Path("judge"),
+    jobs: Annotated[
+        str | None, typer.Option(metavar="N", help="Number of processes.", show_default="one for each core")
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Keep what the same version of everything has already measured there."),
+    ] = False,
+) -> int:
+    """Measure engines with one fault each, to see which claims catch it; write judge.html and judge.json.
+
+    Without FAULT the smallest error of each parameter that is noticed is found besides. The exit status is 0 when
+    each fault that changes the physics is caught by trajectories and by a claim of another kind and every right
+    engine passes, 1 otherwise, 2 on bad input, and 130 after Ctrl-C.
+
+    
+    Examples:
+      friction-discs judge
+      friction-discs judge moment-wrong-sign --study trajectories --study power-balance
+    """
+    from compare.faults import RIGHT
+
+    with refused():
+        faults = _faults(names or [])
+        processes = _cores() if jobs is None else _count("jobs", jobs, 1, MOST_JOBS)
+        _check_folder(output)
+
+    from compare import judge as judging
+    from compare.workers import interrupts_ignored
+
+    with _progress() as progress:
+        judged = judging.judge(
+            faults,
+            RIGHT,
+            _studies(context, study or judging.STUDIES),
+            folder=output / "data",
+            limits=not names,
+            jobs=processes,
+            resume=resume,
+            progress=progress,
+        )
+    with interrupts_ignored():
+        judging.write_judged(judged, output)
+    _print_judged(judged, output / "judge.html")
+    if judged.interrupted:
+        return _say("Interrupted. The same command with --resume completes it.", INTERRUPTED)
+    return FINE if judged.good else SOMETHING_DIFFERS
 
 
 simulate = typer.Typer(rich_markup_mode=None)
@@ -402,6 +469,15 @@ def _studies(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
         return studies(names, STUDIES if context.obj is None else context.obj)
 
 
+def _faults(names: Sequence[str]) -> tuple[Fault, ...]:
+    """Return the faults of the given names in the order of the catalogue, or all; raise ``ValueError`` for others."""
+    from compare.engines import known
+    from compare.faults import FAULTS
+
+    wanted = {known("fault", name, [fault.name for fault in FAULTS]) for name in names}
+    return tuple(fault for fault in FAULTS if fault.name in wanted or not wanted)
+
+
 def _changed(system: System, settings: Sequence[str]) -> System:
     """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
     from compare.engines import known
@@ -501,6 +577,25 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     for what, failure in _failures(result).items():
         print(f"{what}: {failure.reason}")
     print(f"{summary(matrix)} ({index})")
+
+
+def _print_judged(judged: Judged, page: Path) -> None:
+    """Print a table of what caught each fault, and the totals."""
+    from rich.console import Console
+    from rich.table import Column, Table
+
+    from compare.report.judge_page import summary
+
+    fault = Column("fault", overflow="fold")  # names have no spaces to break at
+    table = Table(fault, "trajectories", "other claims", "verdict", highlight=False)
+    for judgement in (*judged.right, *judged.faults):
+        kinds = dict.fromkeys(
+            kind for catch in judgement.by_others for kind in catch.kinds if kind != "trajectory"
+        )
+        others = f"{len(judgement.by_others)} ({', '.join(kinds)})" if kinds else "0"
+        table.add_row(judgement.name, str(len(judgement.by_trajectory)), others, judgement.outcome.value)
+    Console(highlight=False).print(table)
+    print(f"{summary(judged)} ({page})")
 
 
 def _failures(result: Run) -> dict[str, Failure]:

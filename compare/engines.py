@@ -6,21 +6,28 @@ measures those that the engine simulates and hands on what is missing::
 
     mine = [disc for disc in discs if engine.simulates(disc)]
     return Findings(claims_of(mine), data_of(mine), not_simulated=engine.lacking(discs))
+
+What an engine returns is looked at before a study sees it: times and shapes as asked for, numbers all finite.
 """
 
 from __future__ import annotations
 
 import difflib
+import functools
 import importlib
+import math
 import os
+import reprlib
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from typing import Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import PinOnDisc, System
+from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
 
 KINDS = {"pin": "a pin", "points": "a disc on single points", "ring": "a disc on a continuous ring"}
@@ -44,12 +51,25 @@ class Simulate(Protocol):
 
 
 class UnsupportedSystemError(ValueError):
-    """An engine was asked for a system that it never promised to simulate; the message says which."""
+    """An engine was asked for a system or motion that it never promised to simulate; the message says which."""
+
+
+class BadTrajectoryError(RuntimeError):
+    """An engine returned what is no answer to the question; the message says why."""
+
+
+ENTRY_POINTS = "friction_discs.engines"
+"""The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""
+
+USUAL_TOLERANCE = 1e-9
+
+TIME_ROUNDING = 1e-12
+"""Relative: times of the same grid that were added up in another order agree to this."""
 
 
 @dataclass(frozen=True)
 class Engine:
-    """A name, a simulate() and the systems that it is for.
+    """A name, a simulate() and what it is for.
 
     Parameters
     ----------
@@ -60,30 +80,72 @@ class Engine:
     kinds : tuple of str
         What ``function`` promises to simulate: "pin", "points" (a disc on single points), "ring" (a disc on the
         continuous ring).
+    sticks : bool
+        Whether it simulates motions that stick. An engine that does not is asked for motions only in which the
+        reference finds none.
+    step : float, optional
+        For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
+        tolerance of 1e-9. It goes with the square root of the tolerance.
 
     Raises
     ------
     ValueError
-        For a kind that there is not.
+        For a kind that there is not, a step that is not > 0, or ``sticks`` that is no yes or no.
 
     """
 
     name: str
-    function: Simulate
+    function: Callable[..., Trajectory]
     kinds: tuple[str, ...] = ("pin",)
+    sticks: bool = True
+    step: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse a promise that no study could ask for."""
+        object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
             known("kind of system", kind, KINDS)
+        if not isinstance(self.sticks, bool):
+            raise ValueError(f"sticks = {self.sticks!r}: it must be True or False")
+        if self.step is not None:
+            object.__setattr__(self, "step", finite_number("step", self.step))
+            if self.step <= 0.0:
+                raise ValueError(f"step = {self.step:g} s: it must be > 0")
 
     def simulate(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+        self,
+        system: System,
+        initial_state: ArrayLike,
+        times: ArrayLike,
+        *,
+        tolerance: float = USUAL_TOLERANCE,
     ) -> Trajectory:
-        """Do as ``function``; raise ``UnsupportedSystemError`` for a system that it does not promise."""
+        """Do as ``function``, and look at what it returns.
+
+        Raises
+        ------
+        UnsupportedSystemError
+            For a system or a motion that the engine does not promise.
+        TypeError
+            If the function returns no ``Trajectory``.
+        BadTrajectoryError
+            If it is not the one that was asked for, or has numbers that are not finite.
+
+        """
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
-        return self.function(system, initial_state, times, tolerance=tolerance)
+        if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
+            raise UnsupportedSystemError(f"{self.name} does not simulate stick")
+        accuracy = {"tolerance": tolerance} if self.step is None else {"step": self._step(tolerance)}
+        return _checked(self.function(system, initial_state, times, **accuracy), system, times)
+
+    def _step(self, tolerance: float) -> float:
+        """Return the step in s, which goes with the square root of ``tolerance``.
+
+        Where errors are estimated, see ``compare.accuracy.COARSENING``, an error of first order then becomes 2.8
+        times as large, so that its change covers it with something to spare.
+        """
+        return (self.step or 0.0) * math.sqrt(tolerance / USUAL_TOLERANCE)
 
     def simulates(self, system: System) -> bool:
         """Return whether the engine promises to simulate ``system``."""
@@ -102,6 +164,45 @@ def _kind(system: System) -> str:
     return "ring" if system.contact_points is None else "points"
 
 
+def _ends(times: ArrayLike) -> tuple[float, float]:
+    times = np.asarray(times, dtype=float)
+    return float(times[0]), float(times[-1])
+
+
+@functools.lru_cache(maxsize=64)  # the same motion is asked for at two tolerances, one after the other
+def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
+    """Return whether the contact slips from ``start`` to ``end``, by the reference."""
+    import reference_model
+
+    phases = reference_model.simulate(system, initial_state, [start, end], tolerance=1e-6).phases
+    return all(phase.kind == "slip" for phase in phases)
+
+
+def _checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
+    """Return ``trajectory`` if it is one of ``system`` at ``times`` (n,); raise ``BadTrajectoryError`` otherwise."""
+    if not isinstance(trajectory, Trajectory):
+        raise TypeError(f"simulate() returned {reprlib.repr(trajectory)}: it must be a Trajectory")
+    asked, got = np.asarray(times, dtype=float), np.asarray(trajectory.times)
+    if got.shape != asked.shape:
+        raise BadTrajectoryError(
+            f"the trajectory's times have shape {got.shape}: {asked.shape} were asked for"
+        )
+    strange = ~(np.abs(got - asked) <= TIME_ROUNDING * np.max(np.abs(asked)))  # also true for NaN
+    if np.any(strange):
+        i = int(np.argmax(strange))
+        raise BadTrajectoryError(
+            f"the trajectory's times[{i}] = {float(got[i])!r} s: {float(asked[i])!r} s was asked for"
+        )
+    states, shape = np.asarray(trajectory.states), (len(asked), system.state_size)
+    if states.shape != shape:
+        raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: they must have {shape}")
+    broken = ~np.all(np.isfinite(states), axis=1)
+    if np.any(broken):
+        i = int(np.argmax(broken))
+        raise BadTrajectoryError(f"the state at t = {asked[i]:g} s is not finite: {states[i].tolist()}")
+    return trajectory
+
+
 _REGISTRY: dict[str, Engine] = {}
 
 
@@ -116,23 +217,42 @@ def register(engine: Engine) -> Engine:
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or all that are registered.
 
-    A name of the form "module:function" is imported (from the current folder too) and needs no registration.
+    A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
+    does one of the entry points "friction_discs.engines" of an installed package.
     Raises ``ValueError`` for a name that is unknown or can't be imported.
     """
-    chosen = tuple(
-        imported(name) if ":" in name else _REGISTRY[known("engine", name, _REGISTRY)] for name in names
-    )
-    return chosen or tuple(_REGISTRY.values())
+    return tuple(_named(name) for name in names) or tuple(_REGISTRY.values())
 
 
-def imported(name: str) -> Engine:
-    """Return the engine of "module:function", named so; raise ``ValueError`` if there is none.
+def _named(name: str) -> Engine:
+    if ":" in name:
+        return imported(name, name)
+    if name in _REGISTRY:
+        return _REGISTRY[name]
+    return imported(name, _installed()[known_name(name)])
 
-    It is taken for an engine of the pin only, unless the function has an attribute ``kinds`` that says more::
+
+def known_name(name: str) -> str:
+    """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
+    return name if ":" in name else known("engine", name, [*_REGISTRY, *_installed()])
+
+
+def _installed() -> dict[str, str]:
+    """Return "module:function" of the engines of installed packages, by name."""
+    return {point.name: point.value for point in entry_points(group=ENTRY_POINTS)}
+
+
+def imported(name: str, place: str) -> Engine:
+    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if there is none.
+
+    It is taken for an engine of the pin only, unless attributes of the function, named like the parameters of
+    ``Engine``, say something else::
 
         simulate.kinds = ("pin", "points", "ring")
+        simulate.sticks = False
+        simulate.step = 1e-3
     """
-    module_name, _, function_name = name.partition(":")
+    module_name, _, function_name = place.partition(":")
     if os.getcwd() not in sys.path:  # a console script does not look into the current folder
         sys.path.insert(0, os.getcwd())
     try:
@@ -142,11 +262,12 @@ def imported(name: str) -> Engine:
         raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
     if not callable(simulate):
         raise ValueError(f"engine {name!r} is no function")
-    kinds = getattr(simulate, "kinds", ("pin",))
+    declared = {key: getattr(simulate, key) for key in ("kinds", "sticks", "step") if hasattr(simulate, key)}
     try:
-        return Engine(name, simulate, tuple(kinds))
+        return Engine(name, simulate, **declared)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"engine {name!r}, attribute kinds = {kinds!r}: {error}") from None
+        attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
+        raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
 def known(kind: str, name: str, names: Iterable[str]) -> str:

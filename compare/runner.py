@@ -88,6 +88,7 @@ def run(
     *,
     folder: Path,
     jobs: int = 1,
+    limit: float | None = None,
     resume: bool = False,
     errata: tuple[Erratum, ...] = (),
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
@@ -101,7 +102,9 @@ def run(
     folder : Path
         Findings are written there as they come in.
     jobs : int
-        Number of processes; with 1 all happens in this one.
+        Number of processes; with 1, and no ``limit``, all happens in this one.
+    limit : float, optional
+        Seconds after which a measurement is given up, as its engine's failure.
     resume : bool
         Take from ``folder`` what was found by the same code.
     progress : callable
@@ -114,7 +117,7 @@ def run(
 
     """
     result = Run(studies, tuple(engine.name for engine in engines), errata)
-    with Workers(jobs) as workers:
+    with Workers(jobs, limit) as workers:
         try:
             _Runner(result, workers, Store(folder), progress).work({e.name: e for e in engines}, resume)
         except KeyboardInterrupt:
@@ -146,7 +149,7 @@ class _Runner:
             self._stamps[key] = stamp(study.measure, *simulate)
             found = self._store.find(*key, self._stamps[key]) if resume else None
             if found is None:
-                self._workers.submit(key, _measured, study, engine)
+                self._workers.submit(key, measured, study, engine)
             else:
                 result.outcomes[key], result.seconds[key] = found
         for study in result.studies:
@@ -184,7 +187,7 @@ class _Runner:
             self._workers.submit(("draw", name), drawn, study, self._result.data(study), first=True)
 
 
-def _measured(study: Study, engine: Engine | None) -> Findings:
+def measured(study: Study, engine: Engine | None) -> Findings:
     """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``."""
     findings: object = None
     if engine is not None:

@@ -109,7 +109,7 @@ def _code_of_the_packages() -> str:
     root = Path(__file__).resolve().parents[1]
     digest = hashlib.sha256()
     for package in PACKAGES:
-        for path in sorted((root / package).rglob("*.py")):
+        for path in sorted(path for kind in ("*.py", "*.json") for path in (root / package).rglob(kind)):
             digest.update(path.relative_to(root).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -120,6 +120,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
     return {
         "sentence": claim.sentence,
         "equation": claim.equation,
+        "kind": claim.kind,
         "engine": claim.engine,
         "unit": claim.unit,
         "predicted": numbers_as_json(claim.predicted),
@@ -140,6 +141,7 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
     return Claim(
         content["sentence"],
         equation=content["equation"],
+        kind=content["kind"],
         engine=content["engine"],
         predicted=numbers_from_json(content["predicted"]),
         measured=numbers_from_json(content["measured"]),

@@ -37,6 +37,15 @@ class Findings:
 
 
 @dataclass(frozen=True)
+class Table:
+    """Words and numbers in rows as long as ``header``, under a ``caption``."""
+
+    caption: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
 class Study:
     """One figure or group of statements.
 
@@ -69,6 +78,10 @@ class Study:
         while all claims of the study agree.
     seconds : float
         About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
+    tables : callable, optional
+        ``tables() -> (Table, ...)``: what the report shows besides claims and figures, none of it measured.
+    quick : bool
+        Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
 
     The callables are functions of a module (no lambdas), because they are sent to other processes.
 
@@ -86,3 +99,5 @@ class Study:
     section: str = ""
     finding: str = ""
     seconds: float = 1.0
+    tables: Callable[[], tuple[Table, ...]] | None = None
+    quick: bool = False

@@ -47,11 +47,13 @@ class Done:
 class Workers:
     """``jobs`` processes, or this very process for ``jobs=1``; use as a context manager.
 
-    Leaving the context ends the processes at once, whatever they do.
+    With a ``limit`` in s a piece of work that takes longer has failed, and one job has a process of its own too,
+    since only a process can be ended. Leaving the context ends the processes at once, whatever they do.
     """
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, limit: float | None = None) -> None:
         self._jobs = jobs
+        self._limit = limit
         self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
         self._processes: list[_Worker] = []
 
@@ -77,7 +79,7 @@ class Workers:
     def finished(self) -> Iterator[Done]:
         """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
         while self._queue or any(worker.key is not None for worker in self._processes):
-            if self._jobs == 1:
+            if self._jobs == 1 and self._limit is None:
                 key, function, arguments = self._queue.popleft()
                 yield Done(key, *_timed(function, arguments))
             else:
@@ -105,22 +107,37 @@ class Workers:
             worker.start(key, message)
 
     def _collect(self) -> Iterator[Done]:
+        """Wait for the first result, or for the first limit to be reached, and yield what is there by then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
-        for connection in wait(list(busy)) if busy else ():
-            worker = busy[connection]  # type: ignore[index]
-            done = worker.result()
+        left = None
+        if self._limit is not None and busy:
+            oldest = min(worker.started for worker in busy.values())
+            left = max(0.0, oldest + self._limit - time.monotonic())
+        ready = wait(list(busy), left) if busy else []
+        for connection, worker in busy.items():
+            if connection in ready:
+                done = worker.result()
+            elif self._limit is not None and time.monotonic() >= worker.started + self._limit:
+                done = Done(worker.key, Failure(f"not finished within {self._limit:g} s"), self._limit)
+                worker.end()
+            else:
+                continue
             if worker.dead:
                 self._processes.remove(worker)
             yield done
 
 
 class _Worker:
-    """One process and the connection to it; ``key`` is that of its present work, None while it is idle."""
+    """One process and the connection to it; ``key`` is that of its present work, None while it is idle.
+
+    ``started`` is when that work was given to it, in s of the monotonic clock.
+    """
 
     def __init__(self) -> None:
         context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
         self.connection, other_end = context.Pipe()
         self.key: Hashable | None = None
+        self.started = 0.0
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
         with interrupts_ignored(), _environment(ONE_THREAD):  # Ctrl-C is this process's to handle
@@ -128,7 +145,7 @@ class _Worker:
         other_end.close()
 
     def start(self, key: Hashable, message: bytes) -> None:
-        self.key = key
+        self.key, self.started = key, time.monotonic()
         with suppress(BrokenPipeError):  # its end shows in result()
             self.connection.send_bytes(message)
 
@@ -145,7 +162,8 @@ class _Worker:
         return Done(key, value, seconds)
 
     def end(self) -> None:
-        self._process.terminate()
+        self.dead = True
+        self._process.kill()  # compiled code may not listen to less
         self._process.join()
         self.connection.close()
 

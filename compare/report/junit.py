@@ -34,6 +34,7 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
     cell = row.cells[column]
     for claim in cell.claims:
         case = _case(suite, study, column, row.sentence)
+        ET.SubElement(ET.SubElement(case, "properties"), "property", name="kind", value=claim.kind)
         if state_of(claim) is State.DIFFERS:
             ET.SubElement(case, "failure", message=_message(claim))
         elif state_of(claim) is State.INCONCLUSIVE:

@@ -93,6 +93,11 @@ class Row:
         """All claims of the row, column by column."""
         return tuple(claim for cell in self.cells.values() for claim in cell.claims)
 
+    @property
+    def kind(self) -> str:
+        """What the prediction is taken from, "" where nobody made the claim."""
+        return self.claims[0].kind if self.claims else ""
+
 
 @dataclass(frozen=True)
 class Group:

@@ -52,29 +52,38 @@ class Exceptional:
 
 def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
     """Return the HTML of the report."""
-    environment = Environment(
+    return (
+        environment()
+        .get_template("index.html.j2")
+        .render(
+            run=run,
+            matrix=matrix,
+            stamp=stamp,
+            State=State,
+            summary=summary(matrix),
+            exceptions=_exceptions(matrix),
+            measurements=_measurements,
+            common=_common,
+            findings=[group.study for group in matrix.groups if group.study.finding and group.agrees],
+            pictures=lambda study: _pictures(run, study),
+            drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
+            commands=lambda study: _commands(run, study),
+            failed=lambda value: isinstance(value, Failure),
+        )
+    )
+
+
+def environment() -> Environment:
+    """Return what renders the templates."""
+    result = Environment(
         loader=PackageLoader("compare.report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=_number, value=_value, paragraphs=_paragraphs)
-    return environment.get_template("index.html.j2").render(
-        run=run,
-        matrix=matrix,
-        stamp=stamp,
-        State=State,
-        summary=summary(matrix),
-        exceptions=_exceptions(matrix),
-        measurements=_measurements,
-        common=_common,
-        findings=[group.study for group in matrix.groups if group.study.finding and group.agrees],
-        pictures=lambda study: _pictures(run, study),
-        drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
-        commands=lambda study: _commands(run, study),
-        failed=lambda value: isinstance(value, Failure),
-    )
+    result.filters.update(number=_number, value=_value, paragraphs=_paragraphs)
+    return result
 
 
 def summary(matrix: Matrix) -> str:

@@ -20,11 +20,13 @@ from compare.studies.fig06_branches import STUDY as FIG06
 from compare.studies.fig08_disc_spin import STUDY as FIG08
 from compare.studies.fig09_disc_branches import STUDY as FIG09
 from compare.studies.fig11_modulated_cycle import STUDY as FIG11
+from compare.studies.foreign_engines import STUDY as FOREIGN_ENGINES
 from compare.studies.free_ring import STUDY as FREE_RING
 from compare.studies.nonlinear_support import STUDY as NONLINEAR_SUPPORT
 from compare.studies.power_balance import STUDY as POWER_BALANCE
 from compare.studies.stability_map import STUDY as STABILITY_MAP
 from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
+from compare.studies.trajectories import STUDY as TRAJECTORIES
 from compare.studies.whirl_stability import STUDY as WHIRL_STABILITY
 from compare.study import Study
 
@@ -47,9 +49,11 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_LAUNCH,
     DRIVETRAIN_REDUCED,
     DRIVETRAIN_MOMENTUM,
+    TRAJECTORIES,
     POWER_BALANCE,
     CONNECTOR,
     ENGINE_CONVERGENCE,
+    FOREIGN_ENGINES,
 )
 
 

@@ -162,6 +162,7 @@ def _claim_of_two_discs(engine: Engine, contact: str, add_friction: Callable[...
     return Claim(
         f"{MOMENTA}: {contact}",
         equation="",
+        kind="conservation",
         engine=engine.name,
         predicted=total[0] / scale,
         measured=total[-1] / scale,

@@ -145,4 +145,5 @@ STUDY = Study(
         ),
     },
     seconds=2.0,
+    quick=True,
 )

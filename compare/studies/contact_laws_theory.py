@@ -238,6 +238,7 @@ def convergence() -> tuple[Claim, Claim]:
         return Claim(
             sentence,
             equation="",
+            kind="order",
             engine="theory",
             predicted=np.full(len(RESTING), float(order)),
             measured=exponents,
@@ -267,6 +268,7 @@ def thin() -> Claim:
     return Claim(
         THIN,
         equation="(20)",
+        kind="order",
         engine="theory",
         predicted=np.full(len(exponents), 2.0),
         measured=exponents,

@@ -143,6 +143,7 @@ def balance_claim(
     return Claim(
         sentence,
         equation="",
+        kind="conservation",
         engine=engine,
         predicted=0.0,
         measured=fine,

@@ -170,6 +170,7 @@ def claim_of_momentum(engine: Engine, car: Drivetrain) -> Claim:
     return Claim(
         MOMENTUM,
         equation="",
+        kind="conservation",
         engine=engine.name,
         predicted=car.engine_inertia * ENGINE_SPEED + impulse,
         measured=measured,
@@ -272,6 +273,7 @@ def claims_of_stick(engine: Engine, car: Drivetrain, epsilons: FloatArray, data:
         Claim(
             ORDER,
             equation="",
+            kind="order",
             engine=engine.name,
             predicted=1.0,
             measured=order,

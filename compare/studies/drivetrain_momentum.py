@@ -115,6 +115,7 @@ def _claim(engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]
     return Claim(
         SENTENCE.format(name),
         equation="",
+        kind="conservation",
         engine=engine.name,
         predicted=np.zeros(len(measured)),
         measured=measured,

@@ -169,6 +169,7 @@ def _claim(engine: Engine, name: str, case: Case, run: Run, data: Data) -> Claim
     return Claim(
         SENTENCE.format(name),
         equation="(19)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted[-1],
         measured=measured,
@@ -194,6 +195,7 @@ def _claim_of_order(engine: Engine, inertias: FloatArray, run: Run, data: Data) 
     return Claim(
         ORDER,
         equation="(19)",
+        kind="order",
         engine=engine.name,
         predicted=1.0,
         measured=order,

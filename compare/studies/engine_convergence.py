@@ -178,6 +178,7 @@ def claim_of_sliding(engine: Engine, scan: Scan) -> Part:
     claim = Claim(
         SLIDES,
         equation="(1), (10)",
+        kind="order",
         engine=engine.name,
         predicted=1.0,
         measured=exponent,
@@ -213,6 +214,7 @@ def claim_of_sticking(engine: Engine, scan: Scan) -> Part:
     claim = Claim(
         STICKS,
         equation="(6), (7)",
+        kind="order",
         engine=engine.name,
         predicted=1.0,
         measured=exponent,
@@ -238,6 +240,7 @@ def claims_of_steps(simulate_fixed_step: Simulate) -> Part:
             Claim(
                 STEPS.format(SUPERSCRIPTS[solver.order], solver.name),
                 equation="(1), (10)",
+                kind="order",
                 engine="exudyn",
                 predicted=solver.order,
                 measured=order,
@@ -296,6 +299,7 @@ def claims_of_regularisation(simulate_smoothed: Simulate) -> Part:
         Claim(
             FIRST_STICK,
             equation="(6)",
+            kind="order",
             engine="exudyn",
             predicted=2.0,
             measured=first_exponent,
@@ -308,6 +312,7 @@ def claims_of_regularisation(simulate_smoothed: Simulate) -> Part:
         Claim(
             LATER,
             equation="(6), (7)",
+            kind="order",
             engine="exudyn",
             predicted=np.ones(len(exponents) - 1),
             measured=exponents[:-1],
@@ -319,6 +324,7 @@ def claims_of_regularisation(simulate_smoothed: Simulate) -> Part:
         Claim(
             STATE,
             equation="(1), (6)",
+            kind="order",
             engine="exudyn",
             predicted=1.0,
             measured=exponents[-1],

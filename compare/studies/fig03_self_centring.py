@@ -135,7 +135,7 @@ def position_claims(
     predicted = np.array([equilibrium_position(with_load(load)) for load in loads])
     how = (
         f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s, "
-        f"for {at_each('μN', loads)} N. Error: the tolerance, the change at a larger one, and what is "
+        f"for {at_each('μN', loads)} N. Error: the tolerance, the change at a smaller one, and what is "
         f"left of the transient by its change in the last {DELAY:g} s."
     )
     x, y = positions.T

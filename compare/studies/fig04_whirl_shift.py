@@ -139,6 +139,7 @@ def _claims_of_orders(
     order_claim = Claim(
         f"{ORDER}, ω = {speed:g}",
         equation="(18)",
+        kind="order",
         engine=engine.name,
         predicted=3.0,
         measured=order,
@@ -250,4 +251,5 @@ STUDY = Study(
         "engines."
     },
     seconds=3.0,
+    quick=True,
 )

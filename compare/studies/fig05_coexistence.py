@@ -107,6 +107,7 @@ def _claim_slip_trajectory(engine: Engine) -> Claim:
     return Claim(
         SLIDES,
         equation="(1), (10)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted.ravel(),
         measured=measured,
@@ -157,6 +158,7 @@ def _claim_whirl(engine: Engine, run: Run) -> Claim:
     return Claim(
         WHIRLS,
         equation="(17)",
+        kind="trajectory",
         engine=engine.name,
         predicted=orbit.mean,
         measured=measured,
@@ -175,6 +177,7 @@ def _claim_first_stick(engine: Engine, run: Run, name: str) -> Claim:
     return Claim(
         FIRST_STICK.format(name),
         equation="(7), (10)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -230,6 +233,7 @@ def _claim_all_events(engine: Engine, run: Run, name: str) -> Claim:
     return Claim(
         ALL_STICKS.format(name),
         equation="(6), (7)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -260,6 +264,7 @@ def _claims_critical_velocity(engine: Engine) -> tuple[Claim, Claim]:
     root = Claim(
         CRITICAL,
         equation="",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -340,4 +345,5 @@ STUDY = Study(
     },
     animations=animate,
     seconds=6.0,
+    quick=True,
 )

@@ -180,6 +180,7 @@ def whirls_claim(engine: Engine, whirls: Mapping[float, Orbit]) -> Claim:
     return Claim(
         WHIRLS,
         equation="(17)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -205,6 +206,7 @@ def last_whirl_claim(engine: Engine) -> Claim:
     return Claim(
         LAST_WHIRL,
         equation="",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -287,6 +289,7 @@ def cycle_claim(engine: Engine) -> Claim:
     return Claim(
         CYCLE,
         equation="",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -309,6 +312,7 @@ def cycle_stability_claim(engine: Engine) -> Claim:
     return Claim(
         CYCLE_STABLE,
         equation="",
+        kind="trajectory",
         engine=engine.name,
         predicted=abs(orbit.multipliers[1]),
         measured=measured,

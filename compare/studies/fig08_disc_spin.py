@@ -125,7 +125,7 @@ def equilibrium_claims(
             unit="m, rad/s",
             note=f"x, y and spin for {at} N. Measured: the state that the engine itself brings back after a sixth of "
             "a turn, found from the place by (26). Predicted: balance of forces and moments. Error: the tolerance, "
-            "and the change at a larger one.",
+            "and the change at a smaller one.",
         ),
         Claim(
             CIRCLE,
@@ -148,6 +148,7 @@ def six_points_claim(engine: Engine, loads: Sequence[float], measured: FloatArra
     return Claim(
         SIX_POINTS,
         equation="(19)–(21)",
+        kind="trajectory",
         engine=engine.name,
         predicted=[_six_points_of_reference(load) for load in loads],
         measured=measured,

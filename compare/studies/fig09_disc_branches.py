@@ -206,6 +206,7 @@ def six_circle_claim(engine: Engine, measured: FloatArray, error: FloatArray) ->
     return Claim(
         SIX_CIRCLE,
         equation="(19)–(21)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -242,6 +243,7 @@ def order_claims(engine: Engine, measured: FloatArray, error: FloatArray) -> tup
             Claim(
                 sentence,
                 equation="(23)" if sentence == BY_23 else "(11)",
+                kind="order",
                 engine=engine.name,
                 predicted=orders,
                 measured=-observed,
@@ -304,6 +306,7 @@ def orbit_claim(engine: Engine, orbits: Sequence[tuple[float, int]]) -> Claim:
     return Claim(
         ORBIT,
         equation="(19), (20)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -339,6 +342,7 @@ def offset_claims(engine: Engine) -> tuple[Claim, Claim]:
             Claim(
                 sentence,
                 equation="(18)" if sentence == SHIFTED else "",
+                kind="order",
                 engine=engine.name,
                 predicted=np.full(len(observed), order),
                 measured=observed,
@@ -410,6 +414,7 @@ def six_rest_claim(engine: Engine, loads: Sequence[float], measured: FloatArray,
     return Claim(
         SIX_RESTS,
         equation="(19)–(21)",
+        kind="trajectory",
         engine=engine.name,
         predicted=[_six_rest_of_reference(load) for load in loads],
         measured=measured,
@@ -579,6 +584,7 @@ def six_release_claim(engine: Engine, loads: Sequence[float]) -> Claim:
     return Claim(
         SIX_LETS_GO,
         equation="(7)",
+        kind="trajectory",
         engine=engine.name,
         predicted=[_slipped_in_reference(load) for load in loads],
         measured=measured,

@@ -52,6 +52,7 @@ def trajectory_claim(engine: Engine, words: str, disc: DiscOnDisc) -> Claim:
     return Claim(
         TRAJECTORY.format(words),
         equation="(19)–(21)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,
@@ -110,6 +111,7 @@ def measure_cycle(engine: Engine) -> Findings:
         Claim(
             sentence,
             equation="(19)–(21)",
+            kind="trajectory",
             engine=engine.name,
             predicted=predicted[part],
             measured=measured[part],
@@ -168,6 +170,7 @@ def measure_six_points(engine: Engine) -> Findings:
         Claim(
             RESTS,
             equation="(19)–(21)",
+            kind="trajectory",
             engine=engine.name,
             predicted=predicted,
             measured=times,
@@ -180,6 +183,7 @@ def measure_six_points(engine: Engine) -> Findings:
         Claim(
             SIX_EXTREMES,
             equation="(19)–(21)",
+            kind="trajectory",
             engine=engine.name,
             predicted=extremes_of(_six_points_of_reference()),
             measured=values,
@@ -207,6 +211,7 @@ def shooting_claim() -> Claim:
     return Claim(
         SHOOTING,
         equation="(19)–(21)",
+        kind="trajectory",
         engine="theory",
         predicted=predicted,
         measured=measured,

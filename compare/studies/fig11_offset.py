@@ -141,6 +141,7 @@ def critical_claim(engine: Engine) -> Claim:
     return Claim(
         CRITICAL,
         equation="(19)–(21)",
+        kind="trajectory",
         engine=engine.name,
         predicted=predicted,
         measured=measured,

@@ -295,7 +295,7 @@ def ratio_one_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         parameters=parameters_of(TABLE),
         source=SOURCE + CITED,
         note=f"U/W when {REMAINING[0]:g} of the time to rest is left. {_described(throws)} Error: the tolerance of "
-        "both speeds, and the change at a larger one. Model error: what the approach to 1 leaves.",
+        "both speeds, and the change at a smaller one. Model error: what the approach to 1 leaves.",
     )
 
 
@@ -341,7 +341,7 @@ def approach_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         unit="s",
         note=f"A = t·(ln(8/|ln U/W|) − 2) at {at_each('A/t', NEARNESSES)}. {_described(throws)} Predicted by the "
         "integrals over the ratio. Error: the tolerance of both speeds, and the change at a "
-        "larger one. Model error: the change of the integrals if they end at the δ of the measurement.",
+        "smaller one. Model error: the change of the integrals if they end at the δ of the measurement.",
     )
 
 
@@ -502,6 +502,7 @@ def heat_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
     return Claim(
         HEAT,
         equation="(19), (20)",
+        kind="conservation",
         engine=engine.name,
         predicted=np.zeros(len(throws)),
         measured=measured[:, 0],

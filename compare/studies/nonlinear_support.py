@@ -194,6 +194,7 @@ def orbit_claim(engine: Engine) -> Claim:
     return Claim(
         ORBIT,
         equation="(17)",
+        kind="trajectory",
         engine=engine.name,
         predicted=[_period_and_extent(orbit) for orbit in exact],
         measured=measured,
@@ -235,6 +236,7 @@ def balance_claim(engine: Engine) -> Claim:
     return Claim(
         BALANCE,
         equation="",
+        kind="order",
         engine=engine.name,
         predicted=[2.0, 2.0],
         measured=exponents,
@@ -258,6 +260,7 @@ def sliding_claim(engine: Engine) -> Claim:
     return Claim(
         SLIDES,
         equation="(1)",
+        kind="trajectory",
         engine=engine.name,
         predicted=[simulate(pin, SLIDING_START, SLIDING_TIMES, tolerance=EXACT).states for pin in pins],
         measured=measured,
@@ -282,6 +285,7 @@ def sticking_claim(engine: Engine) -> Claim:
     return Claim(
         STICKS,
         equation="(6), (7)",
+        kind="trajectory",
         engine=engine.name,
         predicted=first_stick(Engine("reference", simulate), EXACT),
         measured=measured,

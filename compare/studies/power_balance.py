@@ -182,6 +182,7 @@ def balance_claim(
     return Claim(
         SENTENCE.format(name),
         equation="(1)" if isinstance(motion.system, PinOnDisc) else "(19)",
+        kind="conservation",
         engine=engine.name,
         predicted=0.0,
         measured=largest,
@@ -241,4 +242,5 @@ STUDY = Study(
         "engine leaves over, as a fraction of the energy turned over."
     },
     seconds=4.0,
+    quick=True,
 )

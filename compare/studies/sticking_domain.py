@@ -436,4 +436,5 @@ STUDY = Study(
         ),
     },
     seconds=2.0,
+    quick=True,
 )

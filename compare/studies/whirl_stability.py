@@ -502,4 +502,5 @@ STUDY = Study(
         ),
     },
     seconds=2.0,
+    quick=True,
 )

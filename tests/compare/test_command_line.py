@@ -21,7 +21,7 @@ from compare.paper import FIG5, FIG11
 
 def test_help_of_every_command_has_an_example(command, capsys):
     assert command("--help").returncode == 0
-    for name in ("list", "report", "simulate", "simulate pin", "simulate disc", "errata"):
+    for name in ("list", "report", "judge", "simulate", "simulate pin", "simulate disc", "errata"):
         assert cli.status([*name.split(), "--help"]) == 0
         assert f"friction-discs {name}" in capsys.readouterr().out
 

@@ -1,13 +1,25 @@
+import math
 import pickle
 import sys
 from dataclasses import replace
 
 import fake_studies
+import numpy as np
 import pytest
 
-from compare.engines import EVERY_KIND, Engine, UnsupportedSystemError, engines, known, register
+from compare.accuracy import refined
+from compare.engines import (
+    EVERY_KIND,
+    BadTrajectoryError,
+    Engine,
+    UnsupportedSystemError,
+    engines,
+    known,
+    register,
+)
 from compare.paper import FIG5, FIG11
 from compare.studies import studies
+from reference_model.trajectory import Solution, Trajectory
 
 
 def test_the_two_engines_of_the_project_are_registered():
@@ -38,7 +50,7 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function(tmp_path, monkeyp
     monkeypatch.setattr(sys, "path", list(sys.path))
     (engine,) = engines(["solver_of_mine:simulate"])
     assert engine.name == "solver_of_mine:simulate"
-    assert engine.simulate(FIG5, None, None) == 42
+    assert engine.function(FIG5, None, None) == 42
     assert engine.kinds == ("pin",)
 
 
@@ -118,6 +130,129 @@ def test_a_promise_of_what_there_is_not_is_refused(kinds, hint, tmp_path, monkey
     with pytest.raises(ValueError, match=r"^engine 'overpromising:simulate', attribute kinds = ") as error:
         engines(["overpromising:simulate"])
     assert hint in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("declaration", "sentence"),
+    [
+        ("sticks = 'no'", "sticks = 'no': it must be True or False"),
+        ("step = 0.0", "step = 0 s: it must be > 0"),
+        ("step = 'small'", "step = 'small': it must be a number"),
+    ],
+)
+def test_a_declaration_that_says_nothing_is_refused(declaration, sentence, tmp_path, monkeypatch):
+    (tmp_path / "declaring.py").write_text(f"def simulate(): pass\nsimulate.{declaration}\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "declaring", raising=False)
+    with pytest.raises(ValueError, match=r"^engine 'declaring:simulate', attribute ") as error:
+        engines(["declaring:simulate"])
+    assert sentence in str(error.value)
+
+
+def test_an_engine_of_an_installed_package_is_known_by_its_entry_point(tmp_path, monkeypatch):
+    package = tmp_path / "installed_solver-1.0.dist-info"
+    package.mkdir()
+    (package / "METADATA").write_text("Metadata-Version: 2.1\nName: installed-solver\nVersion: 1.0\n")
+    (package / "entry_points.txt").write_text(
+        "[friction_discs.engines]\nsolver = installed_solver:simulate\n"
+    )
+    (tmp_path / "installed_solver.py").write_text("def simulate(): pass\nsimulate.kinds = ['ring']\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    (engine,) = engines(["solver"])
+    assert (engine.name, engine.kinds) == ("solver", ("ring",))
+    assert "solver" not in [engine.name for engine in engines()]  # only where it is asked for
+    with pytest.raises(ValueError, match="did you mean 'solver'"):
+        engines(["sovler"])
+
+
+TIMES = np.linspace(0.0, 1.0, 5)
+
+
+def resting(system, state, times, **accuracy):
+    states = np.tile(np.asarray(state, dtype=float), (len(times), 1))
+    return Trajectory(system, np.array(times), states, (), Solution("none", 0.0, 0, 0, 0.0))
+
+
+def changed(**changes):
+    """Return an engine whose trajectory is right but for ``changes``."""
+    return Engine("mine", lambda *motion, **accuracy: replace(resting(*motion), **changes))
+
+
+BROKEN_STATES = np.zeros((5, 4))
+BROKEN_STATES[3, 2] = np.inf
+
+
+@pytest.mark.parametrize(
+    ("engine", "sentence"),
+    [
+        (changed(times=TIMES[:-1]), "the trajectory's times have shape (4,): (5,) were asked for"),
+        (changed(times=TIMES + 1e-9), "the trajectory's times[0] = 1e-09 s: 0.0 s was asked for"),
+        (changed(times=TIMES * np.nan), "the trajectory's times[0] = nan s: 0.0 s was asked for"),
+        (
+            changed(states=np.zeros((5, 6))),
+            "the trajectory's states have shape (5, 6): they must have (5, 4)",
+        ),
+        (changed(states=BROKEN_STATES), "the state at t = 0.75 s is not finite: [0.0, 0.0, inf, 0.0]"),
+    ],
+)
+def test_what_is_no_answer_is_refused_before_a_study_sees_it(engine, sentence):
+    with pytest.raises(BadTrajectoryError) as error:
+        engine.simulate(FIG5, [0.0] * 4, TIMES)
+    assert str(error.value) == sentence
+
+
+def test_what_is_no_trajectory_is_refused_before_a_study_sees_it():
+    engine = Engine("mine", lambda *_, **__: 42)
+    with pytest.raises(TypeError, match=r"^simulate\(\) returned 42: it must be a Trajectory$"):
+        engine.simulate(FIG5, [0.0] * 4, TIMES)
+
+
+def test_times_that_were_added_up_in_another_order_are_those_asked_for():
+    added_up = np.cumsum(np.full(1000, 0.1)) - 0.1
+    asked = 0.1 * np.arange(1000)
+    assert not np.array_equal(added_up, asked)
+    changed(times=added_up, states=np.zeros((1000, 4))).simulate(FIG5, [0.0] * 4, asked)
+
+
+def test_an_engine_that_only_slides_is_asked_for_no_motion_that_sticks():
+    engine = Engine("mine", resting, sticks=False)
+    centre = FIG5.stiffness * FIG5.offset / (FIG5.stiffness - FIG5.mass * FIG5.disc_speed**2)
+    turning = [centre, 0.0, 0.0, centre * FIG5.disc_speed]  # in the midst of the sticking domain
+    with pytest.raises(UnsupportedSystemError, match=r"^mine does not simulate stick$"):
+        engine.simulate(FIG5, turning, TIMES)
+    whirling = [0.9, 0.0, 0.0, 0.9]
+    assert engine.simulate(FIG5, whirling, TIMES).times is not None
+    assert replace(engine, sticks=True).simulate(FIG5, turning, TIMES).times is not None
+
+
+def test_a_fixed_step_takes_the_place_of_the_tolerance_and_goes_with_its_root():
+    taken = []
+
+    def simulate(*motion, step):
+        taken.append(step)
+        return resting(*motion)
+
+    engine = Engine("mine", simulate, step=1e-2)
+    for tolerance in (1e-9, 1e-11, 1e-7):
+        engine.simulate(FIG5, [0.0] * 4, TIMES, tolerance=tolerance)
+    assert taken == pytest.approx([1e-2, 1e-3, 1e-1])
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_the_estimate_covers_the_error_of_a_fixed_step_from_first_order_on(order):
+    def simulate(system, state, times, *, step):
+        steps = math.ceil(1.0 / step)
+        end = sum((1j / steps) ** k / math.factorial(k) for k in range(order + 1)) ** steps  # of ż = iz
+        states = np.array([[1.0, 0.0, 0.0, 0.0], [end.real, end.imag, 0.0, 0.0]])
+        return Trajectory(system, np.array(times), states, (), Solution("Taylor", 0.0, 0, 0, 0.0))
+
+    engine = Engine("mine", simulate, step=0.01)
+    end, estimate = refined(
+        lambda tol: engine.simulate(FIG5, [1.0, 0, 0, 0], [0.0, 1.0], tolerance=tol).at_end
+    )
+    error = np.linalg.norm(end[:2] - [math.cos(1.0), math.sin(1.0)])
+    assert error <= np.linalg.norm(estimate)
 
 
 def test_studies_come_in_report_order_whatever_the_order_of_their_names():

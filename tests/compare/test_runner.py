@@ -43,6 +43,18 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(jobs, tmp_pat
             )
 
 
+def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
+    monkeypatch.setenv("RUNNING", str(tmp_path / "running"))
+    limit = 6.0  # long enough for a process to start on a busy machine
+    start = time.monotonic()
+    result = run((fake.UNENDING, fake.AGREEMENT), (fake.ALSO_GOOD,), folder=tmp_path, limit=limit)
+    assert limit <= time.monotonic() - start < 30.0  # the study itself takes a minute
+    assert result.outcomes["unending", "also-good"] == Failure("not finished within 6 s")
+    assert result.seconds["unending", "also-good"] == limit
+    assert isinstance(result.outcomes["agreement", "also-good"], Findings)
+    assert multiprocessing.active_children() == []
+
+
 def test_one_and_two_processes_find_and_draw_the_same(tmp_path):
     one, two = (run((fake.VERDICTS,), BOTH, folder=tmp_path / str(jobs), jobs=jobs) for jobs in (1, 2))
     drawing = one.drawings["verdicts"]

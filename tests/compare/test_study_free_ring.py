@@ -47,9 +47,12 @@ def uncoupled(system, state, times, *, tolerance=1e-9):
     times = np.asarray(times)
     position, velocity = state[:2], state[3:5]
     speed, spin = np.hypot(*velocity), state[5]
-    stops = (
-        system.mass * speed / system.friction_force,
-        system.polar_inertia * abs(spin) / (system.friction_force * system.contact_radius),
+    stops = np.maximum(
+        (
+            system.mass * speed / system.friction_force,
+            system.polar_inertia * abs(spin) / (system.friction_force * system.contact_radius),
+        ),
+        1e-300,  # what does not move stops at once
     )
     left = [np.maximum(1.0 - times / stop, 0.0)[:, np.newaxis] for stop in stops]
     ways = [0.5 * stop * (1.0 - share**2) for stop, share in zip(stops, left, strict=True)]

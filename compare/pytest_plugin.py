@@ -1,0 +1,285 @@
+"""``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
+
+Each study is a file, and each sentence that it claims a test, known from ``claims.json`` without measuring. The
+first test of a study that runs measures all of it, in a process of its own that a time limit ends. A test fails
+where the claim differs or the engine has no answer. What the engine never promised is "not attempted", and what
+its errors leave open "inconclusive": neither is a pass.
+
+Without ``compare`` among its arguments pytest does not notice this plugin: its options do not even exist.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import pytest
+
+if TYPE_CHECKING:
+    from compare.claim import Claim
+    from compare.study import Findings, Study
+    from compare.workers import Failure
+
+STUDIES = Path(__file__).with_name("studies")
+
+INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
+
+NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
+"""What a test without a verdict is called in pytest's totals, and its sign among the dots."""
+
+PROPERTY = "friction-discs"
+
+
+# Options of these names may well be another's: they are there only for a run that asks for this package.
+def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> None:
+    """Add the options to a run of ``compare``."""
+    if not any("compare" in argument for argument in args):
+        return
+    group = parser.getgroup(PROPERTY, "friction-discs: judge an engine with pytest --pyargs compare")
+    group.addoption(
+        "--engine",
+        dest="friction_discs_engines",
+        action="append",
+        default=[],
+        metavar="MODULE:FUNCTION",
+        help="engine to judge, or the name of an installed one; several times for several",
+    )
+    group.addoption(
+        "--level",
+        dest="friction_discs_level",
+        choices=("quick", "full"),
+        default="full",
+        help="all studies, or those that take seconds (default: full)",
+    )
+    group.addoption(
+        "--study-limit",
+        dest="friction_discs_limit",
+        type=float,
+        default=120.0,
+        metavar="SECONDS",
+        help="time after which a study of an engine is given up (default: 120)",
+    )
+
+
+def _engines(config: pytest.Config) -> list[str]:
+    names: list[str] = config.getoption("friction_discs_engines", [])
+    return list(dict.fromkeys(names))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Refuse an engine that is not known, and a limit that is none."""
+    if not _engines(config):
+        return
+    from compare.engines import known_name
+
+    limit = config.getoption("friction_discs_limit")
+    if not 0.0 < limit < float("inf"):
+        raise pytest.UsageError(f"--study-limit {limit:g}: it must be > 0 s")
+    try:
+        for name in _engines(config):
+            known_name(name)
+    except ValueError as error:
+        raise pytest.UsageError(str(error)) from None
+    config.stash[_BENCH] = Bench(limit)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """End the process that measures."""
+    if _BENCH in config.stash:
+        config.stash[_BENCH].close()
+
+
+def pytest_report_header(config: pytest.Config) -> str | None:
+    """Say what is judged, or how to say it."""
+    names = config.getoption("friction_discs_engines", None)
+    if names is None:
+        return None
+    return f"friction-discs: {', '.join(names) or 'no engine, name one with --engine MODULE:FUNCTION'}"
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
+    """Take the modules of the studies, where an engine is to be judged."""
+    if file_path.parent != STUDIES or file_path.suffix != ".py" or not _engines(parent.config):
+        return None
+    from compare.studies import STUDIES as ALL
+
+    quick = parent.config.getoption("friction_discs_level") == "quick"
+    module = f"compare.studies.{file_path.stem}"
+    found = (study for study in ALL if study.measure.__module__ == module and (study.quick or not quick))
+    study = next(found, None)
+    return None if study is None else StudyFile.of(parent, file_path, study)
+
+
+class StudyFile(pytest.File):
+    """A study: the claims that it makes of each engine that it is about."""
+
+    study: Study
+
+    @classmethod
+    def of(cls, parent: pytest.Collector, path: Path, study: Study) -> StudyFile:
+        """Return the collector of ``study``."""
+        file: StudyFile = cls.from_parent(parent, path=path)
+        file.study = study
+        return file
+
+    def collect(self) -> Iterator[ClaimTest]:
+        """Yield a test for each sentence and engine."""
+        from compare.claim_list import sentences
+
+        names = [name for name in _engines(self.config) if not self.study.only or name in self.study.only]
+        for name in names:
+            for sentence in sentences()[self.study.name]:
+                yield ClaimTest.of(self, name, sentence, alone=len(_engines(self.config)) == 1)
+
+
+class ClaimTest(pytest.Item):
+    """One claim of a study about one engine."""
+
+    study: Study
+    engine: str
+    sentence: str
+
+    @classmethod
+    def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
+        """Return the test of ``sentence``; its name is the sentence, and the engine's unless it is ``alone``."""
+        test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
+        test.study, test.engine, test.sentence = parent.study, engine, sentence
+        return test
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Return where the claim is made, and its name."""
+        return self.path, None, f"{self.study.name}: {self.name}"
+
+    def runtest(self) -> None:
+        """Pass if all claims of this sentence agree."""
+        from compare.claim import Verdict
+        from compare.workers import Failure
+
+        outcome = self.config.stash[_BENCH].outcome(self.study, self.engine)
+        if isinstance(outcome, Failure):
+            pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
+        claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
+        if not claims and self.study.only:
+            self._without_verdict(NOT_ATTEMPTED, f"of {self.engine} the study does not claim it")
+        elif not claims and outcome.not_simulated:
+            self._without_verdict(NOT_ATTEMPTED, outcome.not_simulated)
+        elif not claims:
+            pytest.fail("what the engine did gave no ground to measure this", pytrace=False)
+        verdicts = {claim.verdict: claim for claim in claims}
+        if Verdict.DIFFERS in verdicts:
+            pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS]), pytrace=False)
+        if Verdict.INCONCLUSIVE in verdicts:
+            self._without_verdict(INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE]))
+
+    def _without_verdict(self, why: str, reason: str) -> NoReturn:
+        self.user_properties.append((PROPERTY, why))
+        pytest.skip(reason)
+
+
+class Bench:
+    """Measures each study with each engine once, when its first claim is asked for."""
+
+    def __init__(self, limit: float) -> None:
+        from compare.workers import Workers
+
+        self._workers = Workers(1, limit)
+        self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
+
+    def outcome(self, study: Study, engine: str) -> Findings | Failure:
+        """Return what ``study`` finds about the engine of that name, or why it finds nothing."""
+        key = (study.name, engine)
+        if key not in self._outcomes:
+            self._workers.submit(key, _measured, study, engine)
+            for done in self._workers.finished():
+                self._outcomes[key] = done.value
+        return self._outcomes[key]
+
+    def close(self) -> None:
+        """End the process that measures."""
+        self._workers.__exit__(None, None, None)
+
+
+_BENCH = pytest.StashKey[Bench]()
+
+
+def _measured(study: Study, name: str) -> Findings:
+    """Return what ``study`` finds; the engine is imported here, in a process that may hang or crash.
+
+    Raises ``RuntimeError`` for a claim that no test would show.
+    """
+    from compare.claim_list import sentences
+    from compare.engines import engines
+    from compare.runner import measured
+
+    findings = measured(study, engines([name])[0])
+    if unlisted := {claim.sentence for claim in findings.claims} - set(sentences()[study.name]):
+        raise RuntimeError(
+            f"claims.json is out of date, see compare/claim_list.py; it lacks {sorted(unlisted)}"
+        )
+    return findings
+
+
+def _account(study: Study, claim: Claim) -> str:
+    """Return a claim with the numbers that decide, and all that is needed to repeat it."""
+    from compare.claim import Verdict
+    from compare.report.numbers import error_text, value_text
+    from compare.report.worst import worst
+
+    element = worst(claim)
+    unit = f" {claim.unit}" if claim.unit else ""
+    allowed = f"{error_text(element.total)}{unit}"
+    differs = claim.verdict is Verdict.DIFFERS
+    lines = {
+        "claim": f"{claim.sentence} {claim.equation}".rstrip(),
+        "predicted": f"{value_text(element.predicted, element.difference)}{unit}",
+        "measured": f"{value_text(element.measured, element.difference)}{unit}",
+        "difference": f"{error_text(element.difference)}{unit}",
+        "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, as the engine's own change says) "
+        f"+ {error_text(element.model)} (model)",
+        "resolution": f"{error_text(claim.budget.resolution)}{unit}: a larger budget shows nothing",
+        "element": f"{element.index + 1} of {element.count}" if element.count > 1 else "",
+        "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
+        "source": claim.source,
+        "note": claim.note,
+        "again": f"friction-discs report {study.name} --engine {claim.engine}",
+    }
+    first = (
+        f"differs by {error_text(element.difference)}{unit}, allowed are {allowed}"
+        if differs
+        else f"an error budget of {allowed} leaves it open"
+    )
+    return "\n".join([first, *(f"  {name:12}  {text}" for name, text in lines.items() if text)])
+
+
+def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] | None:
+    """Count claims without a verdict as what they are."""
+    why = _why_none(report)
+    return (why, NO_VERDICT[why], why.upper()) if why else None
+
+
+def _why_none(report: pytest.TestReport) -> str:
+    """Return why a test has no verdict, "" for one that has, or that is another's."""
+    if report.when != "call" or not report.skipped:
+        return ""
+    return next((str(value) for name, value in report.user_properties if name == PROPERTY), "")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say why claims have no verdict, each reason once."""
+    for why in NO_VERDICT:
+        reports = terminalreporter.stats.get(why, [])
+        reasons = Counter(report.longrepr[2].removeprefix("Skipped: ").splitlines()[0] for report in reports)
+        for reason, count in reasons.items():
+            terminalreporter.write_line(f"{why}: {reason} ({count} claim{'s' if count > 1 else ''})")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Keep the claims of a study in one process, since they are measured together."""
+    if not _engines(config) or config.getoption("dist") != "load":
+        return None
+    from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]
+
+    return LoadFileScheduling(config, log)

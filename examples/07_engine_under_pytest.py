@@ -1,0 +1,39 @@
+"""Euler's method fails, Runge and Kutta's passes: pytest --pyargs compare --engine 07_engine_under_pytest:euler."""
+
+from functools import partial
+
+import numpy as np
+
+from reference_model import Phase, Solution, Trajectory
+
+
+def euler(pin, initial_state, times, *, tolerance=1e-9, step=1e-3, advance=lambda f, y, h: y + h * f(y)):
+    """Integrate eq. 1 with a fixed step, which ``tolerance`` does not change: so no error can be seen."""
+
+    def eq1(y):
+        (z, v), X0 = y.tolist(), pin.offset
+        w, d = v - 1j * pin.disc_speed * z, max(abs(z - X0), 1e-99)  # slip, deflection
+        spring = pin.stiffness + pin.hardening * d**2 + pin.stop_stiffness * max(0.0, 1.0 - pin.stop_gap / d)
+        force = -spring * (z - X0) - pin.damping * v - pin.friction_force * w / abs(w)
+        return np.array([v, force / pin.mass])
+
+    states = [np.array(initial_state, dtype=float)]
+    for span in np.diff(times):
+        y, steps = states[-1][::2] + 1j * states[-1][1::2], int(np.ceil(span / step))
+        for _ in range(steps):
+            y = advance(eq1, y, span / steps)
+        states.append(y.view(float))
+    phases = (Phase("slip", times[0], times[-1], states[0]),)
+    return Trajectory(pin, np.array(times), np.array(states), phases, Solution("Euler", tolerance, 0, 0, 0.0))
+
+
+def fourth_order(f, y, h):  # noqa: D103
+    k1 = f(y)
+    k2 = f(y + h / 2 * k1)
+    k3 = f(y + h / 2 * k2)
+    return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + f(y + h * k3))
+
+
+runge_kutta = partial(euler, advance=fourth_order)
+runge_kutta.step = 0.01  # s
+euler.sticks = runge_kutta.sticks = False

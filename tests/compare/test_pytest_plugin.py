@@ -1,0 +1,212 @@
+"""The plugin as a stranger meets it: pytest in a folder of its own, on the installed package."""
+
+import os
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+
+import pytest
+from processes import ROOT
+
+from compare.claim_list import sentences
+from compare.runner import THEORY
+from compare.studies import STUDIES
+
+ENGINES = """
+import os, time
+from dataclasses import replace
+import numpy as np
+import reference_model
+from reference_model import Phase, Solution, Trajectory
+
+def resting(system, state, times, *, tolerance=1e-9):
+    "Nothing ever moves."
+    states = np.tile(np.asarray(state, dtype=float), (len(times), 1))
+    phases = (Phase("slip", times[0], times[-1], states[0]),)
+    return Trajectory(system, np.array(times), states, phases, Solution("none", tolerance, 0, 0, 0.0))
+
+def not_a_number(system, state, times, *, tolerance=1e-9):
+    trajectory = resting(system, state, times)
+    states = trajectory.states.copy()
+    states[-1, 0] = np.nan
+    return replace(trajectory, states=states)
+
+def raising(*arguments, **options):
+    raise ZeroDivisionError("float division by zero")
+
+def dying(*arguments, **options):
+    os._exit(3)
+
+def hanging(*arguments, **options):
+    time.sleep(1000.0)
+
+def sliding(*arguments, tolerance=1e-9):
+    return reference_model.simulate(*arguments, tolerance=tolerance)
+sliding.sticks = False
+"""
+
+CLAIMS = sentences()
+
+
+def run(folder, *arguments):
+    """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--junit-xml=out.xml", *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=120,
+    )
+    cases = {}
+    if (folder / "out.xml").exists():
+        for case in ET.parse(folder / "out.xml").iter("testcase"):
+            verdict = next((child for child in case if child.tag in ("failure", "error", "skipped")), None)
+            text = "" if verdict is None else f"{verdict.get('message')} {verdict.text}"
+            cases[case.get("name")] = ("passed" if verdict is None else verdict.tag, text)
+    return done.returncode, done.stdout + done.stderr, cases
+
+
+def judge(folder, study, *names, options=()):
+    (folder / "mine.py").write_text(ENGINES)
+    chosen = [argument for name in names for argument in ("--engine", name)]
+    return run(folder, "--pyargs", f"compare.studies.{study}", *chosen, *options)
+
+
+def test_the_list_of_claims_names_every_study():
+    assert set(CLAIMS) == {study.name for study in STUDIES if study.only != (THEORY,)}
+    for name, listed in CLAIMS.items():
+        assert listed, name
+        assert len(set(listed)) == len(listed), name
+
+
+FAILING = {
+    "mine:not_a_number": "s is not finite: [nan, ",
+    "mine:raising": "ZeroDivisionError: float division by zero",
+    "mine:dying": "its process came to a sudden end (exit status 3)",
+    "mine:missing": "engine 'mine:missing' can't be imported: module 'mine' has no attribute 'missing'",
+    "no_such_module:simulate": "can't be imported: No module named 'no_such_module'",
+}
+
+
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory):
+    names = ("reference", "mine:resting", *FAILING)
+    return judge(tmp_path_factory.mktemp("judged"), "sticking_domain", *names)
+
+
+def test_every_claim_is_a_test_of_every_engine(judged):
+    status, _, cases = judged
+    assert status == 1
+    engines = ("reference", "mine:resting", *FAILING)
+    assert set(cases) == {f"{claim} [{engine}]" for claim in CLAIMS["sticking-domain"] for engine in engines}
+
+
+def test_a_right_engine_passes_beside_those_that_fail(judged):
+    _, _, cases = judged
+    assert {cases[f"{claim} [reference]"][0] for claim in CLAIMS["sticking-domain"]} == {"passed"}
+
+
+def test_a_failed_claim_shows_its_error_budget_and_how_to_repeat_it(judged):
+    _, output, cases = judged
+    tag, text = cases["The largest radius at which a stuck pin does not slip is (9) [mine:resting]"]
+    assert tag == "failure"
+    for part in (
+        "differs by ",
+        ", allowed are ",
+        "predicted ",
+        "measured ",
+        "(numerical, as the engine's own change says) + 0 (model)",
+        "friction-discs report sticking-domain --engine mine:resting",
+    ):
+        assert part in text, part
+    assert "Traceback" not in output
+
+
+@pytest.mark.parametrize("engine", FAILING)
+def test_an_engine_without_an_answer_fails_with_the_reason(engine, judged):
+    _, _, cases = judged
+    for claim in CLAIMS["sticking-domain"]:
+        tag, text = cases[f"{claim} [{engine}]"]
+        assert tag == "failure"
+        assert "no result: " in text
+        assert FAILING[engine] in text
+
+
+def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path):
+    status, _, cases = judge(tmp_path, "sticking_domain", "mine:hanging", options=("--study-limit", "1"))
+    assert status == 1
+    assert set(cases) == set(CLAIMS["sticking-domain"])  # one engine alone needs no name
+    for tag, text in cases.values():
+        assert tag == "failure"
+        assert "no result: not finished within 1 s" in text
+
+
+def test_an_engine_is_judged_on_what_it_promises_on_several_cores_too(tmp_path):
+    status, output, cases = judge(tmp_path, "trajectories", "mine:sliding", options=("-n", "2"))
+    assert status == 0
+    assert set(cases) == set(CLAIMS["trajectories"])
+    for claim, (tag, _) in cases.items():
+        promised = claim.split(": ")[1].startswith("a pin") and "sticks" not in claim
+        assert tag == ("passed" if promised else "skipped"), claim
+    assert "not attempted: mine:sliding does not simulate a disc on a continuous ring" in output
+    skipped = sum(tag == "skipped" for tag, _ in cases.values())
+    assert f"{len(cases) - skipped} passed, {skipped} not attempted in" in output
+
+
+HONEST = """
+from functools import partial
+from example import euler
+honest = partial(euler)
+honest.sticks, honest.step = False, 1e-3
+"""
+
+
+def test_the_example_fails_where_it_ignores_its_error_is_open_where_it_is_rough_and_passes_mended(tmp_path):
+    shutil.copy(ROOT / "examples" / "07_engine_under_pytest.py", tmp_path / "example.py")
+    (tmp_path / "rough.py").write_text(HONEST)
+    verdicts = {"example:euler": "failure", "rough:honest": "skipped", "example:runge_kutta": "passed"}
+    _, output, cases = judge(tmp_path, "trajectories", *verdicts)
+    attempted = 0
+    for claim in CLAIMS["trajectories"]:
+        if claim.split(": ")[1].startswith("a pin") and "sticks" not in claim:
+            attempted += 1
+            assert {name: cases[f"{claim} [{name}]"][0] for name in verdicts} == verdicts, claim
+    assert f" {attempted} inconclusive in " in output
+    assert "inconclusive: an error budget of " in output
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
+        (("--engine", "exudyn", "--study-limit", "0"), "--study-limit 0: it must be > 0 s"),
+    ],
+)
+def test_what_cannot_be_judged_is_refused_at_once(options, sentence, tmp_path):
+    status, output, _ = run(tmp_path, "--pyargs", "compare", *options)
+    assert status == pytest.ExitCode.USAGE_ERROR
+    assert sentence in output
+
+
+def test_without_an_engine_there_are_no_tests_and_the_header_says_so(tmp_path):
+    status, output, _ = run(tmp_path, "--pyargs", "compare")
+    assert status == pytest.ExitCode.NO_TESTS_COLLECTED
+    assert "name one with --engine MODULE:FUNCTION" in output
+
+
+def test_the_tests_of_others_do_not_notice_the_plugin(tmp_path):
+    (tmp_path / "conftest.py").write_text(
+        "def pytest_addoption(parser):\n    parser.addoption('--engine')\n    parser.addoption('--level')\n"
+    )
+    (tmp_path / "test_of_others.py").write_text(
+        "import sys\n\ndef test(pytestconfig):\n"
+        "    assert pytestconfig.getoption('engine') == 'diesel'\n"
+        "    assert pytestconfig.pluginmanager.has_plugin('friction_discs')\n"
+        "    assert not {'numpy', 'compare.engines'} & set(sys.modules)\n"
+    )
+    status, output, _ = run(tmp_path, "--engine", "diesel", "-p", "no:hypothesispytest")
+    assert status == 0, output
+    assert "1 passed" in output
