@@ -389,7 +389,6 @@ def _simulate(
     from compare.engines import UnsupportedSystemError, engines
     from compare.export import write_csv, writer
     from reference_model.systems import checked_state, checked_tolerance, finite_number
-    from reference_model.trajectory import Trajectory
 
     with refused():
         (chosen,) = engines([engine])
@@ -404,8 +403,6 @@ def _simulate(
             _check_file(output)
     try:
         trajectory = chosen.simulate(system, state, times, tolerance=accuracy)
-        if not isinstance(trajectory, Trajectory):
-            raise TypeError(f"simulate() returned {trajectory!r}: it must be a Trajectory")
     except Exception as error:  # whatever an engine raises
         raise EngineFailedError(_failed(chosen.name, error)) from error
     if output is None:
