@@ -19,25 +19,14 @@ step. There is no continuous ring of contact.
 
 from __future__ import annotations
 
-from functools import partial
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import pybullet
-from common import (
-    Model,
-    contact_arms,
-    inertia_of,
-    mobility,
-    our_friction,
-    promising_pins_and_points,
-    simulate,
-)
-from numpy.typing import ArrayLike
+from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
 from reference_model.systems import DiscOnDisc, FloatArray, System
-from reference_model.trajectory import Trajectory
 
 ITERATIONS = 50
 """Of the solver, its default. With ten, discs that stick on six points differ by less than 0.1 % of their error."""
@@ -46,50 +35,12 @@ MOST_FEET = 100
 """A body of PyBullet has at most 128 links."""
 
 
-def simulate_with_cone(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with Bullet's contact, by steps of order 1."""
-    return _simulate(system, initial_state, times, tolerance, "cone")
-
-
-def simulate_with_box(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with ``enableConeFriction`` off; it converges to the motion with friction for each axis."""
-    return _simulate(system, initial_state, times, tolerance, "box")
-
-
-def simulate_with_our_force(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with −μN·v/max(|v|, ε) in place of contact, set before each step: of order 1.
-
-    ε is what friction changes of the slip in a step.
-    """
-    return _simulate(system, initial_state, times, tolerance, "our force")
-
-
-SETTINGS = promising_pins_and_points(
-    {
-        "cone": simulate_with_cone,
-        "box": simulate_with_box,
-        "our force": simulate_with_our_force,
-    }
-)
-
-
-def _simulate(
-    system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float, friction: str
-) -> Trajectory:
-    build = partial(_World, friction)
-    return simulate("Bullet", build, system, initial_state, times, tolerance, linear=False)
-
-
 class _World(Model):
     """Bullet with one body in it, and with a plate unless friction is our force."""
 
-    def __init__(self, friction: str, system: System, state: FloatArray, _: float) -> None:
+    engine = "Bullet"
+
+    def __init__(self, system: System, state: FloatArray, _: float, friction: str) -> None:
         self.system, self.state = system, state
         self.arms = contact_arms("Bullet", system, MOST_FEET)
         self.method = f"PyBullet {version('pybullet')}, semi-implicit Euler, {friction}"
@@ -196,3 +147,24 @@ class _World(Model):
             friction = our_friction(system, self.arms, state, self.epsilon)
             forces = [a + b for a, b in zip(forces, friction, strict=True)]
         return forces
+
+
+simulate_with_cone = Setting(
+    "cone", "with Bullet's contact, by steps of order 1.", _World, {"friction": "cone"}, linear=False
+)
+simulate_with_box = Setting(
+    "box",
+    "with enableConeFriction off; it converges to the motion with friction for each axis.",
+    _World,
+    {"friction": "box"},
+    linear=False,
+)
+simulate_with_our_force = Setting(
+    "our force",
+    "with −μN·v/max(|v|, ε) in place of contact, set before each step: of order 1. ε is what friction changes of "
+    "the slip in a step.",
+    _World,
+    {"friction": "our force"},
+    linear=False,
+)
+SETTINGS = (simulate_with_cone, simulate_with_box, simulate_with_our_force)

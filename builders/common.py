@@ -5,7 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,20 +23,23 @@ from reference_model.systems import (
 )
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
-Simulate = Callable[..., Trajectory]
-
 
 class Model:
-    """The bodies in an engine, in a state that moves on.
+    """The bodies in an ``engine``, in a state that moves on; made of a system, a state and a tolerance.
 
     ``method`` names integrator and contact, ``epsilon`` is the slip speed in m/s that smooths the friction law,
     ``steps`` and ``evaluations`` have been taken so far.
     """
 
+    engine = ""
     method = ""
     epsilon = 0.0
     steps = 0
     evaluations = 0
+
+    def __init__(self, system: System, state: FloatArray, tolerance: float) -> None:
+        """Build it."""
+        raise NotImplementedError
 
     def advance(self, h: float, number: int) -> FloatArray:
         """Take ``number`` steps of ``h`` s, and return the state."""
@@ -45,50 +49,69 @@ class Model:
         """Give back what the engine holds."""
 
 
-def simulate(
-    engine: str,
-    build: Callable[[System, FloatArray, float], Model],
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    tolerance: float,
-    *,
-    finest: float = 0.0,
-    linear: bool = True,
-) -> Trajectory:
-    """Return the motion by the model that ``build`` makes of system, state and tolerance.
+@dataclass(frozen=True)
+class Setting:
+    """One setting of an engine, which is called as any engine's ``simulate`` is.
 
     Steps are as long as 0.1·tolerance^(1/3) over the larger of k and ω, so that errors of first order fall by half
     where they are estimated, but not below ``finest`` over that, and divide each interval of ``times``.
-    ``linear`` is for an engine that has no other springs.
+
+    Parameters
+    ----------
+    name, says : str
+        What it is called, and how it is set.
+    model : type
+        What is built of system, state and tolerance.
+    options : mapping
+        What else its constructor takes.
+    finest : float
+        The least step in units of 1/max(k, ω).
+    linear : bool
+        Whether the engine has no other springs.
+    kinds : tuple of str
+        What it promises to simulate, as in ``compare.engines.KINDS``.
+
     """
-    state, grid = checked_state(system, initial_state), checked_times(times)
-    tolerance = checked_tolerance(tolerance)
-    if linear and not system.linear_support:
-        raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
-    longest = max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), finest) / rate(system)
-    states = [state]
-    began = time.perf_counter()
-    model = build(system, state, tolerance)
-    try:
-        for i, interval in enumerate(np.diff(grid).tolist(), 1):
-            number = math.ceil(interval / longest * (1.0 - 1e-9))
-            states.append(model.advance(interval / number, number))
-            if not np.all(np.isfinite(states[-1])):
-                raise SimulationError(f"{engine} diverged before t = {grid[i]:g} s: try a smaller tolerance")
-    finally:
-        model.close()
-    wall = time.perf_counter() - began
-    solution = Solution(model.method, tolerance, model.evaluations, model.steps, wall, model.epsilon)
-    phases = (Phase("slip", float(grid[0]), float(grid[-1]), state),)
-    return Trajectory(system, grid, np.array(states), phases, solution)
 
+    name: str
+    says: str
+    model: type[Model]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    finest: float = 0.0
+    linear: bool = True
+    kinds: tuple[str, ...] = ("pin", "points")
 
-def promising_pins_and_points(settings: dict[str, Simulate]) -> dict[str, Simulate]:
-    """Return ``settings``, functions by the name of a setting, each with what it promises to simulate."""
-    for function in settings.values():
-        function.kinds = ("pin", "points")  # type: ignore[attr-defined]
-    return settings
+    @property
+    def __wrapped__(self) -> type[Model]:
+        """Where the code is that findings depend on."""
+        return self.model
+
+    def __call__(
+        self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+    ) -> Trajectory:
+        """Return the motion."""
+        state, grid = checked_state(system, initial_state), checked_times(times)
+        tolerance, engine = checked_tolerance(tolerance), self.model.engine
+        if self.linear and not system.linear_support:
+            raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
+        longest = max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
+        states = [state]
+        began = time.perf_counter()
+        model = self.model(system, state, tolerance, **self.options)
+        try:
+            for i, interval in enumerate(np.diff(grid).tolist(), 1):
+                number = math.ceil(interval / longest * (1.0 - 1e-9))
+                states.append(model.advance(interval / number, number))
+                if not np.all(np.isfinite(states[-1])):
+                    raise SimulationError(
+                        f"{engine} diverged before t = {grid[i]:g} s: try a smaller tolerance"
+                    )
+        finally:
+            model.close()
+        wall = time.perf_counter() - began
+        solution = Solution(model.method, tolerance, model.evaluations, model.steps, wall, model.epsilon)
+        phases = (Phase("slip", float(grid[0]), float(grid[-1]), state),)
+        return Trajectory(system, grid, np.array(states), phases, solution)
 
 
 def contact_arms(engine: str, system: System, most: float = math.inf) -> list[complex]:

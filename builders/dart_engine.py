@@ -20,24 +20,13 @@ What DART leaves to choose, and why so:
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import Any
 
 import dartpy
 import numpy as np
-from common import (
-    Model,
-    contact_arms,
-    inertia_of,
-    mobility,
-    our_friction,
-    promising_pins_and_points,
-    simulate,
-)
-from numpy.typing import ArrayLike
+from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
 from reference_model.systems import DiscOnDisc, FloatArray, System
-from reference_model.trajectory import Trajectory
 
 SOLVER_TOLERANCE = 1e-10
 
@@ -48,66 +37,12 @@ PLATE = 1e4
 """Half its width in m."""
 
 
-def simulate_nsgs(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the cone, by nonsmooth Gauss–Seidel."""
-    return _simulate(system, initial_state, times, tolerance, "nsgs")
-
-
-def simulate_fbf(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the cone, by forward-backward-forward splitting."""
-    return _simulate(system, initial_state, times, tolerance, "fbf")
-
-
-def simulate_dantzig(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with a box in place of the cone, by pivoting: DART's default."""
-    return _simulate(system, initial_state, times, tolerance, "dantzig")
-
-
-def simulate_pgs(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with a box in place of the cone, by projected Gauss–Seidel."""
-    return _simulate(system, initial_state, times, tolerance, "pgs")
-
-
-def simulate_with_our_force(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with −μN·v/max(|v|, ε) in place of contact, at the start of each step.
-
-    ε is what friction changes of the slip in a step: with half of it the steps would not be stable.
-    """
-    return _simulate(system, initial_state, times, tolerance)
-
-
-SETTINGS = promising_pins_and_points(
-    {
-        "NSGS": simulate_nsgs,
-        "FBF": simulate_fbf,
-        "Dantzig": simulate_dantzig,
-        "PGS": simulate_pgs,
-        "our force": simulate_with_our_force,
-    }
-)
-
-
-def _simulate(
-    system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float, solver: str = ""
-) -> Trajectory:
-    build = partial(_Model, solver)
-    return simulate("DART", build, system, initial_state, times, tolerance)
-
-
 class _Model(Model):
     """A world with native contact by ``solver``, or with our force if there is none."""
 
-    def __init__(self, solver: str, system: System, state: FloatArray, _: float) -> None:
+    engine = "DART"
+
+    def __init__(self, system: System, state: FloatArray, _: float, solver: str = "") -> None:
         self.system, self.native, self.half = system, bool(solver), len(state) // 2
         self.arms = contact_arms("DART", system)
         self.world, self.joint = _world(system, self.arms, solver)
@@ -146,19 +81,15 @@ def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
     world.setDeactivationOptions(asleep)
     world.setCollisionDetector(dartpy.simulation.CollisionDetectorType.DART)
     _choose(solver, world.getConstraintSolver())
-    inertia = inertia_of(system)
-    n = len(arms)
-    foot = (
-        SHARE * min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else math.inf) / n if solver else 0.0
-    )
-    spin = SHARE * inertia / n if solver else 0.0
+    inertia, n, share = inertia_of(system), len(arms), SHARE if solver else 0.0
+    foot = share * min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else math.inf) / n
+    spin = share * inertia / n
     world.setGravity([0.0, 0.0, -system.friction_force / n / (foot or 1.0)])
 
     pieces = dynamics.Skeleton("disc")
     joint, body = pieces.createPlanarJointAndBodyNodePair(None, dynamics.PlanarJointProperties())
-    body.setInertia(
-        _inertia(system.mass - n * foot, inertia - sum(foot * abs(arm) ** 2 + spin for arm in arms))
-    )
+    inertia -= sum(foot * abs(arm) ** 2 + spin for arm in arms)
+    body.setInertia(_inertia(system.mass - n * foot, inertia))
     body.setGravityMode(False)
     shaft = system.shaft_damping if isinstance(system, DiscOnDisc) else 0.0
     for i, damping in enumerate((system.damping, system.damping, shaft)):
@@ -170,9 +101,8 @@ def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
             guide, pad = pieces.createPrismaticJointAndBodyNodePair(body, vertical)
             guide.setTransformFromParentBodyNode(_shift(arm.real, arm.imag, 0.0))
             pad.setInertia(_inertia(foot, spin))
-            _touching(
-                pad, dynamics.SphereShape(1.0), 1.0 - 1e-9
-            )  # a little below, for contact from the start
+            # A little below, for contact from the start.
+            _touching(pad, dynamics.SphereShape(1.0), 1.0 - 1e-9)
         plate, axis = dynamics.Skeleton("plate"), dynamics.RevoluteJointProperties()
         axis.mAxis = [0.0, 0.0, 1.0]
         master, body = plate.createRevoluteJointAndBodyNodePair(None, axis)
@@ -216,3 +146,22 @@ def _touching(body: Any, shape: Any, height: float) -> None:
     surface = node.createDynamicsAspect()
     surface.setFrictionCoeff(1.0)
     surface.setRestitutionCoeff(0.0)
+
+
+simulate_nsgs = Setting("NSGS", "with the cone, by nonsmooth Gauss–Seidel.", _Model, {"solver": "nsgs"})
+simulate_fbf = Setting(
+    "FBF", "with the cone, by forward-backward-forward splitting.", _Model, {"solver": "fbf"}
+)
+simulate_dantzig = Setting(
+    "Dantzig", "with a box in place of the cone, by pivoting: DART's default.", _Model, {"solver": "dantzig"}
+)
+simulate_pgs = Setting(
+    "PGS", "with a box in place of the cone, by projected Gauss–Seidel.", _Model, {"solver": "pgs"}
+)
+simulate_with_our_force = Setting(
+    "our force",
+    "with −μN·v/max(|v|, ε) in place of contact, at the start of each step. ε is what friction changes of the slip "
+    "in a step: with half of it the steps would not be stable.",
+    _Model,
+)
+SETTINGS = (simulate_nsgs, simulate_fbf, simulate_dantzig, simulate_pgs, simulate_with_our_force)

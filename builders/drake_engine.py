@@ -21,12 +21,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
-from common import Model, contact_arms, inertia_of, our_friction, promising_pins_and_points, rate, simulate
-from numpy.typing import ArrayLike
+from common import Model, Setting, contact_arms, inertia_of, our_friction, rate
 from pydrake.geometry import AddContactMaterial, Box, ProximityProperties, Sphere
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
@@ -43,7 +41,7 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
 from reference_model.systems import DiscOnDisc, FloatArray, System
-from reference_model.trajectory import SimulationError, Trajectory
+from reference_model.trajectory import SimulationError
 
 DEPTH = 1e3
 """In m, of the spheres in the plate. SAP lets sliding bodies rise by μ·h times the slip, with μ = 1: by far less."""
@@ -56,88 +54,28 @@ PLATE = 1e5
 
 
 @dataclass(frozen=True)
-class _Setting:
-    """A discrete ``solver`` with its finest step in 1/rate, or an ``integrator``; a heavy master or a driven one."""
+class _Scheme:
+    """A discrete ``solver`` or an ``integrator``, with a heavy master or a ``driven`` one."""
 
     solver: str = ""
     integrator: str = ""
-    finest: float = 0.0
     driven: bool = False
     our_force: bool = False
-
-
-def simulate_tamsi(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with TAMSI, by steps of order 1. Drake is about to give it up."""
-    return _simulate(_Setting("tamsi"), system, initial_state, times, tolerance)
-
-
-def simulate_sap(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with SAP, by steps of order 1; no better below a tolerance of 1e-5."""
-    return _simulate(_Setting("sap", finest=2e-3, driven=True), system, initial_state, times, tolerance)
-
-
-def simulate_lagged(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with Drake's default, by steps of order 1; no better below a tolerance of 1e-5.
-
-    "similar" differs from it by how normal forces change, which ours do not, and gives the same.
-    """
-    return _simulate(_Setting("lagged", finest=2e-3, driven=True), system, initial_state, times, tolerance)
-
-
-def simulate_cenic(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the convex solver under error control: its error falls like √tolerance, unevenly."""
-    return _simulate(_Setting(integrator="cenic", driven=True), system, initial_state, times, tolerance)
-
-
-def simulate_runge_kutta(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with contact as a force, by explicit steps of order 5, in stick of the length ε·m/μN."""
-    return _simulate(_Setting(integrator="runge_kutta5"), system, initial_state, times, tolerance)
-
-
-def simulate_with_our_force(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5."""
-    return _simulate(
-        _Setting(integrator="runge_kutta5", our_force=True), system, initial_state, times, tolerance
-    )
-
-
-SETTINGS = promising_pins_and_points(
-    {
-        "TAMSI": simulate_tamsi,
-        "SAP": simulate_sap,
-        "lagged": simulate_lagged,
-        "cenic": simulate_cenic,
-        "Runge–Kutta 5": simulate_runge_kutta,
-        "our force": simulate_with_our_force,
-    }
-)
 
 
 class _Plant:
     """The bodies with a simulator, for one length of step in s (0: chosen by the integrator)."""
 
-    def __init__(self, system: System, setting: _Setting, step: float, tolerance: float) -> None:
+    def __init__(self, system: System, scheme: _Scheme, step: float, tolerance: float) -> None:
         self.system, self.step, builder = system, step, DiagramBuilder()
         inertia, fastest = inertia_of(system), rate(system)
         self.epsilon = 1e-3 * fastest * step if step else 1e-2 * math.sqrt(tolerance)
-        if setting.solver == "sap":
+        if scheme.solver == "sap":
             self.epsilon = 5e-4 * step * system.friction_force / system.mass
         config = MultibodyPlantConfig(time_step=step, contact_model="point", use_sampled_output_ports=False)
         config.stiction_tolerance = self.epsilon or 1.0
         if step:
-            config.discrete_contact_approximation, config.sap_near_rigid_threshold = setting.solver, 0.0
+            config.discrete_contact_approximation, config.sap_near_rigid_threshold = scheme.solver, 0.0
         self.plant, _ = AddMultibodyPlant(config, builder)
         self.plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
         shaft, shaft_speed = 0.0, 0.0
@@ -146,17 +84,17 @@ class _Plant:
         unit, none = UnitInertia(*np.full(3, inertia / system.mass)), np.zeros(3)
         world = self.plant.world_frame()
         body = self.plant.AddRigidBody("disc", SpatialInertia(system.mass, none, unit))
-        master_mass = system.mass * ((1e-2 if step else 1.0) if setting.driven else 1e12)
+        master_mass = system.mass * ((1e-2 if step else 1.0) if scheme.driven else 1e12)
         master = self.plant.AddRigidBody("master", SpatialInertia(master_mass, none, unit))
         damping = (system.damping, system.damping, shaft)
         self.joint = self.plant.AddJoint(PlanarJoint("disc", world, body.body_frame(), damping))
-        drive = 1e6 * inertia * fastest if setting.driven and not step else 0.0
+        drive = 1e6 * inertia * fastest if scheme.driven and not step else 0.0
         axle = RevoluteJoint("master", world, master.body_frame(), (0.0, 0.0, 1.0), drive)
         self.master = self.plant.AddJoint(axle)
         rest = self.plant.AddFrame(FixedOffsetFrame("rest", world, RigidTransform([system.offset, 0.0, 0.0])))
         spring = (none, none, np.full(3, system.stiffness), none)
         self.plant.AddForceElement(LinearBushingRollPitchYaw(rest, body.body_frame(), *spring))
-        if not setting.our_force and system.friction_force > 0.0:
+        if not scheme.our_force and system.friction_force > 0.0:
             material, arms = ProximityProperties(), contact_arms("Drake", system)
             in_series = 2.0 * system.friction_force / len(arms) / DEPTH
             AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
@@ -166,7 +104,7 @@ class _Plant:
             for i, arm in enumerate(arms):
                 place = RigidTransform([arm.real, arm.imag, RADIUS - DEPTH])
                 self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
-        if setting.driven and step:
+        if scheme.driven and step:
             motor = self.plant.AddJointActuator("motor", self.master)
             motor.set_controller_gains(PdControllerGains(p=0.0, d=1e9 * inertia * fastest))
         self.plant.Finalize()
@@ -174,19 +112,23 @@ class _Plant:
         steady[self.joint.velocity_start() + 2] = shaft * shaft_speed
         steady[self.master.velocity_start()] = drive * system.disc_speed
         forces = self.plant.get_applied_generalized_force_input_port()
-        if setting.our_force:
+        if scheme.our_force:
             friction = builder.AddSystem(_OurFriction(self, steady))
             builder.Connect(self.plant.get_state_output_port(), friction.get_input_port())
             builder.Connect(friction.get_output_port(), forces)
         self.simulator = Simulator(builder.Build())
-        if setting.integrator:
-            scheme = {"integration_scheme": setting.integrator, "accuracy": max(0.1 * tolerance, 1e-13)}
-            ApplySimulatorConfig(SimulatorConfig(max_step_size=1.0 / fastest, **scheme), self.simulator)
+        if scheme.integrator:
+            how = SimulatorConfig(
+                integration_scheme=scheme.integrator,
+                accuracy=max(0.1 * tolerance, 1e-13),
+                max_step_size=1.0 / fastest,
+            )
+            ApplySimulatorConfig(how, self.simulator)
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
-        if setting.driven and step:
+        if scheme.driven and step:
             speed = self.plant.get_desired_state_input_port(motor.model_instance())
             speed.FixValue(self.context, [0.0, system.disc_speed])
-        if not setting.our_force:
+        if not scheme.our_force:
             forces.FixValue(self.context, steady)
 
     def start(self, state: FloatArray) -> None:
@@ -234,18 +176,20 @@ class _OurFriction(LeafSystem):  # type: ignore[misc]
 class _Motion(Model):
     """Goes on in a plant of its own for each length of step, which Drake fixes when a plant is built."""
 
-    def __init__(self, setting: _Setting, system: System, state: FloatArray, tolerance: float) -> None:
+    engine = "Drake"
+
+    def __init__(self, system: System, state: FloatArray, tolerance: float, scheme: _Scheme) -> None:
         contact_arms("Drake", system)  # refuses a ring
-        self.setting, self.system, self.state, self.tolerance = setting, system, state, tolerance
+        self.scheme, self.system, self.state, self.tolerance = scheme, system, state, tolerance
         self.plants: dict[float, _Plant] = {}
         self.plant: Any = None
-        force = ", our force" if setting.our_force else ""
-        self.method = f"Drake {setting.solver or setting.integrator}{force}"
+        force = ", our force" if scheme.our_force else ""
+        self.method = f"Drake {scheme.solver or scheme.integrator}{force}"
 
     def advance(self, h: float, number: int) -> FloatArray:
-        step = float(f"{h:.9g}") if self.setting.solver else 0.0
+        step = float(f"{h:.9g}") if self.scheme.solver else 0.0
         if step not in self.plants:
-            self.plants[step] = _Plant(self.system, self.setting, step, self.tolerance)
+            self.plants[step] = _Plant(self.system, self.scheme, step, self.tolerance)
         if self.plant is not self.plants[step]:
             self.plant = self.plants[step]
             self.plant.start(self.state)
@@ -255,15 +199,57 @@ class _Motion(Model):
         except RuntimeError as error:
             raise SimulationError(f"Drake gave up: {error}") from error
         self.steps, self.evaluations = self.steps + number, self.evaluations + number
-        if self.setting.integrator:
+        if self.scheme.integrator:
             integrator = self.plant.simulator.get_integrator()
             self.steps = integrator.get_num_steps_taken()
             self.evaluations = integrator.get_num_derivative_evaluations() or self.steps
         return self.state
 
 
-def _simulate(
-    setting: _Setting, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
-) -> Trajectory:
-    build = partial(_Motion, setting)
-    return simulate("Drake", build, system, initial_state, times, tolerance, finest=setting.finest)
+simulate_tamsi = Setting(
+    "TAMSI",
+    "with TAMSI, by steps of order 1. Drake is about to give it up.",
+    _Motion,
+    {"scheme": _Scheme("tamsi")},
+)
+simulate_sap = Setting(
+    "SAP",
+    "with SAP, by steps of order 1; no better below a tolerance of 1e-5.",
+    _Motion,
+    {"scheme": _Scheme("sap", driven=True)},
+    finest=2e-3,
+)
+simulate_lagged = Setting(
+    "lagged",
+    'with Drake\'s default, by steps of order 1; no better below a tolerance of 1e-5. "similar" differs from it by '
+    "how normal forces change, which ours do not, and gives the same.",
+    _Motion,
+    {"scheme": _Scheme("lagged", driven=True)},
+    finest=2e-3,
+)
+simulate_cenic = Setting(
+    "cenic",
+    "with the convex solver under error control: its error falls like √tolerance, unevenly.",
+    _Motion,
+    {"scheme": _Scheme(integrator="cenic", driven=True)},
+)
+simulate_runge_kutta = Setting(
+    "Runge–Kutta 5",
+    "with contact as a force, by explicit steps of order 5, in stick of the length ε·m/μN.",
+    _Motion,
+    {"scheme": _Scheme(integrator="runge_kutta5")},
+)
+simulate_with_our_force = Setting(
+    "our force",
+    "with −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
+    _Motion,
+    {"scheme": _Scheme(integrator="runge_kutta5", our_force=True)},
+)
+SETTINGS = (
+    simulate_tamsi,
+    simulate_sap,
+    simulate_lagged,
+    simulate_cenic,
+    simulate_runge_kutta,
+    simulate_with_our_force,
+)

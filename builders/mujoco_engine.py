@@ -15,32 +15,22 @@ What MuJoCo leaves to choose, and why so:
 - The solver's own tolerance is relative to all inertia and would be met at once with the heavy plate: it is 0, and
   iterations are bounded. A pyramid takes more of them, with many points far more than an ellipse.
 
-What it can't do: a pyramid's friction acts along the nearest axis of the world, up to 45° off, at any step. A pin
-that sticks creeps in proportion to the step, and there is no continuous ring of contact.
+What it can't do: a pyramid's friction acts along the nearest axis of the world, up to 45° off, at any step. With
+that and with Runge–Kutta steps a pin that sticks creeps in proportion to the step, with the ellipse to its square.
+There is no continuous ring of contact.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import Any
 
 import mujoco
 import numpy as np
-from common import (
-    Model,
-    contact_arms,
-    inertia_of,
-    mobility,
-    our_friction,
-    promising_pins_and_points,
-    simulate,
-)
-from numpy.typing import ArrayLike
+from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
 from reference_model.systems import DiscOnDisc, FloatArray, System
-from reference_model.trajectory import Trajectory
 
 FRICTION_COEFFICIENT = 1e-5
 """μ: the least that MuJoCo takes."""
@@ -49,73 +39,18 @@ SIZE = 1e6
 """Of feet and plate in m: more than a foot sinks or rises. It acts on nothing in the plane."""
 
 
-def simulate_elliptic(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the elliptic cone, by semi-implicit Euler steps: of order 1, slipping and sticking."""
-    return _simulate(
-        system, initial_state, times, tolerance, "Euler", cone="elliptic", friction_rate=2.0, iterations=10
-    )
-
-
-def simulate_elliptic_rk4(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the elliptic cone, by Runge–Kutta steps with b = 1e4/h, Coulomb's law but in stick.
-
-    There the friction force jumps from side to side between steps, and the error is of order 1.
-    """
-    return _simulate(
-        system, initial_state, times, tolerance, "RK4", cone="elliptic", friction_rate=1e4, iterations=10
-    )
-
-
-def simulate_pyramidal(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with the pyramidal cone, MuJoCo's default; it converges to that of friction along an axis."""
-    return _simulate(
-        system, initial_state, times, tolerance, "Euler", cone="pyramidal", friction_rate=1.0, iterations=100
-    )
-
-
-def simulate_with_our_force(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the motion with −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps.
-
-    ε is half of what friction changes of the slip in a step: they would be unstable in stick with 0.7 times that.
-    """
-    return _simulate(system, initial_state, times, tolerance, "RK4")
-
-
-SETTINGS = promising_pins_and_points(
-    {
-        "elliptic cone": simulate_elliptic,
-        "elliptic cone, RK4": simulate_elliptic_rk4,
-        "pyramidal cone": simulate_pyramidal,
-        "our force": simulate_with_our_force,
-    }
-)
-
-
-def _simulate(
-    system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float, *how: Any, **contact: Any
-) -> Trajectory:
-    build = partial(_Model, *how, **contact)
-    return simulate("MuJoCo", build, system, initial_state, times, tolerance)
-
-
 class _Model(Model):
     """MuJoCo with contact, b·h = ``friction_rate``, or with our force if there is no ``cone``."""
 
+    engine = "MuJoCo"
+
     def __init__(
         self,
-        integrator: str,
         system: System,
         state: FloatArray,
         _: float,
         *,
+        integrator: str = "Euler",
         cone: str = "",
         friction_rate: float = 0.0,
         iterations: int = 0,
@@ -123,9 +58,8 @@ class _Model(Model):
         self.system, self.cone, self.friction_rate, self.half = system, cone, friction_rate, len(state) // 2
         self.arms = contact_arms("MuJoCo", system)
         self.stages = 4 if integrator == "RK4" else 1
-        self.method = f"MuJoCo {mujoco.__version__}, {integrator}, " + (
-            f"{cone} cone" if cone else "our force"
-        )
+        friction = f"{cone} cone" if cone else "our force"
+        self.method = f"MuJoCo {mujoco.__version__}, {integrator}, {friction}"
         option = f'integrator="{integrator}"' + (f' cone="{cone}" iterations="{iterations}"' if cone else "")
         self.model = mujoco.MjModel.from_xml_string(_xml(system, self.arms, option, native=bool(cone)))
         self.data = mujoco.MjData(self.model)
@@ -203,3 +137,33 @@ def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
         yield
     finally:
         mujoco.set_mjcb_passive(before)
+
+
+simulate_elliptic = Setting(
+    "elliptic cone",
+    "with the elliptic cone, by semi-implicit Euler steps: of order 1 where contact slides, of order 2 where it "
+    "sticks.",
+    _Model,
+    {"cone": "elliptic", "friction_rate": 2.0, "iterations": 10},
+)
+simulate_elliptic_rk4 = Setting(
+    "elliptic cone, RK4",
+    "with the elliptic cone, by Runge–Kutta steps with b = 1e4/h, Coulomb's law but in stick. There the friction "
+    "force jumps from side to side between steps, and the error is of order 1.",
+    _Model,
+    {"integrator": "RK4", "cone": "elliptic", "friction_rate": 1e4, "iterations": 10},
+)
+simulate_pyramidal = Setting(
+    "pyramidal cone",
+    "with the pyramidal cone, MuJoCo's default; it converges to that of friction along an axis.",
+    _Model,
+    {"cone": "pyramidal", "friction_rate": 1.0, "iterations": 100},
+)
+simulate_with_our_force = Setting(
+    "our force",
+    "with −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half of what friction changes of the "
+    "slip in a step: they would be unstable in stick with 0.7 times that.",
+    _Model,
+    {"integrator": "RK4"},
+)
+SETTINGS = (simulate_elliptic, simulate_elliptic_rk4, simulate_pyramidal, simulate_with_our_force)

@@ -1,7 +1,7 @@
 """Measure foreign engines, and our own beside them, and write ``compare/foreign/<engine>.json`` for the report.
 
     pip install --editable '.[engines]'
-    python builders/record.py                 # all engines: five minutes on an idle machine
+    python builders/record.py                 # all engines: five minutes of one core
     python builders/record.py mujoco bullet   # or some of them
 
 Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import inspect
 import json
 import platform
 import re
@@ -65,10 +64,10 @@ Simulate = Callable[..., Trajectory]
 
 
 def settings_of(name: str) -> dict[str, Simulate]:
-    """Return the functions that simulate with each setting of an engine; raise ``ImportError`` without it."""
+    """Return what simulates with each setting of an engine, by its name; raise ``ImportError`` without it."""
     if name in FOREIGN:
-        settings: dict[str, Simulate] = importlib.import_module(f"{name}_engine").SETTINGS
-        return settings
+        settings = importlib.import_module(f"{name}_engine").SETTINGS
+        return {setting.name: setting for setting in settings}
     (engine,) = compare.engines.engines([name])
     return {"": engine.simulate}
 
@@ -111,9 +110,8 @@ def record(name: str) -> dict[str, Any]:
     settings = []
     for setting, simulate in settings_of(name).items():
         print(f"{name}: {setting}", flush=True)
-        says = " ".join((inspect.getdoc(simulate) or "").replace("``", "").split()) if setting else ""
         runs = {key: ladder(simulate, case) for key, case in CASES.items()}
-        settings.append({"name": setting, "says": says.removeprefix("Return the motion "), "runs": runs})
+        settings.append({"name": setting, "says": getattr(simulate, "says", ""), "runs": runs})
     return {
         "engine": FOREIGN.get(name, name),
         "version": version(PACKAGES[name]),

@@ -46,6 +46,28 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Recorded:
+    """What was found of one setting of an engine when that was recorded: no part of a run.
+
+    Parameters
+    ----------
+    engine, setting : str
+        "" for the setting of an engine that has one only.
+    version, date : str
+        Of the engine, and when it was recorded.
+    claims : tuple of Claim
+        A finding about that engine, whatever the verdict.
+
+    """
+
+    engine: str
+    setting: str
+    version: str
+    date: str
+    claims: tuple[Claim, ...]
+
+
+@dataclass(frozen=True)
 class Study:
     """One figure or group of statements.
 
@@ -80,6 +102,9 @@ class Study:
         About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
     tables : callable, optional
         ``tables() -> (Table, ...)``: what the report shows besides claims and figures, none of it measured.
+    recorded : callable, optional
+        ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart. All make the same
+        claims, in the same order.
     quick : bool
         Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
 
@@ -100,4 +125,5 @@ class Study:
     finding: str = ""
     seconds: float = 1.0
     tables: Callable[[], tuple[Table, ...]] | None = None
+    recorded: Callable[[], tuple[Recorded, ...]] | None = None
     quick: bool = False

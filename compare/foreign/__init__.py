@@ -75,6 +75,4 @@ def recordings() -> tuple[Recording, ...]:
         for setting in file["settings"]:
             runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
             found.append(Recording(**about, setting=setting["name"], says=setting["says"], runs=runs))
-    return tuple(
-        sorted(found, key=lambda recording: (recording.setting != "", recording.engine != "reference"))
-    )
+    return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))

@@ -11,7 +11,7 @@ import numpy as np
 from compare.claim import Claim, Verdict
 from compare.report.numbers import error_text
 from compare.runner import THEORY, Run
-from compare.study import Findings, Study
+from compare.study import Findings, Recorded, Study
 from compare.workers import Failure
 
 
@@ -72,12 +72,20 @@ class Cell:
 
     @property
     def within(self) -> str:
-        """The largest error that can have hidden in an agreement, with its unit; "" for a yes or no."""
-        if self.state is not State.AGREES:
+        """The largest error that can have hidden where nothing differs, with its unit; "" for a yes or no."""
+        if self.state not in (State.AGREES, State.INCONCLUSIVE):
             return ""
         claim = max(self.claims, key=lambda claim: float(np.max(claim.budget.total)))
         error = float(np.max(claim.budget.total))
         return f"{error_text(error)} {claim.unit}".rstrip() if error > 0.0 else ""
+
+    @property
+    def off(self) -> str:
+        """By how much it differs, with its unit; "" where it does not."""
+        if self.state is not State.DIFFERS:
+            return ""
+        claim = max(self.claims, key=lambda claim: float(np.max(claim.difference)))
+        return f"{error_text(float(np.max(claim.difference)))} {claim.unit}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -128,11 +136,45 @@ class Group:
 
 
 @dataclass(frozen=True)
+class RecordedMatrix:
+    """What recorded engines make of one study's claims, a row for each of ``settings``."""
+
+    study: Study
+    settings: tuple[Recorded, ...]
+
+    @property
+    def by_engine(self) -> dict[str, list[Recorded]]:
+        """The settings of each engine."""
+        found: dict[str, list[Recorded]] = {}
+        for setting in self.settings:
+            found.setdefault(setting.engine, []).append(setting)
+        return found
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """The claims that all make, as the first one makes them."""
+        return self.settings[0].claims
+
+    def cells(self, setting: Recorded) -> tuple[Cell, ...]:
+        """Return the cells of a row, in the order of ``claims``."""
+        return tuple(_cell([claim]) for claim in setting.claims)
+
+    @property
+    def totals(self) -> Counter[State]:
+        """How many cells are in each state."""
+        return Counter(cell.state for setting in self.settings for cell in self.cells(setting))
+
+
+@dataclass(frozen=True)
 class Matrix:
-    """All groups; ``columns`` are "theory", where any study has claims of it, and the engines."""
+    """All groups; ``columns`` are "theory", where any study has claims of it, and the engines.
+
+    What was ``recorded`` is apart: it is found about the engines of others, and no verdict on this run.
+    """
 
     columns: tuple[str, ...]
     groups: tuple[Group, ...]
+    recorded: tuple[RecordedMatrix, ...] = ()
 
     def count(self, column: str) -> Counter[State]:
         """Return how many cells of the column are in each state."""
@@ -152,7 +194,12 @@ def matrix(run: Run) -> Matrix:
     """Return the matrix of a run, also of an incomplete one."""
     groups = tuple(_group(run, study) for study in run.studies)
     used = {column for group in groups for row in group.rows for column in row.cells}
-    return Matrix(tuple(column for column in (THEORY, *run.engines) if column in used), groups)
+    recorded = tuple(
+        RecordedMatrix(study, settings)
+        for study in run.studies
+        if study.recorded is not None and (settings := study.recorded())
+    )
+    return Matrix(tuple(column for column in (THEORY, *run.engines) if column in used), groups, recorded)
 
 
 def _group(run: Run, study: Study) -> Group:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -61,6 +62,7 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
             stamp=stamp,
             State=State,
             summary=summary(matrix),
+            recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
             measurements=_measurements,
             common=_common,
@@ -88,7 +90,10 @@ def environment() -> Environment:
 
 def summary(matrix: Matrix) -> str:
     """Return the totals in words: "41 agree, 1 differs, 0 inconclusive", and the gaps."""
-    totals = matrix.totals
+    return _in_words(matrix.totals)
+
+
+def _in_words(totals: Counter[State]) -> str:
     words = [
         f"{totals[State.AGREES]} agree" + "s" * (totals[State.AGREES] == 1),
         f"{totals[State.DIFFERS]} differ" + "s" * (totals[State.DIFFERS] == 1),

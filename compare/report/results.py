@@ -19,6 +19,18 @@ def results(run: Run, matrix: Matrix, stamp: dict[str, str]) -> dict[str, Any]:
         "interrupted": run.interrupted,
         "totals": {state.value: matrix.totals[state] for state in State},
         "studies": [_study(run, matrix, i) for i in range(len(run.studies))],
+        "recorded": [
+            {
+                "study": recorded.study.name,
+                "engine": setting.engine,
+                "setting": setting.setting,
+                "version": setting.version,
+                "date": setting.date,
+                "claims": [claim_as_json(claim) for claim in setting.claims],
+            }
+            for recorded in matrix.recorded
+            for setting in recorded.settings
+        ],
         "errata": [
             {
                 "equation": erratum.equation,

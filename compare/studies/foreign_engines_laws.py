@@ -1,4 +1,4 @@
-"""Friction laws of engines that know two axes of the world instead of a direction, and how a pin whirls by them."""
+"""What engines do that are not Coulomb's: friction that knows two axes of the world, and stick along tangents."""
 
 from __future__ import annotations
 
@@ -28,12 +28,20 @@ def pyramid(slip: complex, epsilon: float) -> complex:
     return -complex(share * x / max(abs(x), epsilon), (1.0 - share) * y / max(abs(y), epsilon))
 
 
-def whirl_error(law: Law) -> tuple[float, float]:
-    """Return how far from the radius of (11) a pin whirls by that ``law``, in m, and the error of that number.
+def creep(steps: int) -> float:
+    """Return how far ``steps`` along tangents of its circle carry a stuck pin off it, in m, the largest over time."""
+    case = CASES["stuck"]
+    i = np.linspace(0, steps, len(case.times))
+    h = float(case.times[-1]) / steps
+    return float(np.max(np.abs(case.start[0] * (1.0 + 1j * case.system.disc_speed * h) ** i - case.exact())))
 
-    It is the change at larger ε and tolerance, as in ``refined``.
+
+def error_of(law: Law, name: str) -> tuple[float, float]:
+    """Return how far off a pin is by that ``law`` in the case of that ``name``, in m, and the error of that number.
+
+    It is from the change at smaller ε and tolerance, see ``refined``.
     """
-    case = CASES["whirl"]
+    case = CASES[name]
     pin = case.system
 
     def off(epsilon: float) -> float:
@@ -57,7 +65,7 @@ def whirl_error(law: Law) -> tuple[float, float]:
         solution = Solution("LSODA", accuracy, run.nfev, len(run.t), 0.0, epsilon)
         phases = (Phase("slip", *span, run.y[:, 0]),)
         found = case.quantity(Trajectory(pin, case.times, run.y.T, phases, solution))
-        return float(np.abs(found - case.exact())[0])
+        return float(np.max(np.abs(found - case.exact())))
 
     value, error = refined(off, 1e-5)
     return float(value), float(error)

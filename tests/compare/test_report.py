@@ -7,9 +7,11 @@ from html.parser import HTMLParser
 from itertools import groupby
 
 import pytest
-from fake_studies import PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, straight
+from fake_studies import AGREEMENT, PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, straight
 from processes import ROOT
 
+from compare.claim import Claim, ErrorBudget
+from compare.cli import status
 from compare.engines import EVERY_KIND, Engine
 from compare.errata import Erratum, Evidence
 from compare.report.matrix import WORST_FIRST, State
@@ -17,6 +19,7 @@ from compare.report.page import summary
 from compare.report.write import write_report
 from compare.runner import run
 from compare.studies import STUDIES
+from compare.study import Recorded
 
 
 class Cells(HTMLParser):
@@ -290,6 +293,73 @@ def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
     (row,) = matrix.groups[0].rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert summary(matrix) == "0 agree, 0 differ, 0 inconclusive, 1 not simulated"
+
+
+def recorded():
+    """Return what two engines of others made of two claims: one agrees with both, the other with neither."""
+
+    def claims(name, off):
+        budget = ErrorBudget(1e-3, resolution=0.1)
+        about = {
+            "equation": "",
+            "engine": name,
+            "parameters": {},
+            "source": "a test",
+            "unit": "m",
+            "budget": budget,
+        }
+        return (
+            Claim("A pin slides", predicted=0.0, measured=off, **about),
+            Claim("A disc slides", predicted=0.0, measured=1e-4 + off, **about),
+        )
+
+    return (
+        Recorded("Kite", "cone", "1.2", "2026-01-31", claims("Kite, cone", 0.0)),
+        Recorded("Kite", "box", "1.2", "2026-01-31", claims("Kite, box", 0.25)),
+        Recorded("ours", "", "0.1", "2026-01-31", claims("ours", 1e-6)),
+    )
+
+
+@pytest.fixture(scope="module")
+def recorded_reported(tmp_path_factory):
+    """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
+    folder = tmp_path_factory.mktemp("recorded")
+    study = replace(AGREEMENT, recorded=recorded)
+    arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]
+    return status(arguments, (study,)), folder
+
+
+def test_what_recorded_engines_get_wrong_is_no_failure_of_this_project(recorded_reported):
+    exit_status, folder = recorded_reported
+    assert exit_status == 0
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert (results["totals"]["agrees"], results["totals"]["differs"]) == (1, 0)
+    root = ET.parse(folder / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("failures")) == ("1", "0")
+    assert [claim["verdict"] for found in results["recorded"] for claim in found["claims"]] == [
+        "agrees",
+        "agrees",
+        "differs",
+        "differs",
+        "agrees",
+        "agrees",
+    ]
+
+
+def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_reported):
+    page = (recorded_reported[1] / "index.html").read_text(encoding="utf-8")
+    found = Cells(page)
+    said = [" ".join(cell[3].split()) for cell in found.cells if cell[0] == "matrix recorded"]
+    assert said == [
+        *("Engine, setting", "A pin slides", "A disc slides"),
+        "Kite 1.2, 2026-01-31",
+        *("cone", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+        *("box", "✗ differs by 0.25 m", "✗ differs by 0.25 m"),
+        *("ours 0.1, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+    ]
+    assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
+    assert "1 agrees, 0 differ, 0 inconclusive." in page
+    assert "4 agree, 2 differ, 0 inconclusive." in page
 
 
 def test_every_state_has_its_place_among_the_worst():
