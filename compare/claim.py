@@ -38,7 +38,7 @@ class ErrorBudget:
     Parameters
     ----------
     numerical : float or array
-        Estimated from the run itself (same run at a larger tolerance, Richardson), in the claim's unit. Not a
+        Estimated from the run itself (same run at another tolerance, Richardson), in the claim's unit. Not a
         number where an engine gave none to estimate it from: then the claim differs.
     model : float
         Zero for an identity; for an approximation the derived size of the first term left out.

@@ -234,7 +234,8 @@ def judge(
 ) -> int:
     """Measure engines with one fault each, to see which claims catch it; write judge.html and judge.json.
 
-    Without FAULT the smallest error of each parameter that is noticed is found besides. The exit status is 0 when
+    Without FAULT right engines are measured with random parameters besides, and the smallest error of each
+    parameter that is noticed is found. The exit status is 0 when
     each fault that changes the physics is caught by trajectories and by a claim of another kind and every right
     engine passes, 1 otherwise, 2 on bad input, and 130 after Ctrl-C.
 
@@ -259,7 +260,7 @@ def judge(
             RIGHT,
             _studies(context, study or judging.STUDIES),
             folder=output / "data",
-            limits=not names,
+            whole=not names,
             jobs=processes,
             resume=resume,
             progress=progress,

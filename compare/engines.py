@@ -142,8 +142,8 @@ class Engine:
     def _step(self, tolerance: float) -> float:
         """Return the step in s, which goes with the square root of ``tolerance``.
 
-        Where errors are estimated, see ``compare.accuracy.COARSENING``, an error of first order then becomes 2.8
-        times as large, so that its change covers it with something to spare.
+        Where errors are estimated, see ``compare.accuracy.COARSENING``, an error of first order then falls to
+        a third.
         """
         return (self.step or 0.0) * math.sqrt(tolerance / USUAL_TOLERANCE)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from compare.claim import Kind, Verdict
 from compare.detection import DETECTION, Detected, detected, no_figures
 from compare.engines import Engine
+from compare.repetitions import REPEATED, REPETITIONS
 from compare.report.stamp import platform_stamp
 from compare.runner import Run, run
 from compare.store import write_text
@@ -140,7 +141,7 @@ def judge(
     studies: tuple[Study, ...],
     *,
     folder: Path,
-    limits: bool = True,
+    whole: bool = True,
     jobs: int = 1,
     resume: bool = False,
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
@@ -155,16 +156,18 @@ def judge(
         Engines without a fault; from their claims it is known what an engine missed that failed in a study.
     studies : tuple of Study
         Cheap ones: each is measured once for each fault.
-    limits : bool
-        Whether to find the smallest errors of parameters that are noticed, with the first of the right engines.
+    whole : bool
+        Whether to measure the right engines with random parameters too, and to find the smallest errors of parameters
+        that are noticed, with the first of them.
     folder, jobs, resume, progress
         As for ``compare.runner.run``.
 
     """
     engines = (*right, *(replace(fault.engine, name=fault.name) for fault in faults))
-    detection = tuple(replace(study, only=(right[0].name,)) for study in DETECTION if limits)
+    repeated = (replace(REPEATED, only=tuple(engine.name for engine in right)),) if whole else ()
+    detection = tuple(replace(study, only=(right[0].name,)) for study in DETECTION if whole)
     measured = run(
-        (*(_only_measured(study) for study in studies), *detection),
+        (*(_only_measured(study) for study in studies), *repeated, *detection),
         engines,
         folder=folder,
         jobs=jobs,
@@ -173,10 +176,11 @@ def judge(
         progress=progress,
     )
     kinds = {study.name: _kinds(measured, study.name, right) for study in studies}
+    of_right = kinds | {study.name: _kinds(measured, study.name, right) for study in repeated}
     return Judged(
         studies,
         tuple(
-            _judgement(measured, kinds, engine.name, "An engine without a fault.", False, "", right=True)
+            _judgement(measured, of_right, engine.name, _of_right(repeated), False, "", right=True)
             for engine in right
         ),
         tuple(
@@ -186,6 +190,12 @@ def judge(
         detected(measured.outcomes.get((study.name, right[0].name)) for study in detection),
         measured.interrupted,
     )
+
+
+def _of_right(repeated: tuple[Study, ...]) -> str:
+    """Say what engine it is."""
+    also = f" Measured with {REPETITIONS} sets of random parameters besides." if repeated else ""
+    return f"An engine without a fault.{also}"
 
 
 def _only_measured(study: Study) -> Study:

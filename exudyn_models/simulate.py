@@ -33,10 +33,11 @@ REGULARISATION_PER_TOLERANCE = 100.0
 STEP_TOLERANCE = 1e-2
 """Tolerance of DOPRI5 relative to the one asked for: thousands of steps add up."""
 
-ROUGH_STEP_TOLERANCE = 1e-4
-"""The same for a disc and for a support with a stop: where U = W the ring's friction has an infinite slope, and the
-spin remembers the error; the stop's force has a bend, and what bounces on it passes that many times.
-"""
+DISC_STEP_TOLERANCE = 1e-3
+"""The same for a disc: where U = W the ring's friction has an infinite slope, and the spin remembers the error."""
+
+STOP_STEP_TOLERANCE = 1e-4
+"""The same for a support with a stop: its force has a bend, and what bounces on it passes that many times."""
 
 SMALLEST_STEP_TOLERANCE = 1e-13
 """Below it rounding makes DOPRI5's error estimate useless, and its step collapses."""
@@ -109,9 +110,8 @@ def simulate(
     if solver == "explicit":
         method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
         step = LARGEST_STEP * tolerance**0.2 * scale
-        rough = isinstance(system, DiscOnDisc) or system.stop_stiffness > 0.0
-        relative = ROUGH_STEP_TOLERANCE if rough else STEP_TOLERANCE
-        local = max(relative * tolerance, SMALLEST_STEP_TOLERANCE) * motion_scale(system, state)
+        local = max(_step_tolerance(system) * tolerance, SMALLEST_STEP_TOLERANCE)
+        local *= motion_scale(system, state)
         local = max(local, 2.0 * angle_rounding(system, state, span))  # the same for large angles
     else:
         method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"
@@ -160,6 +160,13 @@ def simulate_fixed_step(
     return _trajectory(
         system, grid, steps, f"Exudyn {integrator}, step {step:.3g} s", math.nan, epsilon, began
     )
+
+
+def _step_tolerance(system: System) -> float:
+    """Return the tolerance of DOPRI5 relative to the one asked for."""
+    if system.stop_stiffness > 0.0:
+        return STOP_STEP_TOLERANCE
+    return DISC_STEP_TOLERANCE if isinstance(system, DiscOnDisc) else STEP_TOLERANCE
 
 
 def _regularisation(value: float | None, tolerance: float) -> float:

@@ -13,6 +13,7 @@ from compare.studies.drivetrain_momentum import STUDY as DRIVETRAIN_MOMENTUM
 from compare.studies.drivetrain_reduced import STUDY as DRIVETRAIN_REDUCED
 from compare.studies.drivetrain_run_up import STUDY as DRIVETRAIN_RUN_UP
 from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
+from compare.studies.error_estimates import STUDY as ERROR_ESTIMATES
 from compare.studies.fig03_self_centring import STUDY as FIG03
 from compare.studies.fig04_whirl_shift import STUDY as FIG04
 from compare.studies.fig05_coexistence import STUDY as FIG05
@@ -53,6 +54,7 @@ STUDIES: tuple[Study, ...] = (
     POWER_BALANCE,
     CONNECTOR,
     ENGINE_CONVERGENCE,
+    ERROR_ESTIMATES,
     FOREIGN_ENGINES,
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Collection
 from dataclasses import asdict
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from compare.accuracy import COARSENING
+from compare.accuracy import refined
 from compare.engines import Engine
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
@@ -88,7 +89,7 @@ def measured_eigenvalues(
 
     Central differences of the engine's flow over ``duration`` seconds, each column two simulations, give the
     linearised flow; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The
-    error is the change with 2h and 4h in their place, plus the change at a larger tolerance, plus the tolerance
+    error is the change with 2h and 4h in their place, plus what ``refined`` says of the tolerance, plus the tolerance
     itself as an error of the states; the largest of the four eigenvalues counts for all, since one alone may be
     right by chance.
 
@@ -118,6 +119,7 @@ def measured_eigenvalues(
     if isinstance(system, DiscOnDisc):
         size, moving = np.append(size, slip / system.contact_radius), [*moving, len(state) - 1]
 
+    @functools.cache
     def differences(tolerance: float, step: float) -> FloatArray:
         columns = []
         for i, width in zip(moving, size, strict=True):
@@ -131,24 +133,25 @@ def measured_eigenvalues(
             columns.append(change[moving])
         return np.column_stack(columns)
 
-    def eigenvalues(fine: FloatArray, wide: FloatArray) -> ComplexArray:
+    def eigenvalues(tolerance: float, step: float) -> ComplexArray:
+        fine, wide = differences(tolerance, step), differences(tolerance, 2.0 * step)
         multipliers = np.linalg.eigvals(fine + (fine - wide) / 3.0).astype(complex)
         return np.asarray(np.log(multipliers) / duration)
 
-    steps = DIFFERENCE * np.array([1.0, 2.0, 4.0])
-    near, far, farther = (differences(FLOW_TOLERANCE, step) for step in steps)
-    rough = [differences(COARSENING * FLOW_TOLERANCE, step) for step in steps[:2]]
-    measured = eigenvalues(near, far)
-    changes = [
-        np.abs(matched(other, measured) - measured)
-        for other in (eigenvalues(far, farther), eigenvalues(*rough))
-    ]
+    measured = eigenvalues(FLOW_TOLERANCE, DIFFERENCE)
+    bent = np.abs(matched(eigenvalues(FLOW_TOLERANCE, 2.0 * DIFFERENCE), measured) - measured)
+    _, error = refined(
+        lambda tolerance: real_and_imaginary(matched(eigenvalues(tolerance, DIFFERENCE), measured)),
+        FLOW_TOLERANCE,
+    )
     # A small deviation from a state of rest may be within the tolerance all the time, so that it changes nothing.
     smallest = float(np.min(np.abs(np.exp(measured * duration))))
     unseen = (
-        FLOW_TOLERANCE * float(np.max(np.abs(state))) / (float(np.min(steps[0] * size)) * smallest * duration)
+        FLOW_TOLERANCE
+        * float(np.max(np.abs(state)))
+        / (float(np.min(DIFFERENCE * size)) * smallest * duration)
     )
-    return measured, float(np.max(changes[0]) + np.max(changes[1]) + unseen)
+    return measured, float(np.max(bent) + np.max(np.hypot(*error.T)) + unseen)
 
 
 def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:

@@ -113,7 +113,7 @@ def measure(engine: Engine, ratios: Sequence[float] = RATIOS) -> Findings:
                 source="Fig. 11; how the disc moves is ours",
                 note=f"F_x, F_y over μN and M over μN·R, for {at_each('U/W', ratios)}, with ω − φ̇ > 0, then < 0. "
                 f"From the acceleration at the start, by the velocities of the first {4.0 * STEP:g} s; predicted by "
-                "quadrature. Error: the change from differences of the next lower order, and at a larger tolerance.",
+                "quadrature. Error: the change from differences of the next lower order, and at a smaller tolerance.",
             )
         )
         along = measured[:, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from compare.accuracy import change_as_error
 from compare.claim import Claim, ErrorBudget
 from compare.studies.common import ComplexArray
 from reference_model import Annulus, DiscOnDisc
@@ -138,20 +139,20 @@ def balance_claim(
     balances: Sequence[EnergyBalance],
     parameters: Mapping[str, float | str],
 ) -> Claim:
-    """Return what two balances of the same run say, the second at the smaller tolerance."""
-    coarse, fine = (float(np.max(np.abs(each.residual))) / each.turnover for each in balances)
+    """Return what two balances of the same run say, the second at a smaller tolerance, see ``refined``."""
+    found, finer = (np.max(np.abs(each.residual)) / each.turnover for each in balances)
     return Claim(
         sentence,
         equation="",
         kind="conservation",
         engine=engine,
         predicted=0.0,
-        measured=fine,
-        budget=ErrorBudget(abs(coarse - fine), resolution=1e-6),
+        measured=found,
+        budget=ErrorBudget(change_as_error(found, finer), resolution=1e-6),
         parameters=parameters,
         source=SOURCE,
         note="The largest of gains less losses less the growth of what is stored, over the energy turned over, "
-        f"{balances[1].turnover:.3g} J. Numerical error: the change at a larger tolerance.",
+        f"{balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
     )
 
 

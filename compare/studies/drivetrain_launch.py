@@ -126,21 +126,21 @@ def measure(engine: Engine, epsilons: FloatArray = EPSILONS) -> Findings:
 
 def claim_of_balance(engine: Engine, car: Drivetrain, data: Data) -> Claim:
     """Check the energy of the launch with all that the car has, and keep it for the figure."""
-    coarse, fine = (
+    motion, finer = (
         launch(car, epsilon=float(EPSILONS[0]), tolerance=tolerance)
-        for tolerance in (COARSENING * 1e-7, 1e-7)
+        for tolerance in (8e-7, 8e-7 / COARSENING)
     )
-    data["t"] = fine.times
-    data["speeds"] = np.column_stack((fine.engine_speed, fine.disc_velocity[:, 2], fine.vehicle_speed))
-    data["centre"] = fine.disc[:, :2]
-    twist, rate = fine.disc[:, 2] - fine.vehicle_angle, fine.disc_velocity[:, 2] - fine.vehicle_speed
+    data["t"] = motion.times
+    data["speeds"] = np.column_stack((motion.engine_speed, motion.disc_velocity[:, 2], motion.vehicle_speed))
+    data["centre"] = motion.disc[:, :2]
+    twist, rate = motion.disc[:, 2] - motion.vehicle_angle, motion.disc_velocity[:, 2] - motion.vehicle_speed
     data["shaft torque"] = car.torsional_stiffness * twist + car.torsional_damping * rate
-    data["capacity"] = np.interp(fine.times, KNOTS, CAPACITIES)
-    data["heat"] = fine.energy.losses["friction"]
+    data["capacity"] = np.interp(motion.times, KNOTS, CAPACITIES)
+    data["heat"] = motion.energy.losses["friction"]
     return balance_claim(
         BALANCE,
         engine.name,
-        [coarse.energy, fine.energy],
+        [motion.energy, finer.energy],
         parameters_of(car, regularisation=float(EPSILONS[0])),
     )
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.accuracy import COARSENING, ROUNDING
+from compare.accuracy import COARSENING, change_as_error
 from compare.claim import Claim, ErrorBudget
 from compare.studies.common import at_each, remaining_transient
 from compare.studies.drivetrain_bench import (
@@ -100,11 +100,11 @@ def settled(car: Drivetrain, operation: Operation, rate: float, start: complex, 
         shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)
         return motion.times, np.column_stack((*shape, motion.slip))
 
-    (times, fine), (_, coarse) = run(TOLERANCE), run(COARSENING * TOLERANCE)
+    (times, found), (_, finer) = run(TOLERANCE), run(TOLERANCE / COARSENING)
     delay = SEEN / rate
-    earlier = fine[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
-    rest = remaining_transient(earlier, fine[-1], rate, delay)
-    return Settled(fine[-1], np.abs(fine[-1] - coarse[-1]) + rest + ROUNDING * np.abs(fine[-1]))
+    earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
+    rest = remaining_transient(earlier, found[-1], rate, delay)
+    return Settled(found[-1], change_as_error(found[-1], finer[-1]) + rest)
 
 
 def predicted_rest(car: Drivetrain, operation: Operation) -> Settled:
@@ -168,7 +168,7 @@ def claims_of_steady_motions(engine: str, car: Drivetrain) -> tuple[tuple[Claim,
             source=SOURCE,
             unit=unit,
             note=f"At {at_each('speed', speeds)} turns a minute, {TORQUE:g} N m and {SLIPPING:g} rad/s of slip, "
-            f"after {DECAYS:g} decay times of the slowest mode. Numerical error: the change at a larger tolerance, "
+            f"after {DECAYS:g} decay times of the slowest mode. Numerical error: the change at a smaller tolerance, "
             f"what is left of the transient by its change in the last {SEEN:g} decay times, and of the prediction "
             "the change with finer rings of the annulus; the largest counts for all, since one alone may be right by "
             "chance.",

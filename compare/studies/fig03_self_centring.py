@@ -265,7 +265,7 @@ def eigenvalue_claims(
             unit="1/s",
             note=f"Real and imaginary parts of all four, for {at_each('μN', loads)} N: central differences "
             f"of the motion over {FLOW_DURATION:g} s, extrapolated to zero. Error: the change with larger "
-            "differences, and at a larger tolerance.",
+            "differences, and at a smaller tolerance.",
         ),
         Claim(
             STABLE,

@@ -196,7 +196,7 @@ def decay_claim(engine: Engine, decays: Mapping[float, tuple[float, float]]) -> 
         "relaxed, with the spin of the shaft. Measured: growth of the slowest mode's part of the deviation, in the "
         "later half of "
         + ", ".join(f"{start:g} to {end:g} s" for start, end in decays.values())
-        + ". Error: the change against the earlier half, and at a larger tolerance.",
+        + ". Error: the change against the earlier half, and at a smaller tolerance.",
     )
 
 
@@ -242,7 +242,7 @@ def end_claim(engine: Engine) -> Claim:
         unit="N",
         note=f"Measured: equilibria at {at_each('μN', END_LOADS)} N, the load as a polynomial of their distance from "
         f"the axis. A pin's would end at C·X0 = {RING.stiffness * RING.offset:g} N; of the disc's friction the "
-        "moment of the shaft takes a part. Error: the change without the farthest, and at a larger tolerance.",
+        "moment of the shaft takes a part. Error: the change without the farthest, and at a smaller tolerance.",
     )
 
 

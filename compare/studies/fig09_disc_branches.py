@@ -156,7 +156,7 @@ def measured_circles(engine: Engine, disc: DiscOnDisc) -> tuple[FloatArray, Floa
 
 
 def with_tolerance(error: FloatArray, amplified: ArrayLike) -> FloatArray:
-    """Return errors (n, 1) of motions found by shooting, from the changes (n, m) at a larger tolerance.
+    """Return errors (n, 1) of motions found by shooting, from the changes (n, m) at a smaller tolerance.
 
     One number alone may be right by chance, and two flows may be the same to within the tolerance, which the motion
     shows ``amplified``.
@@ -492,7 +492,7 @@ def _growth_claim(
         note=f"Real and imaginary part, for {at_each('μN', loads)} N, over "
         f"{', '.join(f'{duration:g}' for _, _, duration in motions)} s. {remark} Half the difference of two "
         f"simulations that start {DISPLACED:g} of the way from the axis to either side. Error: the change at a "
-        "larger tolerance, and with twice the deviation, which is three times what is not linear.",
+        "smaller tolerance, and with twice the deviation, which is three times what is not linear.",
     )
 
 
@@ -541,7 +541,7 @@ def stays_claim(engine: Engine, loads: Sequence[float]) -> tuple[Claim, FloatArr
         note=f"After a revolution, for {at_each('μN', loads)} N: displacement on the master disc in units of the "
         "radius, turn against it in rad, spin against it in units of ω; and the number of phases that do not stick. "
         "What holds the disc has the period of a revolution. In (9) stands the force that friction can give beside "
-        "the moment b(ω − Ω). Error: the change at a larger tolerance, by which a law that only approximates stick "
+        "the moment b(ω − Ω). Error: the change at a smaller tolerance, by which a law that only approximates stick "
         "shows its creep.",
     )
     return claim, found

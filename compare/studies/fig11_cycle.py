@@ -120,7 +120,7 @@ def measure_cycle(engine: Engine) -> Findings:
             source=f"{SOURCE}: 0 here; start {START}",
             unit=unit,
             note=f"The last modulation within {UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
-            "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a larger tolerance, and "
+            "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and "
             "the change from the modulation before, of both.",
         )
         for sentence, part, resolution, unit in (
@@ -219,6 +219,6 @@ def shooting_claim() -> Claim:
         parameters=parameters_of(RING),
         source=f"{SOURCE}: 0 here",
         unit="s, rad, m, rad/s",
-        note="Period, turn within it, least and greatest radius and spin. Error: the change at a larger tolerance, "
+        note="Period, turn within it, least and greatest radius and spin. Error: the change at a smaller tolerance, "
         "and the change from the modulation before in the motion that settles.",
     )

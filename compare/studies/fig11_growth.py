@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import t as student
 
-from compare.accuracy import COARSENING
+from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.studies.common import ComplexArray, parameters_of, turned
@@ -42,7 +42,7 @@ EXPANSION = ThreeTermRing(RING.contact_radius)
 NOTE = (
     f"Rate and frequency of a deviation of {AMPLITUDE:g} radii, followed for {DURATION:g} s to either side: straight "
     "lines through logarithm and phase of its share in the pair of modes. Error: scatter about the lines, the change "
-    "with twice the deviation, and at a larger tolerance."
+    "with twice the deviation, and at a smaller tolerance."
 )
 
 RATE = "A small deviation from the whirl on {} grows at the rate that its linearisation gives"
@@ -179,12 +179,13 @@ def growth(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatA
     """Return growth rate and frequency of a deviation in 1/s, and their errors, shape (2,).
 
     Straight lines through ln|q| and the phase of q over time. The error is the 95 % interval that the scatter about
-    them gives, the change with a deviation twice as large and that at a larger tolerance.
+    them gives, the change with a deviation twice as large and that at a smaller tolerance.
     """
-    measured, scatter = _fitted(*deviation(engine, disc, whirl, AMPLITUDE, TOLERANCE))
+    (measured, scatter), (error, _) = refined(
+        lambda tolerance: _fitted(*deviation(engine, disc, whirl, AMPLITUDE, tolerance)), TOLERANCE
+    )
     larger, _ = _fitted(*deviation(engine, disc, whirl, 2.0 * AMPLITUDE, TOLERANCE))
-    rougher, _ = _fitted(*deviation(engine, disc, whirl, AMPLITUDE, COARSENING * TOLERANCE))
-    return measured, scatter + np.abs(larger - measured) + np.abs(rougher - measured)
+    return measured, scatter + np.abs(larger - measured) + error
 
 
 def _fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArray]:

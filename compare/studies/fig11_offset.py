@@ -152,7 +152,7 @@ def critical_claim(engine: Engine) -> Claim:
         note="Measured: whirls with an offset are found by shooting with the engine, for "
         f"{at_each('X0', TRIED)} m, and their multipliers by differences. Predicted: what one step of Newton's "
         "method makes of that X0 with multipliers from the variational equations, integrated with the analytic "
-        "Jacobian. Error: the change at a larger tolerance, that by a straight line for the interpolation, and how "
+        "Jacobian. Error: the change at a smaller tolerance, that by a straight line for the interpolation, and how "
         "much the linearised return map changes a shift in time.",
     )
 

@@ -257,7 +257,7 @@ def together_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         source=SOURCE + CITED,
         note=f"Time by which sliding ends after spinning, over that to rest: U and W, extrapolated in straight lines "
         f"from {at_each('t/T', REMAINING[1::-1])} of it before. {_described(throws)} Error: the change from twice as "
-        "far away, and at a larger tolerance.",
+        "far away, and at a smaller tolerance.",
     )
 
 
@@ -369,7 +369,7 @@ def ratio_other_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         source=SOURCE + CITED,
         note=f"U/W at {at_each('t/T', REMAINING[:3])} of the time to rest, extrapolated to zero as a power. "
         f"{_described(throws)} Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: the change "
-        "from twice as far away, and at a larger tolerance.",
+        "from twice as far away, and at a smaller tolerance.",
     )
 
 

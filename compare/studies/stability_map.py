@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from compare.accuracy import COARSENING
+from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine, Simulate
 from compare.studies.common import parameters_of, real_and_imaginary, turned
@@ -138,7 +139,7 @@ def side_claims_of(
             measured=real_and_imaginary(measured),
             budget=ErrorBudget(np.repeat(errors, 2).reshape(-1, 2), resolution=1e-4 * K),
             unit="1/s",
-            note=f"{note} Error: the change at a larger tolerance and with twice the deviation.",
+            note=f"{note} Error: the change at a smaller tolerance and with twice the deviation.",
             **common,
         ),
     )
@@ -167,8 +168,9 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
         end = np.delete(turned((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
         return complex(np.log((left @ end) / (left @ (size * deviation))) / duration)
 
-    found, rough = rate(DEVIATION, FLOW_TOLERANCE), rate(DEVIATION, COARSENING * FLOW_TOLERANCE)
-    return found, abs(found - rough) + abs(rate(2.0 * DEVIATION, FLOW_TOLERANCE) - found)
+    parts, error = refined(lambda tolerance: real_and_imaginary(rate(DEVIATION, tolerance)), FLOW_TOLERANCE)
+    found = complex(*parts)
+    return found, math.hypot(*error) + abs(rate(2.0 * DEVIATION, FLOW_TOLERANCE) - found)
 
 
 def starts_in_regions() -> tuple[Start, ...]:

@@ -140,7 +140,7 @@ def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim
             parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             note="Displacement on the disc over the distance from the axis, in x and y; starts where the least "
-            f"force holds the pin, {where}. Error: the change at a larger tolerance, by which a law that only "
+            f"force holds the pin, {where}. Error: the change at a smaller tolerance, by which a law that only "
             "approximates stick shows its creep.",
         ),
         Claim(
@@ -195,7 +195,7 @@ def releases(engine: Engine, speeds: Sequence[float]) -> tuple[FloatArray, Float
         source=SOURCE,
         unit="rad",
         note="Turn of the disc up to the end of the first stick phase, after a start where the least force holds "
-        f"the pin, for {at_each('ω', speeds)} rad/s. Error: the change at a larger tolerance.",
+        f"the pin, for {at_each('ω', speeds)} rad/s. Error: the change at a smaller tolerance.",
     )
     return measured, error, claim
 
@@ -260,7 +260,7 @@ def largest_radii(
             parameters=parameters_of(PIN, without=("disc_speed",)),
             source=SOURCE,
             note=how
-            + " In units of (9). Error: that of the bisection, and the change at a larger tolerance.",
+            + " In units of (9). Error: that of the bisection, and the change at a smaller tolerance.",
         ),
         Claim(
             RESONANT,

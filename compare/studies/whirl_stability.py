@@ -174,7 +174,7 @@ def settling_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Cla
     pin_values = parameters_of(PIN, without=("disc_speed",))
     note = (
         f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s, for "
-        f"{at_each('ω', speeds)} rad/s. Error: the change at a larger tolerance, and what is left of the "
+        f"{at_each('ω', speeds)} rad/s. Error: the change at a smaller tolerance, and what is left of the "
         f"transient by its change in the last {DELAY:g} s."
     )
     radius, frequency = (
@@ -228,7 +228,7 @@ def balance_claim(engine: Engine, starts: Sequence[float]) -> Claim:
         source=SOURCE,
         note="Change of the angular momentum in time over μN·ρ_c, from a one-sided difference, for "
         f"{at_each('ω', starts)} rad/s. By (10) it is sign(ω − k) − 1. The paper says that (11) always "
-        "exists: see the errata. Error: the change at a larger tolerance and at a larger interval.",
+        "exists: see the errata. Error: the change at a smaller tolerance and at a larger interval.",
     )
 
 
@@ -289,7 +289,7 @@ def eigenvalue_claims(
             unit="1/s",
             note=f"Real and imaginary parts of all four, {where}: central differences of the motion over "
             f"{FLOW_DURATION:g} s, in the frame that turns with the whirl, extrapolated to zero. Error: the "
-            "change with larger differences, and at a larger tolerance.",
+            "change with larger differences, and at a smaller tolerance.",
         ),
         Claim(
             STABLE,

@@ -56,7 +56,7 @@ RIGHT_ONE = replace(moved(), name="right")
 
 
 def judged(faults, tmp_path, right=RIGHT_ONE, **more):
-    return judge.judge(faults, (right,), (STUDY,), folder=tmp_path / "data", limits=False, **more)
+    return judge.judge(faults, (right,), (STUDY,), folder=tmp_path / "data", whole=False, **more)
 
 
 @pytest.mark.parametrize(
