@@ -9,12 +9,15 @@ Where to find what:
 - simulation: ``integrate``, which goes through ``phases`` of ``slip`` and ``sticking`` by the equations of motion of
   ``pin`` and ``disc``; ``points`` with ``pivot`` and ``limit_surface`` for discs on single points, ``growth`` for how
   slip begins, ``units`` and ``stepping`` below;
-- steady motions: ``steady_states`` with ``disc_balance`` and ``zeros``; ``orbits`` by shooting;
+- steady motions: ``steady_states`` with ``disc_balance`` and ``zeros``; ``orbits`` by shooting, ``stick_slip`` by the
+  map from release to release;
+- boundaries of basins: ``basins`` with ``dividing_curves``;
 - stability: ``stability``, ``characteristic``, ``modulation``; ``boundaries`` by ``continuation``;
 - a check of any engine: ``power``.
 """
 
 from reference_model.annulus import Annulus
+from reference_model.basins import basin_boundary, boundary_point
 from reference_model.contact import PointsOnRing, Ring, ThreeTermRing
 from reference_model.integrate import simulate
 from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
@@ -32,6 +35,7 @@ from reference_model.steady_states import (
     why_no_equilibrium,
     why_no_whirl,
 )
+from reference_model.stick_slip import StickSlipOrbit, stick_slip_orbits
 from reference_model.systems import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
@@ -49,9 +53,12 @@ __all__ = [
     "Solution",
     "SpinningEquilibrium",
     "SpinningWhirl",
+    "StickSlipOrbit",
     "ThreeTermRing",
     "Trajectory",
     "Whirl",
+    "basin_boundary",
+    "boundary_point",
     "last_whirl",
     "modulated_cycle",
     "onset_load",
@@ -59,6 +66,7 @@ __all__ = [
     "self_centred_equilibria",
     "simulate",
     "smallest_load_with_whirl",
+    "stick_slip_orbits",
     "sticking_radius",
     "whirl_branch",
     "whirl_orbit",
