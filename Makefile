@@ -21,6 +21,10 @@ benchmarks: $(VENV)/installed
 	$(BIN)/python benchmarks/exudyn_contact.py
 	$(BIN)/python benchmarks/exudyn_solvers.py
 	$(BIN)/python benchmarks/reference_evaluations.py
+	$(MAKE) --directory benchmarks/limit
+	$(BIN)/python benchmarks/ensemble.py
+	$(BIN)/python benchmarks/ensemble_discs.py
+	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:
 	rm -rf $(VENV) report build *.egg-info

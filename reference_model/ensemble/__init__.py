@@ -1,0 +1,17 @@
+"""Many trajectories at once, compiled: where they end.
+
+- ``simulate``: :func:`simulate_ensemble`, the door; ``results``: what it returns;
+- ``lanes``: how trajectories share a processor; ``runge_kutta``: the step; ``compiled``: what numba is told;
+- of a pin ``pin_slip`` (equations, rest, release), ``pin_lanes`` (its lanes), ``arc`` (the motion inside of a step),
+  ``pin_ends`` with ``regions`` (how its end state is told), ``pin_watch`` with ``pin_book`` (what is rare, done lane
+  by lane), and ``pin`` with ``pins``, which put them together;
+- of a disc ``contact_shares`` (friction), ``disc_slip``, ``disc_growth`` (slip from rest), ``disc_lanes``,
+  ``disc_kernel``, ``disc_stability`` and ``disc_regions`` (where it ends), and ``disc``, which puts them together.
+
+The plain :func:`reference_model.simulate` judges it: nothing there takes anything from here.
+"""
+
+from reference_model.ensemble.results import EndState, Ensemble
+from reference_model.ensemble.simulate import simulate_ensemble
+
+__all__ = ["EndState", "Ensemble", "simulate_ensemble"]

@@ -1,0 +1,18 @@
+"""Trajectories shared among threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+CHUNK = 512
+"""Trajectories that a thread takes at a time: enough that lanes are rarely empty, few enough that threads end
+together."""
+
+
+def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
+    """Call ``run(first, last)`` for all of ``n`` trajectories; it must release the interpreter's lock."""
+    firsts = range(0, n, CHUNK)
+    with ThreadPoolExecutor(min(threads, len(firsts))) as pool:
+        for _ in pool.map(lambda first: run(first, min(first + CHUNK, n)), firsts):
+            pass  # asks for the result, so that an error is raised here

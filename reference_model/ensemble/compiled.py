@@ -1,0 +1,48 @@
+"""Compiled functions: those that are taken over into their callers, and the outermost ones, kept on disk.
+
+Results must be the same bit by bit in any lane, on any number of threads, and on workers with and without FMA: so
+nothing here may be reordered or contracted (``fastmath`` stays off; FMA would make the steps faster by a tenth).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def inlined(function: Function) -> Function:
+    """Compile ``function`` into each of its callers, so that a loop over lanes that calls it can be vectorised."""
+    return cast(Function, numba.njit(error_model="numpy", forceinline=True)(function))
+
+
+def scalar(function: Function) -> Function:
+    """Compile ``function`` as one that its callers call: it is rare, and large."""
+    return cast(Function, numba.njit(error_model="numpy", inline="never")(function))
+
+
+def outermost(function: Function) -> Function:
+    """Compile ``function``, which Python calls, at its first call, or take what an earlier process left.
+
+    numba forgets what it left when the file of the function changes, but not when those of its callees do: it is
+    forgotten here when any module of this package has changed.
+    """
+    dispatcher = numba.njit(error_model="numpy", nogil=True, cache=True)(function)
+    _forget_outdated(dispatcher.stats.cache_path)
+    return cast(Function, dispatcher)
+
+
+@cache
+def _forget_outdated(folder: str) -> None:
+    newest = max(path.stat().st_mtime_ns for path in Path(__file__).parent.glob("*.py"))
+    for index in Path(folder).glob("*.nbi"):
+        try:
+            if index.stat().st_mtime_ns < newest:
+                index.unlink()
+        except FileNotFoundError:
+            pass  # another process was faster

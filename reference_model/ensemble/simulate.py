@@ -1,0 +1,146 @@
+"""Simulation of many pins or discs at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.ensemble.results import Ensemble
+from reference_model.systems import (
+    FloatArray,
+    PinOnDisc,
+    System,
+    checked_tolerance,
+    finite_number,
+    require_system,
+)
+
+NOT_TAKEN = ("hardening", "stop_gap", "stop_stiffness")
+"""Parameters of a support that is not linear."""
+
+
+def simulate_ensemble(
+    system: System,
+    initial_states: ArrayLike,
+    *,
+    duration: float,
+    tolerance: float = 1e-9,
+    parameters: Mapping[str, ArrayLike] | None = None,
+    early_end: bool = True,
+    threads: int | None = None,
+) -> Ensemble:
+    """Return what many trajectories end in, under exact Coulomb friction: compiled, in all lanes of all processors.
+
+    The physics is that of :func:`reference_model.simulate`. What a trajectory comes to does not depend, bit by bit,
+    on the others or on the number of threads.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters that all have in common, with a linear support.
+    initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
+        One for each, or for all, as ``reference_model.simulate`` takes it.
+    duration : float
+        In s, > 0.
+    tolerance : float
+        Of each step, relative to the size of the motion, from 1e-14 to 1e-2.
+    parameters : mapping from a parameter's name to an array-like of shape (n,), optional
+        Those that differ from trajectory to trajectory.
+    early_end : bool
+        Whether a trajectory ends as soon as its end state is certain (how that is told: :mod:`.pin_ends`).
+    threads : int, optional
+        As many as there are processors unless told otherwise.
+
+    Raises
+    ------
+    ValueError
+        For anything that is not as above.
+
+    """
+    require_system(system)
+    for name in NOT_TAKEN:
+        _require_linear(name, getattr(system, name))
+    starts = _checked_starts(system, initial_states)
+    varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
+    n = _number_of(len(starts), varied)
+    duration = finite_number("duration", duration)
+    if duration <= 0.0:
+        raise ValueError(f"duration = {duration:g} s: it must be > 0")
+    tolerance = checked_tolerance(tolerance)
+    threads = _checked_threads(threads)
+
+    # Each of them loads what is compiled for it.
+    if isinstance(system, PinOnDisc):
+        from reference_model.ensemble.pins import simulate_pins
+
+        return simulate_pins(system, starts, duration, tolerance, varied, early_end, n, threads)
+    from reference_model.ensemble.disc import simulate_discs
+
+    return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
+
+
+def _require_linear(name: str, value: float) -> None:
+    if value != 0.0 and name != "stop_gap":
+        raise ValueError(
+            f"{name} = {value:g}: the compiled ensemble takes linear supports only, since release and the "
+            "neighbourhood of an equilibrium are closed forms there; take reference_model.simulate"
+        )
+
+
+def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
+    """Return the initial states, shape (1 or n, state_size)."""
+    starts = np.atleast_2d(_numbers("initial_states", initial_states))
+    if starts.ndim != 2 or starts.shape[1] != system.state_size or len(starts) == 0:
+        raise ValueError(
+            f"initial_states has shape {starts.shape}: {type(system).__name__} takes {system.state_size} numbers a "
+            f"trajectory, shape (n, {system.state_size}) or ({system.state_size},)"
+        )
+    return starts
+
+
+def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArray:
+    allowed = [field.name for field in fields(system) if field.name not in (*NOT_TAKEN, "contact_points")]
+    if name not in allowed:
+        raise ValueError(f"parameters: {name!r} can't differ by trajectory, only {', '.join(allowed)}")
+    array = _numbers(name, values)
+    if array.ndim != 1 or len(array) == 0:
+        raise ValueError(
+            f"parameters: {name} has shape {array.shape}: it must be a list of one number a trajectory"
+        )
+    for value in (array.min(), array.max()):
+        replace(system, **{name: float(value)})  # type: ignore[arg-type]  # refuses what no system can be
+    return array
+
+
+def _numbers(name: str, values: Any) -> FloatArray:
+    try:
+        array = np.array(values, dtype=float, order="C")
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must hold nothing but numbers, in rows of the same length") from None
+    if not np.all(np.isfinite(array)):
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(f"{name}[{', '.join(map(str, where))}] = {array[where]}: it must be finite")
+    return array
+
+
+def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
+    """Return the number of trajectories, which all parameters have, and all starts but a single one for all."""
+    sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
+    n = max(sizes.values())
+    for name, size in sizes.items():
+        if size != n and (name, size) != ("initial_states", 1):
+            raise ValueError(f"{name} is for {size} trajectories, but there are {n}")
+    return n
+
+
+def _checked_threads(threads: int | None) -> int:
+    if threads is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise ValueError(f"threads = {threads!r}: it must be a whole number >= 1")
+    return threads

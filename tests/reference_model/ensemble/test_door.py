@@ -1,0 +1,52 @@
+"""What is no ensemble is refused at the door, with a sentence that says why."""
+
+import numpy as np
+import pytest
+
+from compare.paper import FIG5
+from reference_model import PinOnDisc
+from reference_model.ensemble import EndState, simulate_ensemble
+
+HARDENING = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.1, disc_speed=1.0, hardening=2.0)
+START = [0.1, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("system", "states", "options", "message"),
+    [
+        ("pin", START, {}, r"system = 'pin': it must be a PinOnDisc or a DiscOnDisc"),
+        (HARDENING, START, {}, r"hardening = 2: the compiled ensemble takes linear supports only"),
+        (FIG5, [0.1, 0.0], {}, r"initial_states has shape \(1, 2\): PinOnDisc takes 4 numbers"),
+        (FIG5, np.zeros((0, 4)), {}, r"initial_states has shape \(0, 4\)"),
+        (FIG5, [START, [0.1, 0.0, np.nan, 0.0]], {}, r"initial_states\[1, 2\] = nan: it must be finite"),
+        (FIG5, [START, [0.1]], {}, r"initial_states must hold nothing but numbers"),
+        (FIG5, START, {"duration": 0.0}, r"duration = 0 s: it must be > 0"),
+        (FIG5, START, {"duration": np.inf}, r"duration = inf: it must be finite"),
+        (FIG5, START, {"tolerance": 1.0}, r"tolerance = 1: it must lie between"),
+        (FIG5, START, {"threads": 0}, r"threads = 0: it must be a whole number >= 1"),
+        (FIG5, START, {"threads": 1.5}, r"threads = 1.5: it must be a whole number >= 1"),
+        (FIG5, START, {"parameters": {"ofset": [0.1]}}, r"'ofset' can't differ by trajectory, only mass, stiffness"),
+        (FIG5, START, {"parameters": {"hardening": [0.1]}}, r"'hardening' can't differ by trajectory"),
+        (FIG5, START, {"parameters": {"offset": 0.1}}, r"offset has shape \(\): it must be a list"),
+        (FIG5, START, {"parameters": {"damping": [0.1, -0.1]}}, r"damping = -0.1 N s/m: it must be >= 0"),
+        (FIG5, START, {"parameters": {"mass": [1.0, np.inf]}}, r"mass\[1\] = inf: it must be finite"),
+        (FIG5, [START] * 3, {"parameters": {"offset": [0.1, 0.2]}}, r"offset is for 2 trajectories, but there are 3"),
+        (FIG5, [START] * 2, {"parameters": {"offset": [0.1] * 3}}, r"initial_states is for 2 trajectories"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused_with_its_name_and_what_is_allowed(system, states, options, message):
+    with pytest.raises(ValueError, match=message):
+        simulate_ensemble(system, states, **({"duration": 10.0} | options))
+
+
+def test_one_start_serves_all_parameters():
+    loads = np.array([0.09, 0.5])
+    found = simulate_ensemble(FIG5, START, duration=400.0, parameters={"friction_force": loads})
+    assert found.end.tolist() == [EndState.SELF_CENTRED, EndState.STUCK]
+    assert found.states.shape == (2, 4)
+
+
+def test_results_do_not_change():
+    found = simulate_ensemble(FIG5, START, duration=10.0)
+    with pytest.raises(ValueError, match="read-only"):
+        found.end[0] = 3

@@ -1,0 +1,244 @@
+"""End states are told for certain: they are those of runs of full length, and of the plain reference."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.paper import FIG5
+from reference_model import (
+    boundary_point,
+    self_centred_equilibria,
+    simulate,
+    stick_slip_orbits,
+    sticking_radius,
+    whirl_orbit,
+)
+from reference_model.ensemble import EndState, pin_slip, regions, simulate_ensemble
+from reference_model.ensemble.pin_book import KNOWN_LEVEL, KNOWN_REACH
+from reference_model.ensemble.pin_ends import ACCURACY, converged, depth, well_of
+
+STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
+STICK_SLIP = replace(FIG5, damping=1.173, friction_force=0.658, disc_speed=1.8, offset=-0.42)
+CREEPS = replace(FIG5, damping=0.85, friction_force=0.56, disc_speed=-0.46, offset=-0.07)
+
+
+def starts(n, reach, seed=0):
+    return np.random.default_rng(seed).uniform(-reach, reach, (n, 4))
+
+
+def counts(ensemble):
+    return {
+        state.name: int(np.sum(ensemble.end == state)) for state in EndState if np.any(ensemble.end == state)
+    }
+
+
+@pytest.mark.parametrize(
+    ("pin", "reach", "duration", "expected"),
+    [
+        (FIG5, 0.4, 400.0, {"SELF_CENTRED", "WHIRL"}),
+        (replace(FIG5, disc_speed=-1.5, offset=-0.1), 0.4, 400.0, {"SELF_CENTRED", "WHIRL"}),
+        (replace(FIG5, offset=0.0), 0.4, 400.0, {"STUCK", "WHIRL"}),
+        (replace(FIG5, disc_speed=0.7), 1.0, 400.0, {"SELF_CENTRED"}),
+        (STICKS, 1.0, 400.0, {"STUCK"}),
+        (CREEPS, 2.0, 200.0, {"STUCK"}),
+        (STICK_SLIP, 1.0, 300.0, {"STICK_SLIP", "STUCK"}),
+        (replace(FIG5, friction_force=0.0), 1.0, 400.0, {"SELF_CENTRED"}),
+        (replace(FIG5, friction_force=0.0, damping=0.0), 1.0, 100.0, {"UNDECIDED"}),
+        (replace(FIG5, damping=0.0), 1.0, 100.0, {"UNDECIDED"}),
+    ],
+    ids=[
+        "Fig. 5", "mirrored", "centred", "slow disc", "sticks", "creeps", "stick and slip", "no friction",
+        "no friction, no damping", "no damping",
+    ],
+)  # fmt: skip
+def test_early_ends_are_those_of_full_length(pin, reach, duration, expected):
+    states = starts(200, reach)
+    early = simulate_ensemble(pin, states, duration=duration)
+    full = simulate_ensemble(pin, states, duration=duration, early_end=False)
+    by_itself = simulate_ensemble(pin, states, duration=duration, parameters={"mass": np.ones(len(states))})
+    assert set(counts(early)) == expected
+    # One that creeps or comes close to a boundary may take longer than the run of full length leaves for telling.
+    for other in (full, by_itself):
+        decided = (other.end != EndState.UNDECIDED) & (early.end != EndState.UNDECIDED)
+        np.testing.assert_array_equal(early.end[decided], other.end[decided])
+        assert decided.mean() > 0.95 or expected == {"UNDECIDED"}
+    if expected != {"UNDECIDED"}:
+        assert early.steps.sum() < 0.7 * full.steps.sum() or expected == {"STUCK"}  # stuck takes no steps
+    assert np.all(full.time == duration)
+    np.testing.assert_array_equal(np.isnan(early.slip_power), early.end == EndState.UNDECIDED)
+
+
+def test_ends_of_fig5_are_those_of_the_reference():
+    rng = np.random.default_rng(7)
+    states = np.zeros((16, 4))
+    states[:, 0], states[:, 2] = rng.uniform(-0.3, 0.5, 16), rng.uniform(-0.4, 0.4, 16)
+    states[:6] *= 0.25  # so that the equilibrium has its share
+    ends = simulate_ensemble(FIG5, states, duration=400.0).end
+    (equilibrium,) = self_centred_equilibria(FIG5)
+    orbit = whirl_orbit(FIG5)
+    for state, end in zip(states, ends, strict=True):
+        trajectory = simulate(FIG5, state, np.linspace(0.0, 400.0, 401), tolerance=1e-8)
+        if end == EndState.SELF_CENTRED:
+            assert np.allclose(trajectory.at_end, equilibrium.state, atol=1e-4)
+        else:
+            assert end == EndState.WHIRL
+            radius = orbit.trajectory.radius
+            assert radius.min() - 1e-4 < trajectory.radius[-8:].min()
+            assert trajectory.radius[-8:].max() < radius.max() + 1e-4
+    assert len(set(ends.tolist())) == 2
+
+
+def test_measures_of_the_whirl_are_those_of_the_orbit_found_by_shooting():
+    orbit = whirl_orbit(FIG5, samples=2048)
+    found = simulate_ensemble(FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0)
+    radius = orbit.trajectory.radius
+    assert found.end[0] == EndState.WHIRL
+    # Extremes between samples are off by their spacing squared; those of the kernel by its step to the eighth power.
+    assert found.least_radius[0] == pytest.approx(radius.min(), abs=2e-6)
+    assert found.largest_radius[0] == pytest.approx(radius.max(), abs=2e-6)
+    slip = orbit.trajectory.slip_speed[:-1]
+    assert found.slip_power[0] == pytest.approx(FIG5.friction_force * slip.mean(), rel=1e-7)
+    by_itself = simulate_ensemble(
+        FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0, parameters={"offset": [FIG5.offset]}
+    )
+    for name in ("least_radius", "largest_radius", "slip_power"):
+        assert getattr(by_itself, name)[0] == pytest.approx(getattr(found, name)[0], rel=2.0 * ACCURACY)
+
+
+def test_measures_of_rest_and_of_the_equilibrium_are_closed_forms():
+    (equilibrium,) = self_centred_equilibria(FIG5)
+    found = simulate_ensemble(FIG5, [0.1, 0.0, 0.0, 0.0], duration=400.0)
+    radius = np.hypot(equilibrium.x, equilibrium.y)
+    assert found.end[0] == EndState.SELF_CENTRED
+    assert found.least_radius[0] == pytest.approx(radius, rel=1e-12)
+    assert found.slip_power[0] == pytest.approx(FIG5.friction_force * FIG5.disc_speed * radius, rel=1e-12)
+    stuck = simulate_ensemble(STICKS, [0.05, 0.0, 0.0, 0.03], duration=400.0)
+    assert stuck.end[0] == EndState.STUCK
+    assert stuck.least_radius[0] == stuck.largest_radius[0] == pytest.approx(0.05, rel=1e-12)
+    assert stuck.slip_power[0] == 0.0
+
+
+def test_measures_of_stick_and_slip_are_those_of_the_reference():
+    found = simulate_ensemble(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], duration=400.0)
+    assert found.end[0] == EndState.STICK_SLIP
+    times = np.linspace(0.0, 300.0, 150_001)
+    trajectory = simulate(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], times, tolerance=1e-10)
+    first, last = (phase.end for phase in trajectory.stick_phases[-3:-1])
+    cycle = (times >= first) & (times <= last)
+    assert found.least_radius[0] == pytest.approx(trajectory.radius[cycle].min(), rel=2.0 * ACCURACY)
+    assert found.largest_radius[0] == pytest.approx(trajectory.radius[cycle].max(), rel=2.0 * ACCURACY)
+    power = (
+        STICK_SLIP.friction_force * np.trapezoid(trajectory.slip_speed[cycle], times[cycle]) / (last - first)
+    )
+    assert found.slip_power[0] == pytest.approx(power, rel=1e-3)
+
+
+def test_a_pin_that_creeps_ends_at_the_largest_radius_of_sticking():
+    found = simulate_ensemble(CREEPS, starts(300, 2.0), duration=300.0)
+    assert np.all(found.end == EndState.STUCK)
+    largest = sticking_radius(CREEPS)
+    assert found.largest_radius.max() == pytest.approx(largest, rel=1e-12)
+    assert np.sum(np.isclose(found.largest_radius, largest, rtol=1e-12)) > 5
+
+
+def test_motion_and_ends_are_the_same_in_any_units():
+    length, time, mass = 2.0**20, 2.0**-9, 2.0**-5  # without rounding
+    states = starts(100, 0.4)
+    scaled = replace(
+        FIG5,
+        mass=FIG5.mass * mass,
+        stiffness=FIG5.stiffness * mass / time**2,
+        damping=FIG5.damping * mass / time,
+        friction_force=FIG5.friction_force * mass * length / time**2,
+        disc_speed=FIG5.disc_speed / time,
+        offset=FIG5.offset * length,
+    )
+    size = np.array([length, length, length / time, length / time])
+    for early_end in (False, True):
+        one = simulate_ensemble(FIG5, states, duration=300.0, early_end=early_end)
+        other = simulate_ensemble(scaled, states * size, duration=300.0 * time, early_end=early_end)
+        np.testing.assert_array_equal(one.end, other.end)
+        np.testing.assert_allclose(other.states / size, one.states, rtol=0.0, atol=1e-10)
+        np.testing.assert_allclose(other.least_radius / length, one.least_radius, rtol=1e-7)
+        np.testing.assert_allclose(other.slip_power, one.slip_power * mass * length**2 / time**3, rtol=1e-7)
+
+
+def test_slip_that_dies_out_for_ever_is_stuck_at_once_and_given_up_undecided_in_full_length():
+    # Centred and overdamped it slips ever more slowly towards the largest radius of sticking, without resting.
+    pin = replace(FIG5, stiffness=15.0, damping=9.0, friction_force=12.0, disc_speed=1.0, offset=0.0)
+    early = simulate_ensemble(pin, [0.9, -1.7, 8.0, -60.0], duration=60.0)
+    full = simulate_ensemble(pin, [0.9, -1.7, 8.0, -60.0], duration=60.0, early_end=False)
+    assert early.end[0] == EndState.STUCK
+    assert early.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
+    assert full.end[0] == EndState.UNDECIDED
+    assert early.time[0] < full.time[0] < 60.0
+    assert np.hypot(*full.states[0, :2]) == pytest.approx(sticking_radius(pin), rel=1e-3)
+
+
+def law_of(pin):
+    return pin_slip.PinLaw(
+        pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0
+    )
+
+
+@pytest.mark.parametrize(
+    "pin", [FIG5, replace(FIG5, disc_speed=-0.4, offset=-0.2), replace(FIG5, damping=2.5)]
+)
+def test_within_the_estimated_level_the_form_falls_along_every_motion(pin):
+    law = law_of(pin)
+    well = well_of(law)
+    (equilibrium,) = self_centred_equilibria(pin)
+    assert well.place == pytest.approx(complex(equilibrium.x, equilibrium.y), rel=1e-12)
+    assert well.level > 0.0
+    turn = 1j * pin.disc_speed
+    rng = np.random.default_rng(4)
+    for _ in range(300):
+        z, v = well.place + complex(*rng.normal(size=2)), complex(*rng.normal(size=2))
+        share = np.sqrt(well.level / depth(z, v - turn * z, law, well)) * rng.uniform(0.01, 1.0)
+        z, v = well.place + share * (z - well.place), share * v
+        w = v - turn * z
+        a = -pin.stiffness * (z - pin.offset) - pin.damping * v - pin.friction_force * w / abs(w)
+        h = 1e-3
+        ahead, behind = (depth(z + s * v, v + s * a - turn * (z + s * v), law, well) for s in (h, -h))
+        assert ahead < behind  # the form is quadratic, so that this difference is its rate
+
+
+def test_the_direction_of_slip_is_linear_but_for_the_square_that_is_assumed():
+    rng = np.random.default_rng(5)
+    change = 0.5 * np.sqrt(rng.random(20_000)) * np.exp(2j * np.pi * rng.random(20_000))
+    direction = (1.0 + change) / np.abs(1.0 + change)
+    assert np.max(np.abs(direction - 1.0 - 1j * change.imag) / np.abs(change) ** 2) < 1.0
+
+
+def test_what_is_within_known_neighbourhoods_ends_there():
+    known = regions.known_ends(FIG5)
+    assert known[KNOWN_LEVEL] > 0.0
+    assert known[KNOWN_REACH] > 0.0
+    # The starts that are captured early, run on to the very end by the reference's own law of convergence.
+    states = starts(2000, 0.5, seed=8)
+    early = simulate_ensemble(FIG5, states, duration=600.0)
+    assert np.all(early.end != EndState.UNDECIDED)
+    again = simulate_ensemble(
+        FIG5, early.states, duration=600.0, parameters={"mass": np.full(len(states), FIG5.mass)}
+    )
+    np.testing.assert_array_equal(early.end, again.end)
+
+
+def test_distances_that_do_not_shrink_show_nothing():
+    assert converged(1e-5, 2e-5, 4e-5, 1.0)
+    assert not converged(1e-3, 2e-3, 4e-3, 1.0)
+    assert not converged(1e-5, 1e-5, 4e-5, 1.0)
+    assert not converged(1e-5, 4e-5, 1e-5, 1.0)
+    assert converged(1e-8, 3e-8, 2e-8, 1.0)
+
+
+def test_starts_next_to_the_saddle_between_the_basins_go_to_their_own_side():
+    """The boundary is found by shooting at the saddle, which motions that begin beside it seem to end in at first."""
+    (saddle,) = (orbit for orbit in stick_slip_orbits(FIG5) if not orbit.stable)
+    middle = boundary_point(saddle, [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0])
+    aside = np.geomspace(1e-9, 1e-5, 20)
+    for sign, end in ((-1.0, EndState.SELF_CENTRED), (1.0, EndState.WHIRL)):
+        starts = np.tile(middle, (len(aside), 1))
+        starts[:, 2] += sign * aside
+        assert np.all(simulate_ensemble(FIG5, starts, duration=1000.0, tolerance=1e-12).end == end)

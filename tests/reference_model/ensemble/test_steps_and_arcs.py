@@ -1,0 +1,91 @@
+"""The parts of a step: its order, and the polynomial in between."""
+
+import numba
+import numpy as np
+import pytest
+
+from reference_model.ensemble import arc
+from reference_model.ensemble.runge_kutta import (
+    CAUTION,
+    LARGEST_FACTOR,
+    SMALLEST_FACTOR,
+    error_of,
+    factor_of,
+    step,
+)
+
+
+@numba.njit
+def pendulum(y, law):
+    return y[1], -law * np.sin(y[0]), 1.0
+
+
+@numba.njit
+def swing(start, law, h, steps):
+    y = start
+    for _ in range(steps):
+        mean, _, _ = step(pendulum, law, y, pendulum(y, law), h)
+        y = (y[0] + h * mean[0], y[1] + h * mean[1])
+    return y
+
+
+@numba.njit
+def estimate(start, law, h, tolerance):
+    mean, third, fifth = step(pendulum, law, start, pendulum(start, law), h)
+    new = (start[0] + h * mean[0], start[1] + h * mean[1])
+    return error_of(start, new, h, third, fifth, tolerance)
+
+
+def test_the_step_is_of_eighth_order():
+    exact = np.array(swing((1.0, 0.5), 2.0, 0.005, 800))
+    errors = [np.abs(np.array(swing((1.0, 0.5), 2.0, 4.0 / n, n)) - exact).max() for n in (10, 20, 40)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > 7.5), orders
+
+
+def test_the_error_is_estimated_in_the_eighth_power_of_the_step():
+    errors = [estimate((1.0, 0.5), 2.0, h, 1e-9) for h in (0.4, 0.2)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(8.0, abs=0.7)
+    assert estimate((1.0, 0.5), 2.0, 0.3, 1e-8) == pytest.approx(estimate((1.0, 0.5), 2.0, 0.3, 1e-9) / 10.0)
+
+
+def test_the_next_step_follows_from_the_error():
+    assert factor_of(0.5**8) == pytest.approx(2.0 * CAUTION, rel=1e-14)
+    assert factor_of(0.0) == LARGEST_FACTOR
+    for hopeless in (1e20, np.inf, np.nan):
+        assert factor_of(hopeless) == SMALLEST_FACTOR
+
+
+def motion_at(x, y, t):
+    places = [
+        complex(p(t), q(t)) for p, q in ((x.deriv(i) if i else x, y.deriv(i) if i else y) for i in range(4))
+    ]
+    return arc.Motion(*places)
+
+
+def test_the_arc_is_exact_for_polynomials_of_seventh_order():
+    rng = np.random.default_rng(0)
+    x, y = (np.polynomial.Polynomial(rng.normal(size=8)) for _ in range(2))
+    between = arc.arc_between(0.8, motion_at(x, y, 0.3), motion_at(x, y, 1.1))
+    for u in np.linspace(0.0, 1.0, 7):
+        t = 0.3 + 0.8 * u
+        assert arc.place_on(between, u) == pytest.approx(complex(x(t), y(t)), rel=1e-12, abs=1e-12)
+        assert arc.velocity_on(between, u) == pytest.approx(
+            complex(x.deriv()(t), y.deriv()(t)), rel=1e-11, abs=1e-11
+        )
+
+
+def circling(t, radius=0.9, centre=0.1, speed=1.0):
+    turned = radius * np.exp(1j * speed * t)
+    return arc.Motion(centre + turned, *((1j * speed) ** i * turned for i in (1, 2, 3)))
+
+
+def test_extremes_of_a_circling_motion_are_found():
+    between = arc.arc_between(0.9, circling(-0.4), circling(0.5))
+    assert arc.where(arc.rightward, between) == pytest.approx(4.0 / 9.0, abs=1e-7)
+    assert arc.where(arc.outward, between) == pytest.approx(4.0 / 9.0, abs=1e-6)
+
+
+def test_way_is_the_integral_of_the_slip_speed():
+    between = arc.arc_between(0.9, circling(0.0, centre=0.0), circling(0.9, centre=0.0))
+    assert arc.way_along(between, 0.7, 1.5) == pytest.approx(0.7 * 0.9 * 0.5 * 0.9, rel=1e-7)
