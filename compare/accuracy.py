@@ -46,7 +46,7 @@ def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> 
 
 def change_as_error(found: FloatArray, other: FloatArray) -> FloatArray:
     """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape."""
-    return SAFETY * np.abs(other - found) + ROUNDING * np.max(np.abs(found), initial=0.0)
+    return np.asarray(SAFETY * np.abs(other - found) + ROUNDING * np.max(np.abs(found), initial=0.0))
 
 
 def observed_exponent(

@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | judge | simulate | errata``.
+"""The command line: ``friction-discs list | report | judge | simulate | sweep | errata``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -8,14 +8,31 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from compare.command_input import (
+    BAD_INPUT,
+    FINE,
+    INTERRUPTED,
+    MOST_JOBS,
+    MOST_SAMPLES,
+    SOMETHING_DIFFERS,
+    BadInputError,
+    EngineFailedError,
+    changed,
+    check_folder,
+    cores,
+    count,
+    positive,
+    refused,
+    say,
+)
+from compare.sweep.cli import sweep
 
 if TYPE_CHECKING:
     from compare.faults import Fault
@@ -26,11 +43,6 @@ if TYPE_CHECKING:
     from compare.workers import Failure
     from reference_model.systems import System
 
-FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-
-MOST_SAMPLES, MOST_JOBS = 10_000_000, 1000
-"""More would fill the memory of a machine, or its table of processes."""
-
 app = typer.Typer(
     name="friction-discs",
     add_completion=False,
@@ -38,23 +50,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-class BadInputError(Exception):
-    """A sentence that tells the user what is wrong and what would be right."""
-
-
-class EngineFailedError(Exception):
-    """A sentence that tells why an engine has no result."""
-
-
-@contextmanager
-def refused() -> Iterator[None]:
-    """Turn the ``ValueError`` of a check into ``BadInputError``; not around more, lest it hide a mistake."""
-    try:
-        yield
-    except ValueError as error:
-        raise BadInputError(str(error)) from None
 
 
 def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
@@ -76,25 +71,20 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
         sys.stdout.flush()
     except (BadInputError, usage_error) as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
-        return _say(" ".join(message.split()), BAD_INPUT)
+        return say(" ".join(message.split()), BAD_INPUT)
     except EngineFailedError as error:
-        return _say(str(error), SOMETHING_DIFFERS)
+        return say(str(error), SOMETHING_DIFFERS)
     except OSError as error:
         _close_output()
-        return _say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
+        return say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
     except (KeyboardInterrupt, typer.Abort):
-        return _say("Interrupted.", INTERRUPTED)
+        return say("Interrupted.", INTERRUPTED)
     return result if isinstance(result, int) else FINE
 
 
 def _close_output() -> None:
     """Leave nothing behind that would be written once more, and fail again, at the end of the process."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _say(sentence: str, result: int) -> int:
-    print(sentence, file=sys.stderr)
-    return result
 
 
 @app.callback(invoke_without_command=True)
@@ -111,6 +101,7 @@ def friction_discs(
       friction-discs judge
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json
+      friction-discs sweep basin pin
       friction-discs errata
     """
     if version:
@@ -179,8 +170,8 @@ def report(
     studies = _studies(context, names or [])
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
-        processes = _cores() if jobs is None else _count("jobs", jobs, 1, MOST_JOBS)
-        _check_folder(output)
+        processes = cores() if jobs is None else count("jobs", jobs, 1, MOST_JOBS)
+        check_folder(output)
 
     from compare.errata import ERRATA
     from compare.report.write import write_report
@@ -202,7 +193,7 @@ def report(
     _print_summary(result, matrix, output / "index.html")
     if result.interrupted:
         missing = ", ".join(f"{study} {column}" for study, column in result.missing) or "figures"
-        return _say(
+        return say(
             f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
         )
     return SOMETHING_DIFFERS if _wrong(result, matrix) else FINE
@@ -248,8 +239,8 @@ def judge(
 
     with refused():
         faults = _faults(names or [])
-        processes = _cores() if jobs is None else _count("jobs", jobs, 1, MOST_JOBS)
-        _check_folder(output)
+        processes = cores() if jobs is None else count("jobs", jobs, 1, MOST_JOBS)
+        check_folder(output)
 
     from compare import judge as judging
     from compare.workers import interrupts_ignored
@@ -269,12 +260,13 @@ def judge(
         judging.write_judged(judged, output)
     _print_judged(judged, output / "judge.html")
     if judged.interrupted:
-        return _say("Interrupted. The same command with --resume completes it.", INTERRUPTED)
+        return say("Interrupted. The same command with --resume completes it.", INTERRUPTED)
     return FINE if judged.good else SOMETHING_DIFFERS
 
 
 simulate = typer.Typer(rich_markup_mode=None)
 app.add_typer(simulate, name="simulate")
+app.add_typer(sweep, name="sweep")
 
 EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
 Settings = Annotated[
@@ -393,12 +385,12 @@ def _simulate(
 
     with refused():
         (chosen,) = engines([engine])
-        system = _changed(paper, settings)
+        system = changed(paper, settings)
         if missing := chosen.lacking([system]):
             raise UnsupportedSystemError(missing)
         state = checked_state(system, [finite_number("start", value) for value in start])
         accuracy = checked_tolerance(finite_number("tolerance", tolerance))
-        times = np.linspace(0.0, _positive("until", until, "s"), _count("samples", samples, 2, MOST_SAMPLES))
+        times = np.linspace(0.0, positive("until", until, "s"), count("samples", samples, 2, MOST_SAMPLES))
         write = write_csv if output is None else writer(output)
         if output is not None:
             _check_file(output)
@@ -476,53 +468,6 @@ def _faults(names: Sequence[str]) -> tuple[Fault, ...]:
     return tuple(fault for fault in FAULTS if fault.name in wanted or not wanted)
 
 
-def _changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
-    from compare.engines import known
-
-    names = [field.name for field in fields(system)]
-    changes: dict[str, Any] = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
-        name = known("parameter", name.strip(), names)
-        ring = name == "contact_points" and value.strip().lower() == "none"
-        changes[name] = None if ring else value
-    return replace(system, **changes)
-
-
-def _positive(name: str, text: str, unit: str) -> float:
-    """Return the number > 0 that ``text`` says; raise ``ValueError`` otherwise."""
-    from reference_model.systems import finite_number
-
-    value = finite_number(name, text)
-    if value <= 0.0:
-        raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
-    return value
-
-
-def _count(name: str, text: str, least: int, most: int) -> int:
-    """Return the whole number from ``least`` to ``most`` that ``text`` says; raise ``ValueError`` otherwise."""
-    try:
-        value = int(text)
-    except ValueError:
-        raise ValueError(f"{name} = {text!r}: it must be a whole number") from None
-    if not least <= value <= most:
-        raise ValueError(f"{name} = {value}: it must lie between {least} and {most}")
-    return value
-
-
-def _check_folder(folder: Path) -> None:
-    """Raise ``ValueError`` if no file can be made in ``folder``, which is made itself."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise ValueError(f"can't write into the folder {str(folder)!r}: {error.strerror}") from None
-
-
 def _check_file(path: Path) -> None:
     """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
     existed = path.exists()
@@ -534,13 +479,6 @@ def _check_file(path: Path) -> None:
     if not existed:
         with suppress(OSError):
             path.unlink()
-
-
-def _cores() -> int:
-    """Return how many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 @contextmanager

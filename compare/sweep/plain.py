@@ -1,0 +1,117 @@
+"""What a trajectory of the plain reference ends as: the judge of a sweep's random sample."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from compare.export import COLUMNS
+from reference_model import simulate
+from reference_model.ensemble import EndState
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Trajectory
+
+WATCHED = 0.5
+"""Part of a trajectory, before its end, by which it is judged."""
+
+SAMPLES_PER_TURN = 64
+
+AT_REST = 0.02
+"""Largest distance from the last place, in units of that of the whole motion, at which the centre is at rest."""
+
+STEADY = 0.01
+"""Spread (largest − smallest)/(largest + smallest) of the radius, turn after turn, up to which a motion is steady."""
+
+SAME = 1.4
+"""Ratio of the spreads in both halves of what is watched, up to which a modulation neither grows nor decays."""
+
+
+def plain_trajectory(
+    system: System, state: FloatArray, time: float, duration: float, tolerance: float
+) -> Trajectory:
+    """Return the motion from 0 to ``duration`` (s) by the plain reference, at times of which ``time`` (s) is one."""
+    turn = 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
+    samples = math.ceil(duration / turn * SAMPLES_PER_TURN) + 2
+    times = np.union1d(np.linspace(0.0, duration, samples), [time])
+    return simulate(system, state, times, tolerance=tolerance)
+
+
+def end_of(trajectory: Trajectory) -> EndState:
+    """Return what a trajectory ends as, UNDECIDED where its second half leaves a doubt.
+
+    - *Stuck*: the last stick phase has lasted for a whole turn of the master disc: it sees no force that it has not
+      seen. *Stick–slip*: there are shorter stick phases, and they begin at the same radius again and again.
+    - *Self-centred*: the centre hardly moves in the last quarter.
+    - *Whirl*, *modulated*: the motion goes round the axis, and where it passes the positive x-axis (once a turn, so
+      that an offset does not matter) the radius is the same, or not, in both halves alike.
+    """
+    system, times = trajectory.system, trajectory.times
+    since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))
+    sticks = [phase for phase in trajectory.stick_phases if phase.end > since]
+    if sticks:
+        last = sticks[-1]
+        turned = (last.end - last.start) * abs(system.disc_speed)
+        if last.end == times[-1] and (turned >= 2.0 * math.pi or system.disc_speed == 0.0):
+            return EndState.STUCK
+        spreads = _spreads(
+            np.array([phase.start for phase in sticks]),
+            np.array([math.hypot(*phase.initial_state[:2]) for phase in sticks]),
+            middle,
+        )
+        return EndState.STICK_SLIP if max(spreads) <= STEADY else EndState.UNDECIDED
+    if _at_rest(trajectory, middle):
+        return EndState.SELF_CENTRED
+    before, after = _spreads(*_passages(trajectory, since), middle)
+    if max(before, after) <= STEADY:
+        return EndState.WHIRL
+    if math.isfinite(before + after) and max(before, after) <= SAME * min(before, after):
+        return EndState.MODULATED
+    return EndState.UNDECIDED
+
+
+def _at_rest(trajectory: Trajectory, since: float) -> bool:
+    """Return whether the centre hardly moves from ``since`` (s) on, beside all its motion."""
+    x, y = trajectory.states.T[:2]
+    distance = np.hypot(x - x[-1], y - y[-1])
+    last = trajectory.times >= since
+    return bool(np.max(distance[last]) <= AT_REST * np.max(distance))
+
+
+def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
+    """Return times in s and radii in m of the passages of the positive x-axis in the sense of the master disc."""
+    velocities = COLUMNS[type(trajectory.system)].index(("vx", "m/s"))
+    x, y = trajectory.states.T[:2]
+    vx, vy = trajectory.states.T[velocities : velocities + 2]
+    y, vy = (math.copysign(1.0, trajectory.system.disc_speed) * values for values in (y, vy))
+    at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (trajectory.times[:-1] >= since))
+    step = trajectory.times[at + 1] - trajectory.times[at]
+    # the zero of the cubic through y and its slope at both ends by two steps of Newton's method
+    share = y[at] / (y[at] - y[at + 1])
+    for _ in range(2):
+        value, slope = _cubic(y, vy, at, step, share)
+        share = share - value / slope
+    radius, _ = _cubic(x, vx, at, step, share)
+    ahead = radius > 0.0
+    return (trajectory.times[at] + share * step)[ahead], radius[ahead]
+
+
+def _cubic(
+    values: FloatArray, slopes: FloatArray, at: Any, step: FloatArray, share: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return Hermite's cubic between samples ``at`` and ``at`` + 1, and its derivative by ``share`` of the step."""
+    low, high = values[at], values[at + 1]
+    left, right = slopes[at] * step, slopes[at + 1] * step
+    second, third = 3.0 * (high - low) - 2.0 * left - right, 2.0 * (low - high) + left + right
+    value = low + share * (left + share * (second + share * third))
+    return value, left + share * (2.0 * second + 3.0 * share * third)
+
+
+def _spreads(times: FloatArray, radii: FloatArray, middle: float) -> tuple[float, float]:
+    """Return (largest − smallest)/(largest + smallest) of radii before and after ``middle``, inf for a single one."""
+    spreads = []
+    for chosen in (radii[times < middle], radii[times >= middle]):
+        low, high = (float(np.min(chosen)), float(np.max(chosen))) if chosen.size > 1 else (0.0, math.inf)
+        spreads.append((high - low) / (high + low) if math.isfinite(high) else math.inf)
+    return spreads[0], spreads[1]

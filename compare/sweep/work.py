@@ -1,0 +1,76 @@
+"""The pieces of work of a sweep, as functions that another process or machine can import."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compare.store import stamp
+from compare.sweep.plain import end_of, plain_trajectory
+from compare.sweep.plan import Numbers, Plan
+from compare.sweep.quantities import RESULTS
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+LONGER = (1.0, 2.0, 4.0, 8.0)
+"""Multiples of a plan's duration for which the plain reference simulates."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """What n trajectories came to: arrays of length n by the names of ``RESULTS``, and the code that found them."""
+
+    stamp: str
+    results: dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Plain:
+    """A trajectory of the plain reference: its state at a time that was asked for, and what it ends as.
+
+    NaN and undecided where it gave up at once.
+    """
+
+    state: FloatArray
+    end: int
+
+
+def compute(plan: Plan, numbers: Numbers, threads: int | None) -> Chunk:
+    """Simulate the trajectories of these numbers on ``threads`` threads, None for all cores."""
+    from reference_model.ensemble import simulate_ensemble  # the one place where sweeps meet the kernel
+
+    states, parameters = plan.trajectories(numbers)
+    found = simulate_ensemble(
+        plan.system,
+        states,
+        duration=plan.duration,
+        tolerance=plan.tolerance,
+        parameters=parameters,
+        threads=threads,
+    )
+    return Chunk(stamp(), {name: np.asarray(getattr(found, name)) for name in RESULTS})
+
+
+def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
+    """Simulate one trajectory with the plain reference; ``time`` (s) is when its state is asked for.
+
+    Where it does not end as ``end``, it is simulated for longer and longer before that counts: what shall be certain
+    from the motion alone takes more time than a kernel may need that knows where motions end.
+    """
+    states, parameters = plan.trajectories(range(number, number + 1))
+    changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
+    system = replace(plan.system, **changes)
+    state = np.full(system.state_size, np.nan)
+    found = 0
+    with suppress(SimulationError):
+        for longer in LONGER:
+            trajectory = plain_trajectory(system, states[0], time, longer * plan.duration, plan.tolerance)
+            state = trajectory.states[np.searchsorted(trajectory.times, time)]
+            found = int(end_of(trajectory))
+            if found == end:
+                break
+    return Plain(state, found)

@@ -1,0 +1,62 @@
+"""Sweeps of many small chunks as processes, so that there is time to interfere, and what is in their stores."""
+
+import resource
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from processes import REAL, environment
+
+LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3"]
+"""Many small chunks, so that there is time to interfere."""
+
+
+def long_sweep(folder, *more, limit=None):
+    """Start the command; ``limit`` is the largest file in bytes that it may write."""
+    restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    return subprocess.Popen(
+        [*REAL, *LONG, "--chunk", "10", "--output", str(folder), *more],
+        env=environment(),
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        encoding="utf-8",
+        preexec_fn=restrict,
+    )
+
+
+def marks(folder: Path) -> set[str]:
+    """Return the files that mark written chunks."""
+    done = folder / "sweep.zarr" / "round-0" / "done"
+    return {path.name for path in done.iterdir() if path.name.isdigit()} if done.exists() else set()
+
+
+def wait_for_marks(folder, least, process):
+    deadline = time.monotonic() + 120.0
+    while len(marks(folder)) < least:
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+
+
+def finished_by(process):
+    out, err = process.communicate(timeout=200)
+    return process.returncode, out, err
+
+
+def content(path):
+    """Return all arrays of a store but for the marks of chunks, by group and name."""
+    groups = sorted(group.name for group in path.iterdir() if group.is_dir())
+    return {
+        (group, name): values.values
+        for group in groups
+        for name, values in xr.open_zarr(path, group=group, consolidated=False).variables.items()
+        if name != "done"
+    }
+
+
+def assert_same(one, other):
+    assert one.keys() == other.keys()
+    for key, values in one.items():
+        np.testing.assert_array_equal(values, other[key], err_msg=str(key))
