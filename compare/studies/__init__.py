@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compare.engines import known
+from compare.studies.basins import STUDY as BASINS
 from compare.studies.connector import STUDY as CONNECTOR
 from compare.studies.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.drivetrain_frozen import STUDY as DRIVETRAIN_FROZEN
@@ -25,6 +26,7 @@ from compare.studies.foreign_engines import STUDY as FOREIGN_ENGINES
 from compare.studies.free_ring import STUDY as FREE_RING
 from compare.studies.nonlinear_support import STUDY as NONLINEAR_SUPPORT
 from compare.studies.power_balance import STUDY as POWER_BALANCE
+from compare.studies.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.stability_map import STUDY as STABILITY_MAP
 from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
 from compare.studies.trajectories import STUDY as TRAJECTORIES
@@ -36,6 +38,7 @@ STUDIES: tuple[Study, ...] = (
     FIG04,
     FIG05,
     FIG06,
+    BASINS,
     STICKING_DOMAIN,
     WHIRL_STABILITY,
     NONLINEAR_SUPPORT,
@@ -43,6 +46,7 @@ STUDIES: tuple[Study, ...] = (
     FIG09,
     FIG11,
     STABILITY_MAP,
+    SIMULATED_MAP,
     CONTACT_LAWS,
     FREE_RING,
     DRIVETRAIN_RUN_UP,

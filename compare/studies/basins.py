@@ -1,0 +1,364 @@
+"""How likely the whirl is: the basins of Fig. 5, their boundary, and how they change with the speed."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.stats import binomtest
+
+from compare.accuracy import refined
+from compare.claim import Claim, ErrorBudget
+from compare.engines import Engine
+from compare.paper import FIG5
+from compare.studies.basins_pictures import draw
+from compare.studies.common import parameters_of
+from compare.study import Findings, Study
+from reference_model import StickSlipOrbit, basin_boundary, boundary_point, simulate, stick_slip_orbits
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from reference_model.ensemble import Ensemble
+
+PLANE = ((-0.3, 0.5), (-0.4, 0.4))
+"""Of x0 in m and vx0 in m/s; the others are zero."""
+
+SIDE = 1000
+"""Starts along each side of the plane."""
+
+CELLS, ON_BOUNDARY = 14, 1e-7
+"""Resolution of the search for the boundary, and its tolerance."""
+
+FINE = 100_000
+"""Points of the smooth curve to which distances are taken."""
+
+UNTIL = 3000.0
+"""In s: long enough for every start to have come to its end."""
+
+SPEEDS = np.linspace(1.05, 3.0, 40)
+"""In rad/s."""
+
+STARTS, SEED = 4000, 5
+"""Random starts in the plane, the same at every speed."""
+
+RECOMPUTED = 16
+"""Starts whose end the plain reference is asked for, half of them next to the boundary."""
+
+SETTLED = 250.0
+"""In s: what the plain reference takes to come to one of the two ends from these."""
+
+PLACES, ASIDE = 4, 5e-3
+"""Starts on the boundary that each engine is asked about, and how far to its sides, in m and m/s."""
+
+WITHIN, REACH = (0.05, -0.1), 0.4
+"""A start in the basin of the equilibrium, and how far from it all are in that of the whirl."""
+
+AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
+"""When the engines' motions have left the saddle for good, in s, and at which tolerance."""
+
+CONFIDENCE = 0.95
+
+CLOSES = "The stick–slip orbit between the two basins of Fig. 5 comes back to its start after its period"
+PARTS = "Starts on either side of the boundary, which is found by shooting, come to equilibrium and whirl"
+DIVIDES = "The stable set of the stick–slip orbit of saddle type divides the ends of all starts of a grid"
+AREA = "The basin of the equilibrium takes as much of the plane as its boundary encloses"
+RECOMPUTES = "The plain reference finds the ends that the compiled ensemble finds"
+SHRINKS = "The attraction area of the self-centred equilibrium shrinks as ω grows"
+
+
+@functools.cache
+def saddle() -> StickSlipOrbit:
+    """Return the orbit whose stable set is the boundary."""
+    (orbit,) = (orbit for orbit in stick_slip_orbits(FIG5) if not orbit.stable)
+    return orbit
+
+
+@functools.cache
+def boundary() -> FloatArray:
+    """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
+    (orbit,) = (each for each in stick_slip_orbits(FIG5, tolerance=ON_BOUNDARY) if not each.stable)
+    (curve,) = basin_boundary(orbit, ranges=PLANE, cells=CELLS)
+    points = np.asarray(curve.points)
+    return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
+
+
+def smooth(points: FloatArray, samples: int = 4000) -> FloatArray:
+    """Return a closed curve through ``points`` (n, 2) by periodic cubic splines, shape (samples + 1, 2)."""
+    length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    curve = CubicSpline(length, points, bc_type="periodic")
+    return np.asarray(curve(np.linspace(0.0, length[-1], samples + 1)))
+
+
+def resolution() -> float:
+    """Return how far the smooth curve may be off, in m and m/s: by the curve through half of the points."""
+    points = boundary()
+    every_other = np.vstack((points[:-1:2], points[:1]))
+    return float(np.max(distances(smooth(every_other), points))) / 15.0  # its order is 4
+
+
+def distances(points: FloatArray, boundary: FloatArray) -> FloatArray:
+    """Return how far points (n, 2) are from the smooth curve through those of the boundary."""
+    from scipy.spatial import cKDTree
+
+    return np.asarray(cKDTree(smooth(boundary, FINE)).query(points)[0])
+
+
+def enclosed(curve: FloatArray) -> float:
+    """Return the area inside of a closed curve, shape (n, 2)."""
+    (x, y), (x_next, y_next) = curve[:-1].T, curve[1:].T
+    return 0.5 * abs(float(np.sum(x * y_next - x_next * y)))
+
+
+def grid() -> tuple[FloatArray, FloatArray]:
+    """Return x0 and vx0 of the grid, shape (SIDE,) each."""
+    first, second = (np.linspace(low, high, SIDE) for low, high in PLANE)
+    return first, second
+
+
+def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
+    """Return states of shape (n, 4) from components of shape (n,)."""
+    zero = np.zeros_like(x)
+    return np.column_stack((x, zero, vx, zero))
+
+
+def ensemble_of(starts: FloatArray, **parameters: FloatArray) -> Ensemble:
+    """Return what ``starts`` of shape (n, 4) end in."""
+    from reference_model.ensemble import simulate_ensemble
+
+    return simulate_ensemble(FIG5, starts, duration=UNTIL, parameters=parameters)
+
+
+def measure(engine: Engine) -> Findings:
+    """Follow the saddle for a period, and starts beside its stable set to their ends."""
+    return Findings((closes_claim(engine), parts_claim(engine)))
+
+
+def closes_claim(engine: Engine) -> Claim:
+    """Compare the state after a period with that at the start."""
+    orbit = saddle()
+    measured, error = refined(
+        lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
+    )
+    return Claim(
+        CLOSES,
+        equation="(1), (6)",
+        kind="trajectory",
+        engine=engine.name,
+        predicted=orbit.state,
+        measured=measured,
+        budget=ErrorBudget(float(np.max(error)), resolution=1e-4),
+        parameters=parameters_of(FIG5),
+        source="Fig. 5",
+        unit="m, m/s",
+        note=f"Found by the map from release to release: period {orbit.period:.7g} s, of which it sticks "
+        f"{orbit.stick_time:.5g} s; multipliers "
+        f"{', '.join(f'{abs(value):.5g}' for value in orbit.multipliers)}.",
+    )
+
+
+def parts_claim(engine: Engine) -> Claim:
+    """Tell to which end starts on either side of the boundary come."""
+    rays = np.exp(2j * math.pi * np.arange(PLACES) / PLACES)
+    ways = np.column_stack((rays.real, rays.imag))
+    zero = np.zeros_like(ways)
+    middle = [
+        boundary_point(saddle(), start, end)[[0, 2]]
+        for start, end in zip(
+            starts_at(*(WITHIN + zero).T), starts_at(*(WITHIN + REACH * ways).T), strict=True
+        )
+    ]
+    sides = np.concatenate((middle - ASIDE * ways, middle + ASIDE * ways))
+    measured = [
+        float(whirls_at(engine.simulate(FIG5, start, [0.0, AFTER], tolerance=ASIDE_TOLERANCE).at_end))
+        for start in starts_at(*sides.T)
+    ]
+    return Claim(
+        PARTS,
+        equation="(3), (17)",
+        engine=engine.name,
+        predicted=np.repeat((0.0, 1.0), PLACES),
+        measured=measured,
+        budget=ErrorBudget(0.0, resolution=0.5),
+        parameters=parameters_of(FIG5),
+        source="Fig. 5; starts from rest in y",
+        note=f"{len(sides)} starts, {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: 1 for the "
+        "whirl, 0 for the equilibrium, as the distance from the place (3) is larger than X0 or not.",
+    )
+
+
+def whirls_at(state: FloatArray) -> bool:
+    """Tell whether a motion has left the neighbourhood of the equilibrium for good."""
+    from reference_model import self_centred_equilibria
+
+    (rest,) = self_centred_equilibria(FIG5)
+    return math.hypot(state[0] - rest.x, state[1] - rest.y) > FIG5.offset
+
+
+def inside(points: FloatArray, curve: FloatArray) -> NDArray[np.bool_]:
+    """Tell which points (n, 2) a closed curve encloses."""
+    from matplotlib.path import Path
+
+    return np.asarray(Path(curve).contains_points(points))
+
+
+def theory() -> Findings:
+    """Simulate the starts of the grid and at all speeds; compare with the boundary and the plain reference."""
+    from reference_model.ensemble import EndState
+
+    curve, (x, vx) = smooth(boundary()), grid()
+    places = np.column_stack([axis.ravel() for axis in np.meshgrid(x, vx)])
+    ends = ensemble_of(starts_at(*places.T)).end
+    random = np.random.default_rng(SEED)
+    drawn = np.column_stack([random.uniform(low, high, STARTS) for low, high in PLANE])
+    shares = shares_over_speed(drawn)
+    orbit = saddle().trajectory
+    held = np.zeros(len(orbit.times))
+    for begin, end in orbit.stick_times.reshape(-1, 2):
+        held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
+    return Findings(
+        (
+            divides_claim(places, ends, curve),
+            area_claim(ends.reshape(SIDE, SIDE), curve),
+            recomputes_claim(random, drawn, curve),
+            shrinks_claim(shares),
+        ),
+        {
+            "ends": ends.reshape(SIDE, SIDE).astype(float)[::2, ::2],
+            "curve": curve,
+            "saddle": np.column_stack((orbit.states[:, :2], held)),
+            "speeds": SPEEDS,
+            "whirl": shares[int(EndState.WHIRL)],
+        },
+    )
+
+
+def shares_over_speed(drawn: FloatArray) -> dict[int, FloatArray]:
+    """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
+    from reference_model.ensemble import EndState
+
+    n = len(drawn)
+    found = ensemble_of(
+        np.tile(starts_at(*drawn.T), (len(SPEEDS), 1)), disc_speed=np.repeat(SPEEDS, n)
+    ).end.reshape(len(SPEEDS), n)
+    shares = {}
+    for end in EndState:
+        rows = []
+        for count in np.count_nonzero(found == end, axis=1).tolist():
+            interval = binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
+            rows.append((count / n, interval.low, interval.high))
+        shares[int(end)] = np.array(rows)
+    return shares
+
+
+def divides_claim(places: FloatArray, ends: NDArray[np.uint8], curve: FloatArray) -> Claim:
+    """Count the starts that end as those on the other side do, but for those next to the boundary."""
+    from reference_model.ensemble import EndState
+
+    expected = np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
+    wrong = places[ends != expected]
+    off, known = distances(wrong, boundary()) if len(wrong) else np.zeros(0), resolution()
+    farthest = f", none farther than {off.max():.2g} from it" if len(wrong) else ""
+    return Claim(
+        DIVIDES,
+        equation="",
+        engine="theory",
+        predicted=0.0,
+        measured=np.count_nonzero(off > known),
+        budget=ErrorBudget(0.0, resolution=0.5),
+        parameters=parameters_of(FIG5),
+        source="Fig. 5; starts from rest in y",
+        note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary from {len(boundary()) - 1} starts that "
+        f"come to the saddle, and cubic splines. {len(wrong)} starts end as the other side does{farthest}: "
+        f"those farther than {known:.2g} count, to which the curve is known.",
+    )
+
+
+def area_claim(ends: NDArray[np.uint8], curve: FloatArray) -> Claim:
+    """Compare the share of the starts with the share of the area."""
+    from reference_model.ensemble import EndState
+
+    whole = math.prod(high - low for low, high in PLANE)
+    mine = ends == EndState.SELF_CENTRED
+    corners = mine[:-1, :-1].astype(int) + mine[1:, :-1] + mine[:-1, 1:] + mine[1:, 1:]
+    divided = np.count_nonzero((corners > 0) & (corners < 4)) / corners.size
+    return Claim(
+        AREA,
+        equation="",
+        engine="theory",
+        predicted=enclosed(curve) / whole,
+        measured=float(np.mean(corners)) / 4.0,
+        budget=ErrorBudget(0.5 * divided, resolution=2e-3),
+        parameters=parameters_of(FIG5),
+        source="Fig. 5; starts from rest in y",
+        note="Numerical error: half of the cells through which the boundary passes.",
+    )
+
+
+def recomputes_claim(random: np.random.Generator, drawn: FloatArray, curve: FloatArray) -> Claim:
+    """Ask the plain reference about some of the starts, and about some next to the boundary."""
+    from reference_model.ensemble import EndState
+
+    near = curve[random.integers(len(curve), size=RECOMPUTED // 2)] + random.uniform(
+        -ASIDE, ASIDE, (RECOMPUTED // 2, 2)
+    )
+    starts = starts_at(*np.concatenate((drawn[: RECOMPUTED // 2], near)).T)
+    found = ensemble_of(starts).end
+    return Claim(
+        RECOMPUTES,
+        equation="(1), (6)",
+        kind="trajectory",
+        engine="theory",
+        predicted=[float(whirls_at(simulate(FIG5, start, [0.0, SETTLED]).at_end)) for start in starts],
+        measured=found == EndState.WHIRL,
+        budget=ErrorBudget(0.0, resolution=0.5),
+        parameters=parameters_of(FIG5),
+        source="Fig. 5; random starts, half of them beside the boundary",
+        note=f"1 for the whirl; {RECOMPUTED} starts, of which half are not farther than {ASIDE:g} from the boundary.",
+    )
+
+
+def shrinks_claim(shares: dict[int, FloatArray]) -> Claim:
+    """Compare the equilibrium's shares at neighbouring speeds, from the first that has a whirl on."""
+    from reference_model.ensemble import EndState
+
+    rest = shares[int(EndState.SELF_CENTRED)][:, 0]
+    last = max(int(np.argmax(rest < 1.0)) - 1, 0)
+    grows = np.count_nonzero(np.diff(rest[last:]) > 0.0)
+    return Claim(
+        SHRINKS,
+        equation="",
+        engine="theory",
+        predicted=0.0,
+        measured=grows,
+        budget=ErrorBudget(0.0, resolution=0.5),
+        parameters=parameters_of(FIG5, without=("disc_speed",)),
+        source="Section 6; Fig. 5 but for ω",
+        note=f"How often the share of the same {STARTS} random starts grows from one of {len(SPEEDS)} speeds to the "
+        f"next. All come to the equilibrium up to ω = {SPEEDS[last]:.3g} rad/s; {rest[-1]:.2%} still do at "
+        f"{SPEEDS[-1]:g} rad/s.",
+    )
+
+
+STUDY = Study(
+    name="basins",
+    title="How likely the whirl is",
+    paper="Fig. 5 shows that equilibrium and whirl exist side by side, each with an area of attraction of its own, "
+    "and section 6 says that the equilibrium's shrinks at high speeds. Here all starts of a plane are followed to "
+    "their ends. What divides them is the stable set of a periodic motion of saddle type that sticks once a period: "
+    "it is found by the map from one release to the next, and the boundary by shooting at it.",
+    measure=measure,
+    draw=draw,
+    theory=theory,
+    figures={
+        "basins": f"Left: ends of {SIDE} × {SIDE} starts with the parameters of Fig. 5, from rest in y; the "
+        "boundary is not drawn from them, but found by shooting. Crosses: the two starts of Fig. 5. Middle: the "
+        "stick–slip orbit of saddle type, which the motions on the boundary come to; it sticks where it is bold. "
+        "Right: the share of random starts of this plane that the whirl captures, with 95 % intervals."
+    },
+    section="The friction pin",
+    seconds=20.0,
+)
