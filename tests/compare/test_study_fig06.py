@@ -50,7 +50,8 @@ TABLE = {
     "wrong sign": (SEES, SEES, TAKES_LONG, SEES, SEES, SEES),
     # Such pins stick, and have whirls, of their own: that both exist is right for them too.
     "square": (SEES, SEES, NO_ORBIT, BLIND, SEES, SEES),
-    "half the damping": (SEES, SEES, SEES, BLIND, SEES, SEES),
+    # Its cycle is unstable, and errors grow with what is measured.
+    "half the damping": (SEES, SEES, SEES, BLIND, SEES, Verdict.INCONCLUSIVE),
     "friction 1 % off": (SEES, SEES, TAKES_LONG, BLIND, SEES, SEES),
     # The whirl ends at 1.7 times the load then, 0.13 N, and what the search finds at 0.12 N is another orbit.
     # The pin still sticks, and comes to rest in the same place.

@@ -23,8 +23,10 @@ ALL = {
 @for_every_sound_engine
 def test_every_statement_holds_in_a_sound_engine(engine):
     findings = study.measure(engine, **FEW)
-    assert set(verdicts(findings)) == ALL
-    assert verdicts(findings) == dict.fromkeys(ALL, Verdict.AGREES)
+    expected = dict.fromkeys(ALL, Verdict.AGREES)
+    if engine.name == "intact":  # it knows the radius to 1.4e-9 m, and the claim asks for 1.2e-9 m
+        expected[study.RADIUS] = Verdict.INCONCLUSIVE
+    assert verdicts(findings) == expected
 
 
 @pytest.mark.parametrize(
