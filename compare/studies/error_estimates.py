@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MOTIONS = 504
 """Random motions for an engine, as many of every kind of problem that it can simulate."""
 
-TOLERANCES = (1e-8, 1e-5)
+TOLERANCES = (1e-7, 1e-5)
 """Between these the tolerance of a motion is drawn."""
 
 SEED = 20

@@ -225,5 +225,6 @@ STUDY = Study(
         "change, two of them exist side by side."
     },
     section="The friction disc",
+    only=("theory",),
     seconds=15.0,
 )
