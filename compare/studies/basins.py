@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.stats import binomtest
 
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
@@ -18,11 +17,12 @@ from compare.paper import FIG5
 from compare.studies.basins_pictures import draw
 from compare.studies.common import parameters_of
 from compare.study import Findings, Study
+from compare.sweep.shares import of_grid, of_sample
 from reference_model import StickSlipOrbit, basin_boundary, boundary_point, simulate, stick_slip_orbits
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
-    from reference_model.ensemble import Ensemble
+    from reference_model.ensemble import EndState, Ensemble
 
 PLANE = ((-0.3, 0.5), (-0.4, 0.4))
 """Of x0 in m and vx0 in m/s; the others are zero."""
@@ -59,8 +59,6 @@ WITHIN, REACH = (0.05, -0.1), 0.4
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
 """When the engines' motions have left the saddle for good, in s, and at which tolerance."""
-
-CONFIDENCE = 0.95
 
 CLOSES = "The stick–slip orbit between the two basins of Fig. 5 comes back to its start after its period"
 PARTS = "Starts on either side of the boundary, which is found by shooting, come to equilibrium and whirl"
@@ -231,12 +229,12 @@ def theory() -> Findings:
             "curve": curve,
             "saddle": np.column_stack((orbit.states[:, :2], held)),
             "speeds": SPEEDS,
-            "whirl": shares[int(EndState.WHIRL)],
+            "whirl": shares[EndState.WHIRL],
         },
     )
 
 
-def shares_over_speed(drawn: FloatArray) -> dict[int, FloatArray]:
+def shares_over_speed(drawn: FloatArray) -> dict[EndState, FloatArray]:
     """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
     from reference_model.ensemble import EndState
 
@@ -244,14 +242,8 @@ def shares_over_speed(drawn: FloatArray) -> dict[int, FloatArray]:
     found = ensemble_of(
         np.tile(starts_at(*drawn.T), (len(SPEEDS), 1)), disc_speed=np.repeat(SPEEDS, n)
     ).end.reshape(len(SPEEDS), n)
-    shares = {}
-    for end in EndState:
-        rows = []
-        for count in np.count_nonzero(found == end, axis=1).tolist():
-            interval = binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
-            rows.append((count / n, interval.low, interval.high))
-        shares[int(end)] = np.array(rows)
-    return shares
+    rows = [of_sample(ends) for ends in found]
+    return {end: np.array([row[end] for row in rows]) for end in EndState}
 
 
 def divides_claim(places: FloatArray, ends: NDArray[np.uint8], curve: FloatArray) -> Claim:
@@ -282,16 +274,14 @@ def area_claim(ends: NDArray[np.uint8], curve: FloatArray) -> Claim:
     from reference_model.ensemble import EndState
 
     whole = math.prod(high - low for low, high in PLANE)
-    mine = ends == EndState.SELF_CENTRED
-    corners = mine[:-1, :-1].astype(int) + mine[1:, :-1] + mine[:-1, 1:] + mine[1:, 1:]
-    divided = np.count_nonzero((corners > 0) & (corners < 4)) / corners.size
+    share = of_grid(ends)[EndState.SELF_CENTRED]
     return Claim(
         AREA,
         equation="",
         engine="theory",
         predicted=enclosed(curve) / whole,
-        measured=float(np.mean(corners)) / 4.0,
-        budget=ErrorBudget(0.5 * divided, resolution=2e-3),
+        measured=share.value,
+        budget=ErrorBudget(0.5 * (share.high - share.low), resolution=2e-3),
         parameters=parameters_of(FIG5),
         source="Fig. 5; starts from rest in y",
         note="Numerical error: half of the cells through which the boundary passes.",
@@ -321,11 +311,11 @@ def recomputes_claim(random: np.random.Generator, drawn: FloatArray, curve: Floa
     )
 
 
-def shrinks_claim(shares: dict[int, FloatArray]) -> Claim:
+def shrinks_claim(shares: dict[EndState, FloatArray]) -> Claim:
     """Compare the equilibrium's shares at neighbouring speeds, from the first that has a whirl on."""
     from reference_model.ensemble import EndState
 
-    rest = shares[int(EndState.SELF_CENTRED)][:, 0]
+    rest = shares[EndState.SELF_CENTRED][:, 0]
     last = max(int(np.argmax(rest < 1.0)) - 1, 0)
     grows = np.count_nonzero(np.diff(rest[last:]) > 0.0)
     return Claim(
