@@ -31,6 +31,9 @@ NEAR = 0.1
 A root is on the boundary whatever this is; it decides how near two starts must come for one to be looked for.
 """
 
+SPARE = 0.1
+"""Error that the search for a point may leave, over the tolerance of the orbit."""
+
 DISTINCT = 0.1
 """Relative difference in radius of two motions that are told apart by it."""
 
@@ -193,7 +196,9 @@ def basin_boundary(
         result[places] = point
         return result
 
-    curves = dividing_curves(lambda point: sides.miss(start(point)), low, high, cells)
+    curves = dividing_curves(
+        lambda point: sides.miss(start(point)), low, high, cells, error=SPARE * orbit.flow.tolerance
+    )
     for point in (point for curve in curves for point in curve.points):
         sides.require_on_boundary(start(point))
     return curves

@@ -32,13 +32,15 @@ MOST_POINTS = 10_000
 """Points after which a curve is given up that neither closes nor leaves the rectangle."""
 
 EXACT = 1e-13
-"""Error of a point across the curve, as a fraction of the rectangle, that its search may leave."""
+"""Error of a point across the curve, as a fraction of the rectangle, that its search leaves if no other is given."""
 
 SAME = 0.25
 """Distance, in steps along a curve, up to which a zero counts as one of it."""
 
 
-def dividing_curves(function: Function, low: FloatArray, high: FloatArray, cells: int) -> tuple[Curve, ...]:
+def dividing_curves(
+    function: Function, low: FloatArray, high: FloatArray, cells: int, error: float = EXACT
+) -> tuple[Curve, ...]:
     """Return the curves in a rectangle on which ``function`` changes its sign, with points of shape (n, 2).
 
     The limits at which a curve ends are, by their index, the lower ones of both variables, then the upper ones.
@@ -52,6 +54,8 @@ def dividing_curves(function: Function, low: FloatArray, high: FloatArray, cells
     cells : int
         The sides of points on a grid of as many cells in each direction tell where a curve is, and the points of a
         curve are no farther apart than a cell. What comes and goes between two points of the grid is not found.
+    error : float
+        Of a point across the curve, as a fraction of the rectangle, that its search may leave.
 
     Raises
     ------
@@ -59,7 +63,7 @@ def dividing_curves(function: Function, low: FloatArray, high: FloatArray, cells
         If a curve can't be followed, because it has no end or others are much nearer to it than a cell.
 
     """
-    square = _Square(function, low, high, 1.0 / cells)
+    square = _Square(function, low, high, 1.0 / cells, error)
     paths: list[tuple[ComplexArray, tuple[int, ...]]] = []
     for first, second in _edges(lambda z: function(square.point(z)) > 0.0, cells):
         if any(_crosses(path, first, second) for path, _ in paths):
@@ -78,6 +82,7 @@ class _Square:
     low: FloatArray
     high: FloatArray
     step: float
+    error: float
 
     def point(self, z: complex) -> FloatArray:
         """Return the point, shape (2,), that ``z`` stands for."""
@@ -96,7 +101,7 @@ class _Square:
 
         if value(left) * value(right) > 0.0:
             return None
-        return float(brentq(value, left, right, xtol=EXACT / scale))
+        return float(brentq(value, left, right, xtol=self.error / scale))
 
     def zero_between(self, first: complex, second: complex) -> complex:
         """Return the zero on the straight line between two points on different sides."""
@@ -151,7 +156,7 @@ class _Square:
 
         if inside(SHORTEST) <= 0.0:
             return last
-        return point(brentq(inside, SHORTEST, step, xtol=EXACT))
+        return point(brentq(inside, SHORTEST, step, xtol=self.error))
 
 
 def _margins(z: complex) -> tuple[float, float, float, float]:

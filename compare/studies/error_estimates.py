@@ -18,7 +18,7 @@ from compare.study import Data, Findings, Study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MOTIONS = 504
+MOTIONS = 360
 """Random motions for an engine, as many of every kind of problem that it can simulate."""
 
 TOLERANCES = (1e-7, 1e-5)

@@ -24,7 +24,8 @@ from reference_model.ensemble import Ensemble
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """A hundredth of the starts."""
+    """A hundredth of the starts, and a boundary from as few points as can be."""
+    monkeypatch.setattr(basins, "CELLS", 6)
     monkeypatch.setattr(basins, "SIDE", 100)
     monkeypatch.setattr(basins, "STARTS", 400)
     monkeypatch.setattr(basins, "SPEEDS", np.linspace(1.1, 3.0, 6))
