@@ -54,8 +54,8 @@ MOST_ITERATIONS = 25
 CONVERGED = 1e-9
 """Largest relative miss of an orbit; Newton's method goes on below it until rounding stops it."""
 
-FRESH = 1e-6
-"""Relative miss below which the derivatives are good enough to be used again."""
+SLOW = 0.5
+"""Part of the miss that may be left after an iteration; with more, the derivatives are taken anew."""
 
 FARTHEST_PERIOD = 0.5
 """Relative change of the period beyond which an orbit is no longer near to the guess."""
@@ -324,27 +324,34 @@ def modulated_cycle(
 
 
 def _shoot(flow: Flow, unknowns: FloatArray, sought: list[int], samples: int, what: str) -> Orbit:
-    """Solve for the ``sought`` unknowns by Newton's method; return the orbit."""
+    """Solve for the ``sought`` unknowns by Newton's method, or Broyden's where it will do; return the orbit."""
     scale, period = flow.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
-    slopes = None
+    units = flow.size(unknowns)[sought]
+    step: FloatArray = np.zeros(len(sought))
+    slopes: FloatArray | None = None
+    last = math.inf
     for _ in range(MOST_ITERATIONS):
         near = abs(unknowns[PERIOD] / period - 1.0) < FARTHEST_PERIOD
         if not (near and unknowns[LOAD] > 0.0 and np.all(np.isfinite(unknowns))):
             break
         miss = flow.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
-        if smallest < CONVERGED and size > 0.5 * smallest:
+        if smallest < CONVERGED and size >= 0.5 * smallest:
             break  # rounding is reached
         if size < smallest:
             best, smallest = unknowns, size
-        if slopes is None or size > FRESH:
+        if slopes is None or size > SLOW * last:
             slopes = flow.slopes(unknowns, miss, sought)
-        unknowns = unknowns.copy()
+        else:  # Broyden's update: the last step should have brought the miss to zero
+            slopes += np.outer(miss, step / units) / float(step @ step)
+        units = flow.size(unknowns)[sought]
         try:
-            unknowns[sought] -= np.linalg.solve(slopes, miss)
+            step = np.asarray(-np.linalg.solve(slopes * units, miss))
         except np.linalg.LinAlgError:
             break  # no direction to go on in
+        last, unknowns = size, unknowns.copy()
+        unknowns[sought] += units * step
     if not smallest < CONVERGED:
         raise RuntimeError(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
