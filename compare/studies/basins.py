@@ -360,5 +360,7 @@ STUDY = Study(
         "Right: the share of random starts of this plane that the whirl captures, with 95 % intervals."
     },
     section="The friction pin",
+    finding="What divides equilibrium and whirl in Fig. 5 is the stable set of a stick–slip orbit of saddle type. Of "
+    "the starts beside it 11.3 % come to the equilibrium; at ω = 1.2 rad/s all do, at 3 rad/s 0.65 %.",
     seconds=20.0,
 )
