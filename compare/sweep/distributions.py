@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from compare.engines import known
 from compare.sweep.quantities import parameters, units
@@ -21,7 +20,7 @@ LEAST_UNIFORM = 2.0**-54
 
 
 class _Kind(NamedTuple):
-    """The names of a distribution's numbers, what they must fulfil, and how SciPy calls it."""
+    """The names of a distribution's numbers, what they must fulfil, and what makes it of ``scipy.stats``."""
 
     arguments: tuple[str, ...]
     allowed: str
@@ -31,13 +30,16 @@ class _Kind(NamedTuple):
 
 KINDS = {
     "normal": _Kind(
-        ("mean", "deviation"), "deviation > 0", lambda mean, deviation: deviation > 0.0, stats.norm
+        ("mean", "deviation"),
+        "deviation > 0",
+        lambda mean, deviation: deviation > 0.0,
+        lambda stats, mean, deviation: stats.norm(mean, deviation),
     ),
     "truncnorm": _Kind(
         ("mean", "deviation", "low", "high"),
         "deviation > 0 and low < high",
         lambda mean, deviation, low, high: deviation > 0.0 and low < high,
-        lambda mean, deviation, low, high: stats.truncnorm(
+        lambda stats, mean, deviation, low, high: stats.truncnorm(
             (low - mean) / deviation, (high - mean) / deviation, mean, deviation
         ),
     ),
@@ -45,19 +47,19 @@ KINDS = {
         ("low", "high"),
         "low < high",
         lambda low, high: low < high,
-        lambda low, high: stats.uniform(low, high - low),
+        lambda stats, low, high: stats.uniform(low, high - low),
     ),
     "triangular": _Kind(
         ("low", "mode", "high"),
         "low <= mode <= high and low < high",
         lambda low, mode, high: low <= mode <= high and low < high,
-        lambda low, mode, high: stats.triang((mode - low) / (high - low), low, high - low),
+        lambda stats, low, mode, high: stats.triang((mode - low) / (high - low), low, high - low),
     ),
     "lognormal": _Kind(
         ("median", "deviation"),
         "median > 0 and deviation (of the logarithm) > 0",
         lambda median, deviation: median > 0.0 and deviation > 0.0,
-        lambda median, deviation: stats.lognorm(deviation, scale=median),
+        lambda stats, median, deviation: stats.lognorm(deviation, scale=median),
     ),
 }
 
@@ -134,7 +136,9 @@ class Uncertain:
     @cached_property
     def distribution(self) -> Any:
         """The distribution of SciPy."""
-        return KINDS[self.kind].frozen(*self.numbers)
+        from scipy import stats  # takes long, and most sweeps do without
+
+        return KINDS[self.kind].frozen(stats, *self.numbers)
 
     def values(self, uniform: FloatArray) -> FloatArray:
         """Return the values for numbers in [0, 1), where the distribution's integral reaches them."""

@@ -61,7 +61,7 @@ def write_figures(store: SweepStore, folder: Path) -> tuple[Path, ...]:
         raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
     written = []
     with paper_style():
-        drawn = figures(store.plan, result.load(), store.get(CURVES))
+        drawn = figures(store.plan, result, store.get(CURVES))
     for name, figure in drawn.items():
         for suffix, content in zip((".svg", ".png"), saved(figure), strict=True):
             path = folder / f"{name}{suffix}"
@@ -111,10 +111,12 @@ def label_plane(axes: Axes, plan: Basin | RandomBasin | Map) -> None:
 def random_basin(plan: RandomBasin, result: xr.Dataset) -> Figure:
     """Draw a dot for every start, in the colour of its end."""
     figure, (axes,) = new_figure(width=7.4, height=5.4)
-    x, y, ends = (result[name].values[:MOST_DOTS] for name in (plan.x.name, plan.y.name, "end"))
+    x, y, ends = (result[name][:MOST_DOTS].values for name in (plan.x.name, plan.y.name, "end"))
     for end in EndState:
         here = ends == end
-        axes.plot(x[here], y[here], ".", color=COLOURS[end], markersize=2.0, markeredgewidth=0.0)
+        axes.plot(
+            x[here], y[here], ".", color=COLOURS[end], markersize=2.0, markeredgewidth=0.0, rasterized=True
+        )
     label_plane(axes, plan)
     legend(figure, result)
     return figure

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ WATCHED = 0.5
 """Part of a trajectory, before its end, by which it is judged."""
 
 SAMPLES_PER_TURN = 64
+"""Of what is watched; of what was before, which only tells how far the motion went, ``SAMPLES_BEFORE``."""
+
+SAMPLES_BEFORE = 4
 
 AT_REST = 0.02
 """Largest distance from the last place, in units of that of the whole motion, at which the centre is at rest."""
@@ -27,15 +31,53 @@ STEADY = 0.01
 SAME = 1.4
 """Ratio of the spreads in both halves of what is watched, up to which a modulation neither grows nor decays."""
 
+LEAST_TURNS = 20
+"""After which the second half of a motion is watched, at the earliest."""
+
 
 def plain_trajectory(
     system: System, state: FloatArray, time: float, duration: float, tolerance: float
 ) -> Trajectory:
     """Return the motion from 0 to ``duration`` (s) by the plain reference, at times of which ``time`` (s) is one."""
-    turn = 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
-    samples = math.ceil(duration / turn * SAMPLES_PER_TURN) + 2
-    times = np.union1d(np.linspace(0.0, duration, samples), [time])
+    since = (1.0 - WATCHED) * duration
+    before = _samples(system, 0.0, since, SAMPLES_BEFORE)
+    watched = _samples(system, since, duration, SAMPLES_PER_TURN)
+    times = np.unique(np.concatenate((before, watched, [time])))
     return simulate(system, state, times, tolerance=tolerance)
+
+
+def twice_as_long(trajectory: Trajectory) -> Trajectory:
+    """Return the motion for twice its duration, simulated on from its last state."""
+    times, last, solution = trajectory.times, float(trajectory.times[-1]), trajectory.solution
+    later = _samples(trajectory.system, last, 2.0 * last - float(times[0]), SAMPLES_PER_TURN)
+    more = simulate(trajectory.system, trajectory.at_end, later, tolerance=solution.tolerance)
+    return replace(
+        trajectory,
+        times=np.concatenate((times, later[1:])),
+        states=np.concatenate((trajectory.states, more.states[1:])),
+        phases=trajectory.phases + more.phases,
+        solution=replace(
+            solution,
+            evaluations=solution.evaluations + more.solution.evaluations,
+            steps=solution.steps + more.solution.steps,
+            wall_time=solution.wall_time + more.solution.wall_time,
+        ),
+    )
+
+
+def watched_until(system: System, certain: float, duration: float) -> float:
+    """Return until when (s) to simulate a motion whose end another knew at ``certain`` (s): for as long again."""
+    return max(certain, LEAST_TURNS * _turn(system, duration)) / WATCHED
+
+
+def _samples(system: System, first: float, last: float, per_turn: int) -> FloatArray:
+    """Return times in s from ``first`` to ``last``."""
+    return np.linspace(first, last, math.ceil((last - first) / _turn(system, last) * per_turn) + 2)
+
+
+def _turn(system: System, duration: float) -> float:
+    """Return the time of a turn in s, of which something that never turns has one in ``duration``."""
+    return 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
 
 
 def end_of(trajectory: Trajectory) -> EndState:

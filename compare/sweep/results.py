@@ -15,7 +15,6 @@ from compare.sweep.curves import curves
 from compare.sweep.plan import BASES, Basin, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.quantities import RESULTS, components, units
 from compare.sweep.refinement import Grid
-from compare.sweep.sensitivity import indices
 from compare.sweep.shares import Share
 from compare.sweep.store import Round, flags
 from reference_model.ensemble import EndState
@@ -95,6 +94,8 @@ def _map(plan: Map, found: Round) -> xr.Dataset:
 
 def _uncertainty(plan: Uncertainty, found: Round) -> xr.Dataset:
     """Return the independent draws, and the sensitivities that come from all trajectories."""
+    from compare.sweep.sensitivity import indices
+
     tables = {name: found.read(name).reshape(plan.samples, plan.row) for name in SHOWN}
     draws = np.arange(plan.samples * plan.row).reshape(plan.samples, plan.row)[:, :BASES].ravel()
     variables: Variables = {

@@ -65,7 +65,7 @@ def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, pr
 
     def tasks() -> Iterator[Task]:
         for chunk in np.flatnonzero(~current.done).tolist():
-            yield Task(chunk, compute, (store.plan, current.numbers_of(chunk), executor.threads))
+            yield Task(chunk, compute, (store.plan, current.numbers_of(chunk), executor.threads), True)
 
     for chunk, found in executor.run(tasks()):
         _require_same_code(store, found)
@@ -95,7 +95,9 @@ def _checked(
     time, end, states = (
         [one.read(name, place) for one, place in where] for name in ("time", "end", "states")
     )
-    tasks = [Task(i, recompute, (store.plan, numbers[i], float(time[i]), int(end[i]))) for i in range(count)]
+    tasks = [
+        Task(i, recompute, (store.plan, numbers[i], float(time[i]), int(end[i])), False) for i in range(count)
+    ]
     plain: dict[int, Plain] = {}
     progress("check by the plain reference", 0, count)
     for i, found in executor.run(tasks):

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compare.store import stamp
-from compare.sweep.plain import end_of, plain_trajectory
+from compare.sweep.plain import end_of, plain_trajectory, twice_as_long, watched_until
 from compare.sweep.plan import Numbers, Plan
 from compare.sweep.quantities import RESULTS
+from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
-LONGER = (1.0, 2.0, 4.0, 8.0)
-"""Multiples of a plan's duration for which the plain reference simulates."""
+DOUBLINGS = 3
+"""How often the plain reference simulates for twice as long where it has not found the end yet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,19 +59,23 @@ def compute(plan: Plan, numbers: Numbers, threads: int | None) -> Chunk:
 def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; ``time`` (s) is when its state is asked for.
 
-    Where it does not end as ``end``, it is simulated for longer and longer before that counts: what shall be certain
-    from the motion alone takes more time than a kernel may need that knows where motions end.
+    It is watched for as long again as the kernel took to be certain of ``end``. Where it does not end like this, it
+    is simulated for longer and longer before that counts: what shall be certain from the motion alone takes more
+    time than a kernel may need that knows where motions end. What is undecided is simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
     system = replace(plan.system, **changes)
+    until = time if end == EndState.UNDECIDED else watched_until(system, time, plan.duration)
     state = np.full(system.state_size, np.nan)
-    found = 0
+    found = EndState.UNDECIDED
     with suppress(SimulationError):
-        for longer in LONGER:
-            trajectory = plain_trajectory(system, states[0], time, longer * plan.duration, plan.tolerance)
-            state = trajectory.states[np.searchsorted(trajectory.times, time)]
-            found = int(end_of(trajectory))
-            if found == end:
+        trajectory = plain_trajectory(system, states[0], time, until, plan.tolerance)
+        state = trajectory.states[np.searchsorted(trajectory.times, time)]
+        found = end_of(trajectory)
+        for _ in range(DOUBLINGS):
+            if end in (found, EndState.UNDECIDED):
                 break
-    return Plain(state, found)
+            trajectory = twice_as_long(trajectory)
+            found = end_of(trajectory)
+    return Plain(state, int(found))

@@ -23,6 +23,16 @@ def test_the_interval_of_a_sample_holds_the_probability_as_often_as_it_says(prob
     assert abs(covered - CONFIDENCE) < 0.03  # Wilson's interval is not exact
 
 
+@pytest.mark.parametrize("count", [0, 1, 70, 199, 200])
+def test_the_interval_of_a_sample_is_that_of_wilson(count):
+    n = 200
+    ends = np.full(n, STUCK, dtype=np.uint8)
+    ends[:count] = WHIRL
+    share = of_sample(ends)[WHIRL]
+    interval = stats.binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
+    np.testing.assert_allclose((share.low, share.high), (interval.low, interval.high), rtol=1e-13)
+
+
 def test_undecided_trajectories_may_be_anything():
     ends = np.array([WHIRL] * 50 + [UNDECIDED] * 50, dtype=np.uint8)
     shares = of_sample(ends)
