@@ -8,9 +8,9 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,9 @@ import numpy as np
 from compare.claim import Claim, ErrorBudget
 from compare.study import Findings
 from reference_model.systems import FloatArray
+
+ROOT = Path(__file__).resolve().parents[1]
+"""Where the packages are."""
 
 PACKAGES = ("reference_model", "exudyn_models", "compare")
 LIBRARIES = ("numpy", "scipy", "exudyn", "numba")
@@ -82,9 +85,11 @@ def write_text(path: Path, text: str) -> None:
     os.replace(part, path)
 
 
-def stamp(*functions: Callable[..., Any]) -> str:
-    """Return what findings depend on: the three packages, the modules of ``functions``, libraries."""
-    digest = hashlib.sha256(_code_of_the_packages().encode())
+def stamp(
+    *functions: Callable[..., Any], code: Sequence[str] = PACKAGES, libraries: Sequence[str] = LIBRARIES
+) -> str:
+    """Return what findings depend on: packages or modules ``code``, the modules of ``functions``, libraries."""
+    digest = hashlib.sha256(_digest(ROOT, tuple(code)).encode())
     for function in functions:
         try:
             source = inspect.getsourcefile(inspect.unwrap(function))
@@ -92,8 +97,8 @@ def stamp(*functions: Callable[..., Any]) -> str:
             source = inspect.getsourcefile(type(function))
         if source is not None:
             digest.update(Path(source).read_bytes())
-    libraries = " ".join(f"{name}-{version_of(name)}" for name in LIBRARIES)
-    return f"{version_of('friction-discs')} {digest.hexdigest()[:16]} {libraries}"
+    versions = " ".join(f"{name}-{version_of(name)}" for name in libraries)
+    return f"{version_of('friction-discs')} {digest.hexdigest()[:16]} {versions}"
 
 
 def version_of(distribution: str) -> str:
@@ -104,12 +109,14 @@ def version_of(distribution: str) -> str:
         return "none"
 
 
-@lru_cache(maxsize=1)
-def _code_of_the_packages() -> str:
-    root = Path(__file__).resolve().parents[1]
+@cache
+def _digest(root: Path, code: tuple[str, ...]) -> str:
+    """Return what the files below ``root`` of the packages or modules ``code`` come to."""
     digest = hashlib.sha256()
-    for package in PACKAGES:
-        for path in sorted(path for kind in ("*.py", "*.json") for path in (root / package).rglob(kind)):
+    for name in code:
+        place = root.joinpath(*name.split("."))
+        files = [path for kind in ("*.py", "*.json") for path in place.rglob(kind)]
+        for path in sorted(files) if place.is_dir() else [place.with_suffix(".py")]:
             digest.update(path.relative_to(root).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()

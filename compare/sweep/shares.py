@@ -50,9 +50,7 @@ def _wilson(count: int, n: int) -> tuple[float, float]:
     z = float(ndtri(0.5 + 0.5 * CONFIDENCE))
     middle = count + 0.5 * z**2
     half = z * math.sqrt(count * (n - count) / n + 0.25 * z**2)
-    low = (middle - half) / (n + z**2) if count > 0 else 0.0
-    high = (middle + half) / (n + z**2) if count < n else 1.0
-    return low, high
+    return (middle - half) / (n + z**2), (middle + half) / (n + z**2)
 
 
 def of_grid(ends: Ends) -> dict[EndState, Share]:

@@ -22,9 +22,10 @@ import xarray as xr
 import zarr
 from numpy.typing import NDArray
 
-from compare.store import stamp, version_of
+from compare.store import version_of
 from compare.sweep.plan import Numbers, Plan, as_json, from_json
 from compare.sweep.quantities import RESULTS, components
+from compare.sweep.stamp import sweep_stamp
 
 FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
 """Every version of Zarr reads it, and no copy of the metadata goes stale when a round grows."""
@@ -67,12 +68,12 @@ class SweepStore:
             "title": f"friction-discs sweep: {plan.kind}",
             "plan": json.dumps(as_json(plan)),
             "chunk": chunk,
-            "stamp": stamp(),
+            "stamp": sweep_stamp(),
             "versions": json.dumps({name: version_of(name) for name in libraries}),
         }
         xr.Dataset(attrs=attributes).to_zarr(made, mode="w", **FORMAT)
         os.rename(made, path)
-        return cls(path, plan, chunk, stamp())
+        return cls(path, plan, chunk, sweep_stamp())
 
     @classmethod
     def open(cls, path: Path) -> SweepStore:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from compare.store import stamp
 from compare.sweep.plain import end_of, plain_trajectory, twice_as_long, watched_until
 from compare.sweep.plan import Numbers, Plan
 from compare.sweep.quantities import RESULTS
+from compare.sweep.stamp import sweep_stamp
 from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -53,7 +53,7 @@ def compute(plan: Plan, numbers: Numbers, threads: int | None) -> Chunk:
         parameters=parameters,
         threads=threads,
     )
-    return Chunk(stamp(), {name: np.asarray(getattr(found, name)) for name in RESULTS})
+    return Chunk(sweep_stamp(), {name: np.asarray(getattr(found, name)) for name in RESULTS})
 
 
 def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
