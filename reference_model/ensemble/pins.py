@@ -28,7 +28,9 @@ def simulate_pins(
     table = np.empty((n if varied else 1, len(PARAMETERS)))
     for column, name in zip(table.T, PARAMETERS, strict=True):
         column[:] = varied.get(name, getattr(pin, name))
-    known = np.zeros(KNOWN) if varied else known_ends(pin)
+    known = np.zeros(KNOWN)
+    if not varied:
+        known[:] = known_ends(pin)  # which is read-only: for such an array all would be compiled once more
     task, results = PinTask(table, starts, duration), Results.empty(n, pin.state_size)
 
     def run(first: int, last: int) -> None:

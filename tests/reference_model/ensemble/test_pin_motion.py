@@ -11,7 +11,7 @@ import pytest
 from compare.paper import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, simulate
 from reference_model.ensemble import chunks, pin_lanes, pin_slip, simulate_ensemble
-from reference_model.ensemble.pin import units
+from reference_model.ensemble.pin import run_pins, units
 from reference_model.pin import SlipMotion
 from reference_model.sticking import release_delay, slip_from_rest
 from reference_model.units import Units
@@ -184,3 +184,9 @@ def test_the_step_of_all_lanes_is_vectorised():
     # Thirteen right-hand sides and four roots for the error, each in one vector at least.
     assert len(re.findall(packed[platform.machine()], assembly)) >= 16
     assert not re.search(r"v?sqrtsd", assembly)
+
+
+def test_the_kernel_is_compiled_once_for_one_pin_and_for_many():
+    for parameters in ({}, {"mass": [1.0, 1.1]}):
+        simulate_ensemble(FIG5, basin_starts(1), duration=1.0, parameters=parameters)
+    assert len(run_pins.signatures) == 1
