@@ -16,7 +16,7 @@ from reference_model.boundaries import Kind, Plane, boundaries
 from reference_model.pin_formulas import largest_load_with_equilibrium
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-NODES = 201
+NODES = 101
 """Values of each parameter between which the zeros of a margin are interpolated."""
 
 

@@ -163,9 +163,9 @@ class Round:
         return slice(chunk * self._chunk, min((chunk + 1) * self._chunk, len(self.numbers)))
 
 
-def _arrays(path: Path) -> Any:
-    """Return the arrays of a group by their names, to be changed in place."""
-    return zarr.open_group(str(path), mode="r+")
+def _arrays(path: Path) -> dict[str, Any]:
+    """Return the arrays of a group by their names, open to be changed in place."""
+    return dict(zarr.open_group(str(path), mode="r+").arrays())
 
 
 def flags(variable: str) -> dict[str, Any]:

@@ -1,14 +1,12 @@
-import subprocess
-
 import pytest
 from long_sweeps import LONG, content
-from processes import REAL, environment
+
+from compare import cli
 
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory):
+    """What is in the store of a sweep that nothing happened to; from then on the kernel is compiled for everyone."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    subprocess.run(
-        [*REAL, *LONG, "--output", str(folder)], env=environment(), check=True, capture_output=True
-    )
+    assert cli.status([*LONG, "--output", str(folder)]) == 0
     return content(folder / "sweep.zarr")

@@ -9,7 +9,10 @@ import numpy as np
 import xarray as xr
 from processes import REAL, environment
 
-LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3"]
+from compare import cli
+
+LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
+CHUNKS = ["--chunk", "20"]
 """Many small chunks, so that there is time to interfere."""
 
 
@@ -17,7 +20,7 @@ def long_sweep(folder, *more, limit=None):
     """Start the command; ``limit`` is the largest file in bytes that it may write."""
     restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     return subprocess.Popen(
-        [*REAL, *LONG, "--chunk", "10", "--output", str(folder), *more],
+        [*REAL, *LONG, *CHUNKS, "--output", str(folder), *more],
         env=environment(),
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -43,6 +46,11 @@ def wait_for_marks(folder, least, process):
 def finished_by(process):
     out, err = process.communicate(timeout=200)
     return process.returncode, out, err
+
+
+def resumed(folder):
+    """Do the rest in this process, which has all libraries loaded, and return the exit status."""
+    return cli.status([*LONG, *CHUNKS, "--output", str(folder), "--resume"])
 
 
 def content(path):

@@ -135,6 +135,26 @@ def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
     assert "was computed by other code or libraries" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("more", "until"),
+    [
+        (["pin"], 12000.0),
+        (["disc"], 12000.0),
+        (["disc", "--set", "contact_points=6"], 1200.0),
+        (["disc", "--set", "contact_points=6", "--until", "7"], 7.0),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch, capsys):
+    plans = []
+    monkeypatch.setattr("compare.sweep.cli._sweep", lambda plan, *others: plans.append(plan))
+    cli.status(["sweep", "basin", *more])
+    assert plans[0].duration == until
+    cli.status(["sweep", "basin", "--help"])
+    words = " ".join(capsys.readouterr().out.split())
+    assert "[default: (12000, of a disc on single points 1200)]" in words
+
+
 def test_a_folder_that_is_no_store_is_refused_and_left_alone(capsys, tmp_path):
     (tmp_path / STORE).mkdir()
     (tmp_path / STORE / "precious").write_text("data")

@@ -4,7 +4,7 @@ import numpy as np
 
 from compare.paper import FIG5, FIG11
 from compare.sweep.axes import Axis
-from compare.sweep.curves import MEANINGS, PIN, curves
+from compare.sweep.curves import MEANINGS, NODES, PIN, curves
 from compare.sweep.plan import Map
 from reference_model.boundaries import Plane, crossings
 
@@ -27,7 +27,7 @@ def test_a_pin_whirls_above_its_natural_frequency():
     x, y = Axis("disc_speed", -3.0, 3.0, 3), Axis("stiffness", 0.5, 4.0, 3)
     points = points_of(Map(system=FIG5, starts=((0.0,) * 4,), x=x, y=y, **COMMON), PIN[1].meaning)
     # straight lines between nodes at distance h: |ω''|h²/8 with ω = √(C/m)
-    h = 3.5 / 200
+    h = 3.5 / (NODES - 1)
     np.testing.assert_allclose(
         np.abs(points[:, 0]), np.sqrt(points[:, 1]), atol=0.25 * 0.5**-1.5 * h**2 / 8.0
     )

@@ -1,13 +1,12 @@
-"""Sweeps in this process: what is in their stores, resumption, and failures on the way."""
+"""Sweeps in this process: what is in their stores, and resumption."""
 
 import json
-import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
-from long_sweeps import assert_same, content, finished_by, long_sweep, marks, wait_for_marks
+from long_sweeps import assert_same, content
 
 from compare.paper import FIG5
 from compare.sweep.axes import Axis
@@ -212,47 +211,3 @@ def test_a_chunk_whose_mark_is_missing_is_computed_again(tmp_path):
     swept(tmp_path / "s", RANDOM, 7, again)
     assert again.simulated() == [list(range(21, 28))]
     assert_same(content(tmp_path / "s"), before)
-
-
-def test_killed_again_and_again_a_sweep_comes_to_the_same_results(undisturbed, tmp_path):
-    written = {}
-    for kill in range(3):
-        process = long_sweep(tmp_path, *(["--resume"] if kill else []))
-        wait_for_marks(tmp_path, len(written) + 20, process)
-        process.kill()
-        assert finished_by(process)[0] == -signal.SIGKILL
-        chunks = tmp_path / "sweep.zarr" / "round-0"
-        now = {
-            mark: [(chunks / name / mark).stat().st_mtime_ns for name in ("end", "time", "steps", "done")]
-            for mark in marks(tmp_path)
-        }
-        assert {mark: now[mark] for mark in written} == written  # nothing was written once more
-        written = now
-    code, out, err = finished_by(long_sweep(tmp_path, "--resume"))
-    assert (code, err) == (0, ""), out
-    assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
-
-
-def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undisturbed, tmp_path):
-    process = long_sweep(tmp_path)
-    wait_for_marks(tmp_path, 20, process)
-    process.kill()
-    finished_by(process)
-    before = marks(tmp_path)
-    code, out, err = finished_by(long_sweep(tmp_path, "--resume", limit=100))
-    assert (code, out) == (2, "")
-    assert err.startswith(
-        f"can't write to {str(tmp_path / 'sweep.zarr')!r}: File too large. What is written stays"
-    )
-    assert err.count("\n") == 1
-    assert marks(tmp_path) == before
-    assert finished_by(long_sweep(tmp_path, "--resume"))[0] == 0
-    assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
-
-
-def test_an_interrupt_from_the_keyboard_is_told(tmp_path):
-    process = long_sweep(tmp_path)
-    wait_for_marks(tmp_path, 5, process)
-    process.send_signal(signal.SIGINT)
-    message = "Interrupted. The same command with --resume goes on.\n"
-    assert finished_by(process) == (130, "", message)

@@ -17,10 +17,13 @@ BESIDE = {
     "compare.store",
     "compare.study",
     "compare.sweep",
+    "compare.sweep.cli",
     "compare.sweep.executors",
+    "compare.sweep.figures",
     "compare.sweep.stamp",
+    "compare.sweep.summary",
 }
-"""What is loaded as well: names, where the work is done, and this stamp itself change no number."""
+"""Names, where the work is done, what is said and drawn of it, and this stamp itself: they change no number."""
 
 
 @pytest.fixture
@@ -65,7 +68,7 @@ def test_what_no_number_of_a_sweep_depends_on_may_change(path, copied):
 def test_the_stamp_of_sweeps_knows_all_that_computes_and_stores_them():
     code = "import sys, compare.sweep.run; print(*(n for n in sys.modules if n.startswith('compare.')))"
     process = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True)
-    loaded = set(process.stdout.split())
-    assert {"compare.sweep.plan", "compare.sweep.results"} <= loaded
-    assert loaded - BESIDE <= set(CODE)
-    assert set(CODE) - loaded == {"reference_model"}
+    there = {f"compare.sweep.{path.stem}" for path in (ROOT / "compare" / "sweep").glob("[!_]*.py")}
+    used = there | set(process.stdout.split())
+    assert "compare.export" in used
+    assert used - BESIDE == set(CODE) - {"reference_model"}

@@ -1,0 +1,63 @@
+"""Sweeps that are killed, interrupted, or run out of disk, as processes of their own."""
+
+import signal
+from shutil import copytree
+
+import pytest
+from long_sweeps import assert_same, content, finished_by, long_sweep, marks, resumed, wait_for_marks
+
+
+@pytest.fixture(scope="module")
+def interrupted(undisturbed, tmp_path_factory):
+    """The folder of a sweep that was interrupted from the keyboard, its exit status and what it said."""
+    folder = tmp_path_factory.mktemp("interrupted")
+    process = long_sweep(folder)
+    wait_for_marks(folder, 10, process)
+    process.send_signal(signal.SIGINT)
+    return folder, finished_by(process)
+
+
+@pytest.fixture
+def unfinished(interrupted, tmp_path):
+    """A copy of that folder."""
+    return copytree(interrupted[0], tmp_path / "unfinished")
+
+
+def test_an_interrupt_from_the_keyboard_is_told(interrupted):
+    message = "Interrupted. The same command with --resume goes on.\n"
+    assert interrupted[1] == (130, "", message)
+
+
+def test_killed_again_and_again_a_sweep_comes_to_the_same_results(undisturbed, unfinished):
+    written = times(unfinished)
+    for _ in range(2):
+        process = long_sweep(unfinished, "--resume")
+        wait_for_marks(unfinished, len(written) + 10, process)
+        process.kill()
+        assert finished_by(process)[0] == -signal.SIGKILL
+        now = times(unfinished)
+        assert {mark: now[mark] for mark in written} == written  # nothing was written once more
+        written = now
+    assert resumed(unfinished) == 0
+    assert_same(content(unfinished / "sweep.zarr"), undisturbed)
+
+
+def times(folder):
+    """Return when the files of all chunks that are marked were written."""
+    chunks = folder / "sweep.zarr" / "round-0"
+    return {
+        mark: [(chunks / name / mark).stat().st_mtime_ns for name in ("end", "time", "steps", "done")]
+        for mark in marks(folder)
+    }
+
+
+def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undisturbed, unfinished):
+    before = marks(unfinished)
+    code, out, err = finished_by(long_sweep(unfinished, "--resume", limit=100))
+    assert (code, out) == (2, "")
+    path = unfinished / "sweep.zarr"
+    assert err.startswith(f"can't write to {str(path)!r}: File too large. What is written stays")
+    assert err.count("\n") == 1
+    assert marks(unfinished) == before
+    assert resumed(unfinished) == 0
+    assert_same(content(path), undisturbed)
