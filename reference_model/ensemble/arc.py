@@ -122,7 +122,21 @@ def outward(arc: Arc, u: float) -> float:
 
 
 @scalar
-def where(measure: Any, arc: Arc) -> float:
+def where_rightmost(arc: Arc) -> float:
+    """Return u at which x is largest; its rate changes its sign between the ends."""
+    return _zero_of(rightward, arc)
+
+
+@scalar
+def where_radius_turns(arc: Arc) -> float:
+    """Return u at which the radius is largest or smallest, and inf if it only rises or only falls."""
+    if (outward(arc, 0.0) > 0.0) == (outward(arc, 1.0) > 0.0):
+        return math.inf
+    return _zero_of(outward, arc)
+
+
+@inlined
+def _zero_of(measure: Any, arc: Arc) -> float:
     """Return u at which ``measure`` of the arc is zero; it changes its sign between the ends.
 
     By inverse quadratic interpolation, kept inside of the bracket.

@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from reference_model.ensemble.arc import outward, place_on, rightward, velocity_on, where
+from reference_model.ensemble.arc import outward, place_on, velocity_on, where_radius_turns, where_rightmost
 from reference_model.ensemble.compiled import inlined, outermost, scalar
 from reference_model.ensemble.disc_lanes import (
     AT_END,
@@ -357,31 +357,28 @@ def _section(scratch: Any, page: Any, lane: int, flag: int, law: DiscLaw, aims: 
     if page[END] != UNDECIDED:
         return False
     arc = last_arc(scratch, lane)
-    outwards = outward(arc, 0.0) > 0.0
-    extreme = outwards != (outward(arc, 1.0) > 0.0)
-    radius = 0.0
+    turns, radius = where_radius_turns(arc), 0.0
     centred = law.offset == 0.0
     ended = False
-    if extreme:
-        u = where(outward, arc)
-        z, v = place_on(arc, u), velocity_on(arc, u)
+    if turns <= 1.0:
+        z, v = place_on(arc, turns), velocity_on(arc, turns)
         radius = abs(z)
         _note(page, radius)
-        if centred and outwards:
+        if centred and outward(arc, 0.0) > 0.0:
             values = (
                 radius,
                 (v * z.conjugate()).imag / radius,
-                _spin_at(scratch, lane, u, arc.span),
+                _spin_at(scratch, lane, turns, arc.span),
                 0.0,
                 0.0,
             )
-            ended = _met(scratch, page, lane, PEAKS, values, radius, u, radius, law, aims)
+            ended = _met(scratch, page, lane, PEAKS, values, radius, turns, radius, law, aims)
     if flag & RIGHTMOST and not centred and not ended:
-        u = where(rightward, arc)
+        u = where_rightmost(arc)
         z, v = place_on(arc, u), velocity_on(arc, u)
         values = (z.real, z.imag, v.imag, _spin_at(scratch, lane, u, arc.span), 0.0)
         ended = _met(scratch, page, lane, TURNS_OF, values, abs(v), u, abs(z), law, aims)
-        if extreme:
+        if turns <= 1.0:
             _note(page, radius)  # again: what comes after this place belongs to a window that opens here
     return ended
 

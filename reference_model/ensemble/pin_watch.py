@@ -5,7 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from reference_model.ensemble.arc import Arc, outward, place_on, rightward, velocity_on, way_along, where
+from reference_model.ensemble.arc import (
+    Arc,
+    place_on,
+    velocity_on,
+    way_along,
+    where_radius_turns,
+    where_rightmost,
+)
 from reference_model.ensemble.compiled import inlined, scalar
 from reference_model.ensemble.lanes import LANES
 from reference_model.ensemble.pin_book import (
@@ -133,10 +140,12 @@ def attend(scratch: Any, book: Any, lane: int, aims: Aims) -> bool:
         return True
     if flag & (RIGHTMOST | EXTREME):
         arc = last_arc(scratch, lane, law)
-        if flag & EXTREME:
-            note_radius(page, abs(place_on(arc, where(outward, arc))))
+        turns, u = where_radius_turns(arc), 1.0
         if flag & RIGHTMOST:
-            u = where(rightward, arc)
+            u = where_rightmost(arc)
+        if turns <= u:
+            note_radius(page, abs(place_on(arc, turns)))
+        if flag & RIGHTMOST:
             z, v = place_on(arc, u), velocity_on(arc, u)
             if turn_made(scratch, page, lane, arc, u, law, aims):
                 put_place(scratch, lane, z, v - 1j * law.disc_speed * z)
@@ -144,6 +153,8 @@ def attend(scratch: Any, book: Any, lane: int, aims: Aims) -> bool:
                 return True
             if watch_well(scratch, page, lane, later, law, aims):
                 return True
+        if u < turns <= 1.0:
+            note_radius(page, abs(place_on(arc, turns)))  # of a window that opened at u
     if flag & REST:
         return maybe_rest(scratch, page, lane, law, aims)
     return False

@@ -106,6 +106,25 @@ def test_measures_of_the_whirl_are_those_of_the_orbit_found_by_shooting():
         assert getattr(by_itself, name)[0] == pytest.approx(getattr(found, name)[0], rel=2.0 * ACCURACY)
 
 
+def test_radii_of_whirls_and_of_stick_and_slip_are_those_of_the_reference_wherever_steps_begin():
+    rng = np.random.default_rng(11)
+    n = 80
+    varied = {
+        "damping": rng.uniform(0.2, 0.6, n), "friction_force": rng.uniform(0.03, 0.3, n),
+        "disc_speed": rng.choice((-1.0, 1.0), n) * rng.uniform(1.2, 2.5, n), "offset": rng.uniform(0.02, 0.2, n),
+    }  # fmt: skip
+    found = simulate_ensemble(FIG5, starts(n, 1.0), duration=1000.0, parameters=varied)
+    periodic = np.flatnonzero((found.end == EndState.WHIRL) | (found.end == EndState.STICK_SLIP))
+    assert len(periodic) > 40
+    for i in periodic:
+        pin = replace(FIG5, **{name: float(values[i]) for name, values in varied.items()})
+        # Both come round in a turn of the slower of pin and disc; a cycle with stick in up to two.
+        times = np.linspace(0.0, 4.0 * np.pi, 2001)
+        radius = simulate(pin, found.states[i], times, tolerance=1e-10).radius
+        assert found.least_radius[i] == pytest.approx(radius.min(), rel=ACCURACY)
+        assert found.largest_radius[i] == pytest.approx(radius.max(), rel=ACCURACY)
+
+
 def test_measures_of_rest_and_of_the_equilibrium_are_closed_forms():
     (equilibrium,) = self_centred_equilibria(FIG5)
     found = simulate_ensemble(FIG5, [0.1, 0.0, 0.0, 0.0], duration=400.0)

@@ -82,8 +82,9 @@ def circling(t, radius=0.9, centre=0.1, speed=1.0):
 
 def test_extremes_of_a_circling_motion_are_found():
     between = arc.arc_between(0.9, circling(-0.4), circling(0.5))
-    assert arc.where(arc.rightward, between) == pytest.approx(4.0 / 9.0, abs=1e-7)
-    assert arc.where(arc.outward, between) == pytest.approx(4.0 / 9.0, abs=1e-6)
+    assert arc.where_rightmost(between) == pytest.approx(4.0 / 9.0, abs=1e-7)
+    assert arc.where_radius_turns(between) == pytest.approx(4.0 / 9.0, abs=1e-6)
+    assert arc.where_radius_turns(arc.arc_between(0.3, circling(0.2), circling(0.5))) == np.inf
 
 
 def test_way_is_the_integral_of_the_slip_speed():
