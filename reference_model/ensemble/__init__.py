@@ -2,9 +2,10 @@
 
 - ``simulate``: :func:`simulate_ensemble`, the door; ``results``: what it returns;
 - ``lanes``: how trajectories share a processor; ``runge_kutta``: the step; ``compiled``: what numba is told;
+- ``linear``: what both need of linear algebra;
 - of a pin ``pin_slip`` (equations, rest, release), ``pin_lanes`` (its lanes), ``arc`` (the motion inside of a step),
-  ``pin_ends`` with ``regions`` (how its end state is told), ``pin_watch`` with ``pin_book`` (what is rare, done lane
-  by lane), and ``pin`` with ``pins``, which put them together;
+  ``pin_ends`` with ``regions`` and ``pin_stability`` (how its end state is told), ``pin_watch`` with ``pin_book``
+  (what is rare, done lane by lane), and ``pin`` with ``pins``, which put them together;
 - of a disc ``contact_shares`` (friction), ``disc_slip``, ``disc_growth`` (slip from rest), ``disc_lanes``,
   ``disc_kernel``, ``disc_stability`` and ``disc_regions`` (where it ends), and ``disc``, which puts them together.
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from reference_model.ensemble.compiled import scalar
 from reference_model.ensemble.disc_slip import pull, ring_friction
+from reference_model.ensemble.linear import solve
 from reference_model.growth import (
     _INTEGRAL,
     _POINTS,
@@ -164,32 +165,3 @@ def _last_terms(f: Any) -> float:
                 term += LAST_TERMS[row, j] * f[j, k]
             largest = max(largest, abs(term))
     return largest
-
-
-@scalar
-def solve(matrix: Any, right: Any) -> bool:
-    """Solve a linear system in place, by elimination with pivots; tell whether that went.
-
-    It is small, and compiling NumPy's would take longer than all that is computed with it.
-    """
-    n = len(right)
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
-            return False
-        for j in range(k, n):
-            matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-        right[k], right[pivot] = right[pivot], right[k]
-        for i in range(k + 1, n):
-            factor = matrix[i, k] / matrix[k, k]
-            for j in range(k + 1, n):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
-    for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
-    return True

@@ -1,7 +1,7 @@
 """Whether a steady motion of a disc attracts, told in compiled code without eigenvalues.
 
 With the derivative A of the rates at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane in which eigenvalues decay
-to the inside of the unit circle. So its powers vanish if all do: it is squared until they do, or grow.
+to the inside of the unit circle. So its powers vanish if all do.
 """
 
 from __future__ import annotations
@@ -12,16 +12,13 @@ import numpy as np
 
 from reference_model.ensemble.compiled import scalar
 from reference_model.ensemble.contact_shares import LEAST
-from reference_model.ensemble.disc_growth import solve
 from reference_model.ensemble.disc_slip import DiscLaw, pull, ring_friction
+from reference_model.ensemble.linear import powers_vanish, solve
 
 APART = 1e-5
 """Differences, in units of the motion, by which rates are differentiated."""
 
 DIMENSION = 5
-SQUARINGS = 40
-VANISHED, GROWN = 1e-6, 1e6
-"""Largest entries of a power at which it is judged."""
 
 
 @scalar
@@ -54,19 +51,7 @@ def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bo
             return False
         for i in range(DIMENSION):
             power[i, j] = column[i]
-    for _ in range(SQUARINGS):
-        largest = 0.0
-        for i in range(DIMENSION):
-            for j in range(DIMENSION):
-                total = 0.0
-                for k in range(DIMENSION):
-                    total += power[i, k] * power[k, j]
-                matrix[i, j] = total
-                largest = max(largest, abs(total))
-        power, matrix = matrix, power
-        if not VANISHED < largest < GROWN:
-            return largest <= VANISHED
-    return False
+    return powers_vanish(power)
 
 
 @scalar

@@ -4,9 +4,11 @@ Stuck for ever
     Turning with the disc, the pull that friction must balance has the constant part k²X₀ and one that turns, of the
     size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7). Exact. A pin a little beyond that largest radius
     slips once a turn, for the shorter the closer it is: the pull exceeds g by δ for a time ~√δ, the slip is of the
-    size δ^(3/2), and its way, by which the radius changes, ~δ². So there is no radius in between that comes back to
-    itself, and a pin of which a turn shows that it moves inward creeps on for ever and never beyond it: it counts as
-    stuck there. Without offset it does not even rest in between, but slips ever more slowly.
+    size δ^(3/2), and its way, by which the radius changes, ~δ². That leads inward where k > |ω|, and there is no
+    radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
+    what is left, creeps on for ever and never beyond that radius: it counts as stuck there
+    (``pin_slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
+    is damped enough not to pass by (``pin_slip.creeps_steadily``).
 
 Self-centred
     The motion is inside of a neighbourhood of the equilibrium (3) from which everything goes there: a level of a
@@ -26,14 +28,14 @@ Whirl
     (``regions``): a trajectory that crosses the section in it stays in it. Else the trajectory itself must show it:
     with d the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is what
     is left to go, and that must be below ACCURACY of the speed at the crossing, which would vanish at an
-    equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. (A motion that
-    passes an unstable orbit must come as close to be taken for one that ends there: of the starts, a share of the
-    order of ACCURACY.)
+    equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. Since a motion may
+    come close to an orbit that is unstable and leave it later, the orbit must attract, too (``pin_stability``).
 
 Stick–slip
     Released pins of one set of parameters differ in a single number, their distance from the axis: from there on the
     motion is the same. So all is said by how that distance changes from one release to the next, and it is judged as
-    the crossings above are.
+    the crossings above are. That it shrinks geometrically already shows that the cycle attracts: there is no other
+    direction in which a motion could leave it.
 
 A motion that meets none of these by the end stays undecided: of a pin without damping or without friction it may be
 for ever, and close to the boundary between two basins it may last.

@@ -24,11 +24,11 @@ STIFF = 100.0
 friction exceeds the pull but just, slip is a short excursion, and a longer series goes to its end in place of many
 stiff steps."""
 
-CREEP = 5e-2
-"""Excess of the pull at its peak, as a fraction of g, up to which slip counts as the excursion of a small excess."""
+CREEP = 0.1
+"""Excess of the pull, as a fraction of by how much it changes in a turn or of g, up to which slip creeps."""
 
 PLACES = 8
-"""Places at which the series is looked at for whether slip ends again."""
+"""Places at least at which the series is looked at for whether slip ends again."""
 
 
 class PinLaw(NamedTuple):
@@ -120,10 +120,35 @@ def sticking_radius(law: PinLaw) -> float:
 
 
 @scalar
-def barely_exceeds(radius: float, law: PinLaw) -> bool:
-    """Tell whether the pull on a pin that turns with the disc exceeds friction at its peak, but only just."""
-    turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
-    return 1.0 < (law.stiffness * abs(law.offset) + turning * radius) / law.friction < 1.0 + CREEP
+def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
+    """Tell whether a pin that was released at the radius ``last`` and then at ``radius`` creeps inward for ever.
+
+    Of its pull the part p = k²|X0| is constant, and q, in proportion to the radius, turns with it. Once a turn they
+    add up to g + δ, from which the pull falls like B·(ωt)²/2 before and after, B = p·q/(p + q). With
+    K = k² − ω² the slip that this sets off takes 4.5·K·δ²/(B·ω²) from δ: less than all of it, so that δ never
+    comes to zero.
+    """
+    inward = law.stiffness - law.disc_speed**2
+    constant = law.stiffness * abs(law.offset)
+    turning = abs(complex(inward, law.disc_speed * law.damping))
+    q = turning * last
+    peak = constant * q / (constant + q) if q > 0.0 else 0.0
+    most = CREEP * peak * min(1.0, law.disc_speed**2 / inward) if inward > 0.0 else 0.0
+    return radius < last and law.friction < constant + turning * radius and constant + q < law.friction + most
+
+
+@scalar
+def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
+    """Tell whether the slow slip of a pin without offset dies out for ever, without rest.
+
+    Its speed s is along the pull, which turns with it, and e is by how much that would exceed g at rest. They go by
+    s' = e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator. If it is overdamped and e >= c·s/2 the speed never
+    comes to zero.
+    """
+    inward = law.stiffness - law.disc_speed**2
+    excess = abs(pull(z, 0j, law)) - law.friction
+    overdamped = inward > 0.0 and law.damping**2 >= 4.0 * inward
+    return overdamped and 0.5 * law.damping * abs(w) <= excess <= CREEP * law.friction
 
 
 @scalar
@@ -183,11 +208,17 @@ def _series(
 def _along(position: Any, slip: Any, speed: Any, terms: int, duration: float) -> Any:
     """Return place, slip velocity, duration and way at the end of the series, or where slip ends before."""
     rest, ends, risen = duration, False, False
-    for place in range(1, PLACES + 1):
-        before, t = duration * (place - 1) / PLACES, duration * place / PLACES
+    spacing, before, last = duration / PLACES, 0.0, False
+    a, b, c = speed[1], speed[2], speed[3]
+    if c < 0.0 < b * b - 4.0 * a * c:  # where slip ends by these terms, which holds if that is soon
+        soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
+        spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing
+    while not last and not ends:
+        last = before + 1.5 * spacing > duration
+        t = duration if last else before + spacing
         if _sum(speed, 1, terms, t) > 0.0:
-            risen = True
-        elif risen or place == PLACES:
+            risen, before = True, t
+        elif risen or last:
             for _ in range(60):
                 middle = 0.5 * (before + t)
                 if _sum(speed, 1, terms, middle) > 0.0:
@@ -195,7 +226,8 @@ def _along(position: Any, slip: Any, speed: Any, terms: int, duration: float) ->
                 else:
                     t = middle
             rest, ends = t, True
-            break
+        else:
+            before = t
     way = 0.0
     for k in range(terms, 0, -1):
         way = (way + speed[k] / (k + 1)) * rest

@@ -36,6 +36,7 @@ from reference_model.ensemble.pin_book import (
     RELEASE_BEFORE,
     RELEASE_COUNT,
     RELEASE_LAST,
+    SINCE,
     TICK,
     TURN_BEFORE,
     TURN_COUNT,
@@ -79,13 +80,15 @@ from reference_model.ensemble.pin_lanes import (
 )
 from reference_model.ensemble.pin_slip import (
     PinLaw,
-    barely_exceeds,
     begin_slip,
+    creeps_by_turns,
+    creeps_steadily,
     pull,
     release_delay,
     sticking_radius,
     time_to_rest,
 )
+from reference_model.ensemble.pin_stability import orbit_attracts
 from reference_model.ensemble.results import EndState
 from reference_model.systems import FloatArray
 
@@ -216,6 +219,9 @@ def turn_made(scratch: Any, page: Any, lane: int, arc: Arc, u: float, law: PinLa
         return False
     way = scratch[WAY * LANES + lane] + way_along(arc, u, law.disc_speed)
     if page[MEASURED] == OF_TURN:
+        if not orbit_attracts(z, velocity_on(arc, u), t - page[SINCE], law):
+            forget_turns(scratch, page, lane)
+            return False
         close_window(page, WHIRL, t, way, abs(z))
         scratch[WATCH * LANES + lane] = UNWATCHED
         return aims.early
@@ -249,8 +255,8 @@ def maybe_rest(scratch: Any, page: Any, lane: int, law: PinLaw, aims: Aims) -> b
     """Bring the pin to rest if what is left of slip can be told; return whether the trajectory ends."""
     z, w = place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL)
     t, s = scratch[(TRIAL + TIME) * LANES + lane], abs(w)
-    if law.offset == 0.0 and page[END] == UNDECIDED and barely_exceeds(abs(z), law):
-        page[END] = STUCK  # it never quite rests: without offset the pull does not change while it turns
+    if law.offset == 0.0 and page[END] == UNDECIDED and creeps_steadily(z, w, law):
+        page[END] = STUCK
         keep(page, sticking_radius(law), sticking_radius(law), 0.0)
         if aims.early:
             return True
@@ -270,10 +276,7 @@ def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, 
     """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before."""
     end: float = page[DURATION]
     w = 0j
-    page[TURN_COUNT] = 0.0
-    if scratch[WATCH * LANES + lane] == RADII and page[MEASURED] == OF_TURN:
-        page[MEASURED] = NO_WINDOW
-        scratch[WATCH * LANES + lane] = TURNS
+    forget_turns(scratch, page, lane)
     if aims.once:
         page[END] = STUCK
         return True
@@ -306,6 +309,15 @@ def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, 
 
 
 @inlined
+def forget_turns(scratch: Any, page: Any, lane: int) -> None:
+    """Begin anew with crossings of the section."""
+    page[TURN_COUNT] = 0.0
+    if scratch[WATCH * LANES + lane] == RADII and page[MEASURED] == OF_TURN:
+        page[MEASURED] = NO_WINDOW
+        scratch[WATCH * LANES + lane] = TURNS
+
+
+@inlined
 def watched(scratch: Any, lane: int) -> bool:
     """Tell whether a lane is watched."""
     watch: float = scratch[WATCH * LANES + lane]
@@ -323,7 +335,7 @@ def released(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinL
         page[END] = UNDECIDED  # what it was, if anything, was not the end
         scratch[WATCH * LANES + lane] = TURNS
     radius, largest = abs(z), sticking_radius(law)
-    if page[RELEASE_COUNT] > 0.0 and largest < radius < page[RELEASE] and barely_exceeds(radius, law):
+    if page[RELEASE_COUNT] > 0.0 and creeps_by_turns(radius, page[RELEASE], law):
         page[END] = STUCK
         keep(page, largest, largest, 0.0)
         return aims.early

@@ -12,11 +12,13 @@ from reference_model import (
     simulate,
     stick_slip_orbits,
     sticking_radius,
+    whirl_branch,
     whirl_orbit,
 )
 from reference_model.ensemble import EndState, pin_slip, regions, simulate_ensemble
 from reference_model.ensemble.pin_book import KNOWN_LEVEL, KNOWN_REACH
 from reference_model.ensemble.pin_ends import ACCURACY, converged, depth, well_of
+from reference_model.ensemble.pin_stability import orbit_attracts, return_derivative
 
 STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
 STICK_SLIP = replace(FIG5, damping=1.173, friction_force=0.658, disc_speed=1.8, offset=-0.42)
@@ -195,6 +197,42 @@ def test_slip_that_dies_out_for_ever_is_stuck_at_once_and_given_up_undecided_in_
     assert np.hypot(*full.states[0, :2]) == pytest.approx(sticking_radius(pin), rel=1e-3)
 
 
+def turning_with(pin, radius, slip=0j):
+    return [radius, 0.0, slip.real, pin.disc_speed * radius + slip.imag]
+
+
+@pytest.mark.parametrize("slip", [1e-9, -1e-9, 1e-9j, -1e-9j])
+def test_without_offset_slip_that_leads_outward_does_not_die_out(slip):
+    pin = replace(FIG5, offset=0.0)  # ω > k
+    start = turning_with(pin, 1.03 * sticking_radius(pin), complex(slip))
+    found = simulate_ensemble(pin, start, duration=600.0)
+    assert found.end[0] == EndState.WHIRL
+    assert found.largest_radius[0] == pytest.approx(pin.friction_force / pin.damping, rel=ACCURACY)
+
+
+@pytest.mark.parametrize(("offset", "share"), [(0.0, 1.04), (0.24, 3.0), (0.24, 3.5)])
+def test_slip_that_leads_inward_fast_rests_where_the_reference_does(offset, share):
+    pin = replace(FIG5, damping=0.03, friction_force=0.25, disc_speed=0.3, offset=offset)
+    start = turning_with(pin, share * sticking_radius(pin))
+    found = simulate_ensemble(pin, start, duration=600.0)
+    motion = simulate(pin, start, [0.0, 600.0], tolerance=1e-10)
+    assert found.end[0] == EndState.STUCK
+    assert found.largest_radius[0] == pytest.approx(np.hypot(*motion.at_end[:2]), rel=1e-6)
+    assert found.largest_radius[0] < 0.999 * sticking_radius(pin)
+
+
+def test_a_pin_that_creeps_by_turns_does_so_in_the_reference():
+    pin = replace(FIG5, damping=0.128, friction_force=0.2424, disc_speed=-0.26, offset=-0.2275)
+    start = turning_with(pin, 1.001 * sticking_radius(pin))
+    early = simulate_ensemble(pin, start, duration=400.0)
+    full = simulate_ensemble(pin, start, duration=400.0, early_end=False)
+    assert early.end[0] == EndState.STUCK
+    assert early.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
+    motion = simulate(pin, start, [0.0, 400.0], tolerance=1e-11)
+    assert full.states[0] == pytest.approx(motion.at_end, abs=1e-9)
+    assert 1.0 < np.hypot(*motion.at_end[:2]) / sticking_radius(pin) < 1.0005
+
+
 def law_of(pin):
     return pin_slip.PinLaw(
         pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0
@@ -261,3 +299,45 @@ def test_starts_next_to_the_saddle_between_the_basins_go_to_their_own_side():
         starts = np.tile(middle, (len(aside), 1))
         starts[:, 2] += sign * aside
         assert np.all(simulate_ensemble(FIG5, starts, duration=1000.0, tolerance=1e-12).end == end)
+
+
+@pytest.fixture(scope="module")
+def about_the_fold():
+    """Whirls that slip all the time, by decreasing x: stable ones, the fold, and unstable ones; loads differ."""
+    return list(whirl_branch(whirl_orbit(FIG5, samples=512), 0.28, samples=512))
+
+
+def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
+    assert {orbit.stable for orbit in about_the_fold} == {True, False}
+    for orbit in about_the_fold:
+        rightmost = np.argmax(orbit.trajectory.states[:, 0])
+        x, y, vx, vy = orbit.trajectory.states[rightmost]
+        law, derivative = law_of(orbit.system), np.zeros((3, 3))
+        assert return_derivative(complex(x, y), complex(vx, vy), orbit.period, law, derivative)
+        expected = np.sort(np.abs(orbit.multipliers))
+        expected = np.delete(expected, np.argmin(np.abs(expected - 1.0)))  # that of a shift in time
+        # To 1e-3 where slip nearly ends in the turn, and to 1e-5 elsewhere.
+        np.testing.assert_allclose(
+            np.sort(np.abs(np.linalg.eigvals(derivative))), expected, rtol=1e-3, atol=1e-4
+        )
+        assert orbit_attracts(complex(x, y), complex(vx, vy), orbit.period, law) == orbit.stable
+
+
+@pytest.mark.parametrize("varied", [False, True])
+def test_a_motion_that_comes_close_to_an_unstable_whirl_does_not_end_there(about_the_fold, varied):
+    aside = np.geomspace(1e-9, 1e-4, 12)
+    directions = np.random.default_rng(2).normal(size=(len(aside), 4))
+    for orbit in about_the_fold:
+        if orbit.stable:
+            continue
+        pin = orbit.system
+        starts = orbit.state + np.concatenate((aside, -aside))[:, np.newaxis] * np.tile(directions, (2, 1))
+        parameters = {"mass": np.ones(len(starts))} if varied else None
+        early = simulate_ensemble(pin, starts, duration=5000.0, parameters=parameters)
+        full = simulate_ensemble(pin, starts, duration=5000.0, parameters=parameters, early_end=False)
+        (rest,) = self_centred_equilibria(pin)
+        centred = np.hypot(full.states[:, 0] - rest.x, full.states[:, 1] - rest.y) < 1e-3
+        assert 0 < np.sum(centred) < len(starts)
+        np.testing.assert_array_equal(
+            early.end, np.where(centred, EndState.SELF_CENTRED, EndState.WHIRL), err_msg=f"{orbit.state[0]}"
+        )
