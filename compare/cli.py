@@ -120,14 +120,15 @@ def list_studies(context: typer.Context) -> None:
     Example:
       friction-discs list
     """
-    from compare.engines import engines
+    from compare.engines import engines, on_request
 
     studies = _studies(context, [])
     width = max((len(study.name) for study in studies), default=0)
     print("Studies:")
     for study in studies:
         print(f"  {study.name:{width}}  {study.title}")
-    print(f"Engines: {', '.join(engine.name for engine in engines())}")
+    usual, others = (", ".join(engine.name for engine in some) for some in (engines(), on_request()))
+    print(f"Engines: {usual}; on request {others}")
 
 
 @app.command()

@@ -204,24 +204,37 @@ def _checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory
 
 
 _REGISTRY: dict[str, Engine] = {}
+_ON_REQUEST: set[str] = set()
 
 
-def register(engine: Engine) -> Engine:
-    """Add ``engine`` to those that every study runs; raise ``ValueError`` if its name is taken."""
+def register(engine: Engine, *, on_request: bool = False) -> Engine:
+    """Add ``engine`` to those that every study runs, or that are only run where they are named.
+
+    Raises ``ValueError`` if its name is taken.
+    """
     if engine.name in _REGISTRY or engine.name == "theory":
         raise ValueError(f"engine {engine.name!r}: the name is taken")
     _REGISTRY[engine.name] = engine
+    if on_request:
+        _ON_REQUEST.add(engine.name)
     return engine
 
 
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
-    """Return the engines of the given names, or all that are registered.
+    """Return the engines of the given names, or all that are registered but those on request.
 
     A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
     does one of the entry points "friction_discs.engines" of an installed package.
     Raises ``ValueError`` for a name that is unknown or can't be imported.
     """
-    return tuple(_named(name) for name in names) or tuple(_REGISTRY.values())
+    return tuple(_named(name) for name in names) or tuple(
+        engine for name, engine in _REGISTRY.items() if name not in _ON_REQUEST
+    )
+
+
+def on_request() -> tuple[Engine, ...]:
+    """Return the registered engines that take part only where they are named."""
+    return tuple(_REGISTRY[name] for name in sorted(_ON_REQUEST))
 
 
 def _named(name: str) -> Engine:
@@ -289,6 +302,14 @@ def _simulate_reference(
     return reference_model.simulate(system, initial_state, times, tolerance=tolerance)
 
 
+def _simulate_compiled(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    import reference_model
+
+    return reference_model.simulate(system, initial_state, times, tolerance=tolerance, compiled=True)
+
+
 def _simulate_exudyn(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
@@ -308,3 +329,4 @@ def _simulate_exudyn_native(
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
 exudyn = register(Engine("exudyn", _simulate_exudyn, EVERY_KIND))
 exudyn_native = register(Engine("exudyn-native", _simulate_exudyn_native, ("pin", "points")))
+compiled = register(Engine("compiled", _simulate_compiled, EVERY_KIND), on_request=True)

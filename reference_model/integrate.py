@@ -48,6 +48,7 @@ def simulate(
     *,
     tolerance: float = 1e-9,
     contact: Contact | None = None,
+    compiled: bool = False,
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
@@ -64,6 +65,10 @@ def simulate(
         Relative accuracy to aim at, from 1e-14 to 1e-2.
     contact : Contact or None
         The law of friction of a disc if it is not that of its parameters.
+    compiled : bool
+        Whether the compiled kernel of :mod:`ensemble` is to do it, where speed matters. It is another implementation
+        of the same physics, for linear supports and the laws of the parameters; the first run of a kind of contact
+        on a machine waits for the compiler.
 
     Returns
     -------
@@ -72,11 +77,16 @@ def simulate(
     Raises
     ------
     ValueError
-        For a state, times, tolerance or contact that are not as above.
+        For a state, times, tolerance or contact that are not as above, or a system that compiled code does not know.
     SimulationError
         If the integrator gives up.
 
     """
+    if compiled:
+        # Here, since the plain one is to start without the compiler.
+        from reference_model.ensemble.single import simulate_compiled
+
+        return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)
     return simulate_with(Thresholds(), system, initial_state, times, tolerance=tolerance, contact=contact)
 
 

@@ -13,6 +13,10 @@ together."""
 def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
     """Call ``run(first, last)`` for all of ``n`` trajectories; it must release the interpreter's lock."""
     firsts = range(0, n, CHUNK)
+    if threads == 1:
+        for first in firsts:
+            run(first, min(first + CHUNK, n))
+        return
     with ThreadPoolExecutor(min(threads, len(firsts))) as pool:
         for _ in pool.map(lambda first: run(first, min(first + CHUNK, n)), firsts):
             pass  # asks for the result, so that an error is raised here

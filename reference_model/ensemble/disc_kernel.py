@@ -75,9 +75,11 @@ from reference_model.ensemble.disc_slip import (
 )
 from reference_model.ensemble.disc_stability import attracts
 from reference_model.ensemble.lanes import LANES, run
+from reference_model.ensemble.notes import EVERY, KIND, ON_THE_WAY, SLIPS, STATE, STICKS
+from reference_model.ensemble.notes import TIME as NOTE_TIME
 from reference_model.ensemble.pin import ROUNDING, units
 from reference_model.ensemble.pin_ends import ACCURACY, converged
-from reference_model.ensemble.results import EndState, Results
+from reference_model.ensemble.results import HANDED_OVER, EndState, Results
 from reference_model.systems import FloatArray
 
 UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (
@@ -94,9 +96,6 @@ PARAMETERS = (
     "shaft_damping", "shaft_speed",
 )  # fmt: skip
 """Of a disc, in the order in which they are taken here."""
-
-HANDED_OVER = 255
-"""In place of an end state: a point of the contact is about to rest, or the disc on points as a whole."""
 
 STRETCHING_TIME = 0.5
 """s₀ over g, in units of time."""
@@ -116,10 +115,12 @@ LOOKS, TURNS_OF, PEAKS = 0, 1, 2
 NUMBER, LENGTH, RATE, END, TICK, MEASURED, SINCE, WAY_BEFORE, LEAST, LARGEST = range(10)
 FOUND, SERIES = 10, 13
 LAST, BEFORE, COUNT, SERIES_ITEMS = 5, 6, 7, 8
-ITEMS = SERIES + 3 * SERIES_ITEMS
+NOTED = SERIES + 3 * SERIES_ITEMS
+ITEMS = NOTED + 1
 """Items of a page of the book: number, units of length and of time's inverse, end state so far, the period of looks;
 the window of the kind MEASURED (−1: none) in which measures of the end state are taken: since when, from which way
-on, radii so far; the measures found; of each kind what was seen last (5), the last two distances, and how often."""
+on, radii so far; the measures found; of each kind what was seen last (5), the last two distances, and how often;
+where the next note goes."""
 
 CIRCLE = 1.0
 """Marks a region about a whirl, in the coordinates that turn with the centre; 0 is one about an equilibrium."""
@@ -187,6 +188,9 @@ def load_with(
         scratch[(LAW + i) * LANES + lane] = constants[i]
     scratch[TOLERANCE * LANES + lane], scratch[DURATION * LANES + lane] = aims.tolerance, duration
     scratch[WATCH * LANES + lane] = RADII if law.offset == 0.0 else TURNS
+    noted = takes_notes(page)
+    if noted:
+        page[TICK], page[NOTED] = EVERY, ITEMS
     scratch[DUE * LANES + lane] = page[TICK]
 
     u = complex(vx + omega * y, vy - omega * x) / speed
@@ -196,6 +200,8 @@ def load_with(
     if abs(spin - omega) <= ROUNDING * abs(omega):
         r = 0.0
     put(scratch, lane, (x / length, y / length, u.real, u.imag, r, angle, 0.0, 0.0))
+    if noted:
+        note(scratch, page, lane, SLIPS)
     if u == 0j and r == 0.0 and friction > 0.0:
         return bool(rest(scratch, page, lane, law, aims))
     put_slipping(scratch, lane, law, rates)
@@ -286,6 +292,8 @@ def _held(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims) -> b
         _keep(page, abs(z), abs(z), 0.0)
         if aims.early:
             return True
+    if held > 0.0 and takes_notes(page):
+        note(scratch, page, lane, STICKS)
     delay = min(held, end - t)
     turn = law.disc_speed * delay
     z *= complex(math.cos(turn), math.sin(turn))
@@ -293,6 +301,8 @@ def _held(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims) -> b
     put(scratch, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle, t, way))
     if t >= end - AT_END:
         return True
+    if held > 0.0 and takes_notes(page):
+        note(scratch, page, lane, SLIPS)
     if held > 0.0 and page[END] == UNDECIDED and scratch[WATCH * LANES + lane] != UNWATCHED:
         met = _compared(page, PEAKS, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z))
         if met and _found(scratch, page, lane, PEAKS, STICK_SLIP, t, way, abs(z), law, aims):
@@ -407,6 +417,10 @@ def _met(
 def _looked(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims, shows: Any) -> bool:
     """Look at the motion, as once in every free period and at the end; return whether the trajectory ends here."""
     t, due = scratch[(TRIAL + TIME) * LANES + lane], scratch[DUE * LANES + lane]
+    if takes_notes(page):
+        note(scratch, page, lane, ON_THE_WAY)
+        scratch[DUE * LANES + lane] = t + page[TICK]
+        return False
     x, y, _, _, r, _, _, _ = eight_of(scratch, lane, TRIAL)
     k = eight_of(scratch, lane, TRIAL + RATES)
     if page[END] == UNDECIDED and _in_region(
@@ -484,23 +498,48 @@ def _point_rests(scratch: Any, lane: int, law: DiscLaw) -> bool:
     return False
 
 
+@inlined
+def takes_notes(page: Any) -> bool:
+    """Tell whether there is room for notes, see :mod:`notes`: behind the other items."""
+    return bool(page.shape[0] > ITEMS)
+
+
+@scalar
+def note(scratch: Any, page: Any, lane: int, kind: float) -> None:
+    """Take a note of what stands in the slots of the trial, while there is room."""
+    place = int(page[NOTED])
+    if place < page.shape[0]:
+        page[NOTED] += STATE + 6.0
+        page[place + KIND] = kind
+        page[place + NOTE_TIME] = scratch[(TRIAL + TIME) * LANES + lane] / page[RATE]
+        put_state(page[place + STATE :], scratch, page, lane)
+
+
+@scalar
+def put_state(state: Any, scratch: Any, page: Any, lane: int) -> None:
+    """Put x, y, angle, vx, vy and spin of what stands in the slots of the trial into ``state`` (6,), in SI units."""
+    length, rate = page[LENGTH], page[RATE]
+    x, y, ux, uy, r, angle, _, _ = eight_of(scratch, lane, TRIAL)
+    omega, curling = scratch[(LAW + 3) * LANES + lane], scratch[(LAW + 10) * LANES + lane]
+    state[0], state[1], state[2] = x * length, y * length, angle
+    state[3], state[4] = (ux - omega * y) * length * rate, (uy + omega * x) * length * rate
+    state[5] = (omega + curling * r) * rate
+
+
 @scalar
 def store(scratch: Any, book: Any, lane: int, results: Results) -> None:
     """Write down the result of a lane in SI units."""
     page = book[lane]
     number, length, rate = int(page[NUMBER]), page[LENGTH], page[RATE]
-    x, y, ux, uy, r, angle, t, _ = eight_of(scratch, lane, TRIAL)
-    omega, curling = scratch[(LAW + 3) * LANES + lane], scratch[(LAW + 10) * LANES + lane]
-    state = results.states[number]
-    state[0], state[1], state[2] = x * length, y * length, angle
-    state[3], state[4] = (ux - omega * y) * length * rate, (uy + omega * x) * length * rate
-    state[5] = (omega + curling * r) * rate
-    results.times[number] = t / rate
+    put_state(results.states[number], scratch, page, lane)
+    results.times[number] = scratch[(TRIAL + TIME) * LANES + lane] / rate
     results.ends[number], results.steps[number] = int(page[END]), int(scratch[STEPS * LANES + lane])
     known = page[END] != UNDECIDED and page[END] != HANDED_OVER
     for i in range(3):
         measure = page[FOUND + i] * length if known else math.nan
         results.measures[number, i] = measure * rate if i == 2 else measure
+    if takes_notes(page):
+        results.notes[:] = page[ITEMS:]
 
 
 # The compiler takes functions from globals only: so there are those of rings and of points.
@@ -540,8 +579,8 @@ def _attend_points(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
 def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
-        _load_ring, _advance_rings, _attend_ring, accept, store, idle, SLOTS, ITEMS, FLAG, first, last,
-        aims.around, task, aims, results,
+        _load_ring, _advance_rings, _attend_ring, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG,
+        first, last, aims.around, task, aims, results,
     )  # fmt: skip
 
 
@@ -549,6 +588,6 @@ def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last
 def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
     run(
-        _load_points, _advance_points, _attend_points, accept, store, idle, SLOTS, ITEMS, FLAG, first, last,
-        aims.around, task, aims, results,
+        _load_points, _advance_points, _attend_points, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG,
+        first, last, aims.around, task, aims, results,
     )  # fmt: skip

@@ -53,7 +53,7 @@ def run(
 
     """
     scratch = np.zeros(slots * LANES)
-    book = np.zeros((LANES, items))
+    book = np.empty((LANES, items))
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
     active = 0

@@ -9,6 +9,7 @@ import numpy as np
 
 from reference_model.ensemble.compiled import outermost, scalar
 from reference_model.ensemble.lanes import LANES, run
+from reference_model.ensemble.notes import EVERY, SLIPS
 from reference_model.ensemble.pin_book import (
     DURATION,
     END,
@@ -20,16 +21,19 @@ from reference_model.ensemble.pin_book import (
     KNOWN_LEVEL,
     LENGTH,
     LEVEL,
+    NOTED,
     NUMBER,
     RATE,
     TICK,
     WELL_X,
     WELL_Y,
     keep,
+    note,
+    put_state,
+    takes_notes,
 )
 from reference_model.ensemble.pin_ends import well_of
 from reference_model.ensemble.pin_lanes import (
-    DISC_SPEED,
     DUE,
     FLAG,
     LANDING,
@@ -47,14 +51,13 @@ from reference_model.ensemble.pin_lanes import (
     UNWATCHED,
     WATCH,
     WAY,
-    WX,
-    WY,
-    X,
-    Y,
     accept,
     advance,
     idle,
+    law_of,
+    place_of,
     put_slipping,
+    slip_of,
 )
 from reference_model.ensemble.pin_slip import MOST_TERMS, PinLaw
 from reference_model.ensemble.pin_watch import SELF_CENTRED, UNDECIDED, Aims, attend, rest
@@ -81,12 +84,12 @@ PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "o
 class PinTask(NamedTuple):
     """What is to be done.
 
-    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4).
+    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), ``durations`` in s (1 or n,).
     """
 
     parameters: FloatArray
     starts: FloatArray
-    duration: float
+    durations: FloatArray
 
 
 @scalar
@@ -96,12 +99,13 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
     mass, omega, offset = row[0], row[4], row[5]
     k2, c, g = row[1] / mass, row[2] / mass, row[3] / mass
     x, y, vx, vy = task.starts[number if task.starts.shape[0] > 1 else 0]
+    duration = task.durations[number if task.durations.shape[0] > 1 else 0]
     length, rate = units(math.sqrt(k2), c, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
     speed = length * rate
 
     page = book[lane]
     page[:] = 0.0
-    page[NUMBER], page[LENGTH], page[RATE], page[DURATION] = number, length, rate, task.duration * rate
+    page[NUMBER], page[LENGTH], page[RATE], page[DURATION] = number, length, rate, duration * rate
     friction = g / (speed * rate)
     law = PinLaw(
         k2 / rate**2,
@@ -130,7 +134,10 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
         for i in range(FORM_SIZE):
             page[FORM + i] = known[KNOWN_FORM + i]
     page[TICK] = TICK_TURNS * 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
-    begin_watching = aims.early or aims.once or page[DURATION] <= LAST_TICKS * page[TICK]
+    noted = takes_notes(page)
+    if noted:
+        page[TICK], page[NOTED] = EVERY, ITEMS
+    begin_watching = noted or aims.early or aims.once or page[DURATION] <= LAST_TICKS * page[TICK]
     scratch[WATCH * LANES + lane] = TURNS if begin_watching and friction > 0.0 else UNWATCHED
     if begin_watching:
         scratch[DUE * LANES + lane] = min(page[TICK], page[DURATION] - LANDING)
@@ -143,6 +150,8 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
     w = complex(vx + omega * y, vy - omega * x) / speed
     if abs(w) <= ROUNDING * abs(law.disc_speed * z):
         w = 0j
+    if noted:
+        note(page, SLIPS, 0.0, z, w, law)
     if w == 0j and friction > 0.0:
         return rest(scratch, page, lane, z, 0.0, law, aims)
     put_slipping(scratch, lane, z, w, law)
@@ -150,7 +159,7 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
         page[END] = SELF_CENTRED
         keep(page, 0.0, 0.0, 0.0)
         return aims.early
-    return False
+    return bool(duration <= 0.0)
 
 
 @scalar
@@ -170,15 +179,13 @@ def store(scratch: Any, book: Any, lane: int, results: Results) -> None:
     """Write down the result of a lane in SI units."""
     page = book[lane]
     number, length, rate = int(page[NUMBER]), page[LENGTH], page[RATE]
-    x, y = scratch[(TRIAL + X) * LANES + lane], scratch[(TRIAL + Y) * LANES + lane]
-    omega = scratch[DISC_SPEED * LANES + lane]
-    results.states[number, 0] = x * length
-    results.states[number, 1] = y * length
-    results.states[number, 2] = (scratch[(TRIAL + WX) * LANES + lane] - omega * y) * length * rate
-    results.states[number, 3] = (scratch[(TRIAL + WY) * LANES + lane] + omega * x) * length * rate
+    z, w = place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL)
+    put_state(results.states[number], page, z, w, law_of(scratch, lane))
     results.times[number] = scratch[(TRIAL + TIME) * LANES + lane] / rate
     results.ends[number] = int(page[END])
     results.steps[number] = int(scratch[STEPS * LANES + lane])
+    if takes_notes(page):
+        results.notes[:] = page[ITEMS:]
     for i in range(3):
         measure = page[FOUND_LEAST + i] * length if page[END] != UNDECIDED else math.nan
         results.measures[number, i] = measure * rate if i == 2 else measure
@@ -198,5 +205,6 @@ def run_pins(
     """Run the trajectories ``first`` to ``last`` (excluded); the others are the items of :class:`Aims`."""
     aims = Aims(tolerance, early, once, known, np.zeros((6, MOST_TERMS + 2), dtype=np.complex128))
     run(
-        load, advance, attend, accept, store, idle, SLOTS, ITEMS, FLAG, first, last, None, task, aims, results
-    )
+        load, advance, attend, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG, first, last, None,
+        task, aims, results,
+    )  # fmt: skip

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from reference_model.ensemble.compiled import inlined, scalar
+from reference_model.ensemble.notes import KIND, STATE, TIME
+from reference_model.ensemble.pin_slip import PinLaw
 
 FORM_SIZE = 10
 """Coefficients of the form V, upper half."""
@@ -20,12 +22,12 @@ there, upper half; its radii in m and mean slip speed in m/s. Level or reach are
     NUMBER, LENGTH, RATE, DURATION, END, WELL_X, WELL_Y, LEVEL, FORM, TICK,
     TURN_X, TURN_Y, TURN_V, TURN_LAST, TURN_BEFORE, TURN_COUNT,
     RELEASE, RELEASE_LAST, RELEASE_BEFORE, RELEASE_COUNT, MEASURED,
-    SINCE, WAY_BEFORE, LEAST, LARGEST, FOUND_LEAST, FOUND_LARGEST, FOUND_SLIP, ITEMS,
-) = (*range(9), *range(8 + FORM_SIZE, 28 + FORM_SIZE))  # fmt: skip
+    SINCE, WAY_BEFORE, LEAST, LARGEST, FOUND_LEAST, FOUND_LARGEST, FOUND_SLIP, NOTED, ITEMS,
+) = (*range(9), *range(8 + FORM_SIZE, 29 + FORM_SIZE))  # fmt: skip
 """Items of a page of the book: number, unit of length, duration in units and end state so far; the equilibrium and
 when to look next; the last crossing and the distances of the last three; the same of releases; what the window is
-from which the measures of the end state are taken: since when, from which way on, radii so far; and what was
-found."""
+from which the measures of the end state are taken: since when, from which way on, radii so far; what was found; and
+where the next note goes."""
 
 NO_WINDOW, OF_TURN, OF_RELEASE = 0.0, 1.0, 2.0
 """What is MEASURED: nothing yet, a turn from crossing to crossing, or a cycle from release to release."""
@@ -56,3 +58,28 @@ def close_window(page: Any, end: int, t: float, way: float, radius: float) -> No
     note_radius(page, radius)
     keep(page, page[LEAST], page[LARGEST], (way - page[WAY_BEFORE]) / (t - page[SINCE]))
     page[END], page[MEASURED] = end, NO_WINDOW
+
+
+@inlined
+def takes_notes(page: Any) -> bool:
+    """Tell whether there is room for notes, see :mod:`notes`: behind the other items."""
+    return bool(page.shape[0] > ITEMS)
+
+
+@scalar
+def note(page: Any, kind: float, t: float, z: complex, w: complex, law: PinLaw) -> None:
+    """Take a note of where a trajectory is, while there is room."""
+    place = int(page[NOTED])
+    if place < page.shape[0]:
+        page[NOTED] += STATE + 4.0
+        page[place + KIND], page[place + TIME] = kind, t / page[RATE]
+        put_state(page[place + STATE :], page, z, w, law)
+
+
+@scalar
+def put_state(state: Any, page: Any, z: complex, w: complex, law: PinLaw) -> None:
+    """Put x, y, vx, vy into ``state`` (4,), in SI units."""
+    length, rate = page[LENGTH], page[RATE]
+    state[0], state[1] = z.real * length, z.imag * length
+    state[2] = (w.real - law.disc_speed * z.imag) * length * rate
+    state[3] = (w.imag + law.disc_speed * z.real) * length * rate

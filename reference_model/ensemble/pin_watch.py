@@ -15,6 +15,7 @@ from reference_model.ensemble.arc import (
 )
 from reference_model.ensemble.compiled import inlined, scalar
 from reference_model.ensemble.lanes import LANES
+from reference_model.ensemble.notes import ON_THE_WAY, SLIPS, STICKS
 from reference_model.ensemble.pin_book import (
     DURATION,
     END,
@@ -48,8 +49,10 @@ from reference_model.ensemble.pin_book import (
     WELL_Y,
     close_window,
     keep,
+    note,
     note_radius,
     open_window,
+    takes_notes,
 )
 from reference_model.ensemble.pin_ends import Form, Well, converged, depth
 from reference_model.ensemble.pin_lanes import (
@@ -169,6 +172,8 @@ def watch_well(scratch: Any, page: Any, lane: int, later: float, law: PinLaw, ai
     if scratch[WATCH * LANES + lane] == UNWATCHED and law.friction > 0.0 and page[END] == UNDECIDED:
         scratch[WATCH * LANES + lane] = TURNS
     scratch[DUE * LANES + lane] = min(later + page[TICK], page[DURATION] - LANDING)
+    if takes_notes(page):
+        note(page, ON_THE_WAY, later, place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL), law)
     if page[END] != UNDECIDED or not in_well(scratch, page, lane, law):
         return False
     scratch[WATCH * LANES + lane] = UNWATCHED
@@ -286,6 +291,8 @@ def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, 
             page[END], end = UNDECIDED, t  # given up
         if abs(pull(z, 0j, law)) <= law.friction:
             held = release_delay(z, law)
+            if held > 0.0 and takes_notes(page):
+                note(page, STICKS, t, z, w, law)
             if held == math.inf:
                 page[END] = STUCK
                 keep(page, abs(z), abs(z), 0.0)
@@ -294,6 +301,8 @@ def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, 
             turn = law.disc_speed * min(held, end - t)
             z *= complex(math.cos(turn), math.sin(turn))
             t += held
+            if t < end and held > 0.0 and takes_notes(page):
+                note(page, SLIPS, t, z, w, law)
             if t < end and held > 0.0 and released(scratch, page, lane, z, t, law, aims):
                 end = t
         if t < end:

@@ -1,4 +1,4 @@
-"""An ensemble of pins: from parameters to results."""
+"""An ensemble of pins, and a single one: from parameters to results."""
 
 from __future__ import annotations
 
@@ -9,9 +9,14 @@ import numpy as np
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.pin import PARAMETERS, PinTask, run_pins
 from reference_model.ensemble.pin_book import KNOWN
+from reference_model.ensemble.recording import Recording
 from reference_model.ensemble.regions import known_ends
 from reference_model.ensemble.results import Ensemble, Results
+from reference_model.stepping import TIGHTEST
 from reference_model.systems import FloatArray, PinOnDisc
+
+LOCAL = 0.1
+"""Tolerance of a step over that of a single motion, which is to be as accurate as that of the plain reference."""
 
 
 def simulate_pins(
@@ -31,10 +36,24 @@ def simulate_pins(
     known = np.zeros(KNOWN)
     if not varied:
         known[:] = known_ends(pin)  # which is read-only: for such an array all would be compiled once more
-    task, results = PinTask(table, starts, duration), Results.empty(n, pin.state_size)
+    task, results = PinTask(table, starts, np.full(1, duration)), Results.empty(n, pin.state_size)
 
     def run(first: int, last: int) -> None:
         run_pins(task, tolerance, early_end, False, known, results, first, last)
 
     in_chunks(run, n, threads)
     return results.ensemble(varied.get("friction_force", pin.friction_force))
+
+
+def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
+    """Record the motion of a pin from ``state`` on."""
+    local = max(LOCAL * tolerance, TIGHTEST)
+    table, nothing = np.array([[getattr(pin, name) for name in PARAMETERS]]), np.zeros(KNOWN)
+
+    def run(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
+        results = Results.empty(len(starts), pin.state_size)._replace(notes=notes)
+        task = PinTask(table, starts, durations)
+        run_pins(task, local, False, False, nothing, results, 0, len(starts))
+        return results
+
+    recording.follow(run, run, state, 0.0)

@@ -145,7 +145,7 @@ def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
-    task = PinTask(np.array([[getattr(pin, name) for name in PARAMETERS]]), starts, duration)
+    task = PinTask(np.array([[getattr(pin, name) for name in PARAMETERS]]), starts, np.full(1, duration))
     run_pins(task, TOLERANCE, early, once, np.zeros(KNOWN), results, 0, len(starts))
     return results
 

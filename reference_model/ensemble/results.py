@@ -29,6 +29,10 @@ class EndState(IntEnum):
     STICK_SLIP = 5
 
 
+HANDED_OVER = 255
+"""In place of an end state: compiled code does not follow the motion any further, see :mod:`disc`."""
+
+
 @dataclass(frozen=True, eq=False)
 class Ensemble:
     """The ends of n trajectories.
@@ -68,6 +72,7 @@ class Results(NamedTuple):
     """Where compiled code puts results: arrays (n,), states (n, 4 or 6), measures (n, 3).
 
     The measures are the least and the largest radius in m and the mean slip speed in m/s: power per friction force.
+    ``notes`` is room for those of a single trajectory, flat, see :mod:`notes`; empty where none are asked for.
     """
 
     ends: NDArray[np.uint8]
@@ -75,6 +80,7 @@ class Results(NamedTuple):
     states: FloatArray
     measures: FloatArray
     steps: NDArray[np.int64]
+    notes: FloatArray
 
     def ensemble(self, friction_force: float | FloatArray) -> Ensemble:
         """Return them as Python has them; ``friction_force`` in N, shape () or (n,)."""
@@ -90,4 +96,5 @@ class Results(NamedTuple):
             np.zeros((n, state_size)),
             np.zeros((n, 3)),
             np.zeros(n, dtype=np.int64),
+            np.zeros(0),
         )

@@ -23,6 +23,9 @@ from reference_model.systems import (
 NOT_TAKEN = ("hardening", "stop_gap", "stop_stiffness")
 """Parameters of a support that is not linear."""
 
+MOST_POINTS = 24
+"""The sum over points is written out, which takes long to compile for more."""
+
 
 def simulate_ensemble(
     system: System,
@@ -63,8 +66,7 @@ def simulate_ensemble(
 
     """
     require_system(system)
-    for name in NOT_TAKEN:
-        _require_linear(name, getattr(system, name))
+    require_known(system)
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     n = _number_of(len(starts), varied)
@@ -84,11 +86,20 @@ def simulate_ensemble(
     return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
 
 
-def _require_linear(name: str, value: float) -> None:
-    if value != 0.0 and name != "stop_gap":
+def require_known(system: System) -> None:
+    """Raise ``ValueError`` for a system that compiled code does not know, naming the parameter."""
+    for name in NOT_TAKEN:
+        value = getattr(system, name)
+        if value != 0.0 and name != "stop_gap":
+            raise ValueError(
+                f"{name} = {value:g}: a compiled run takes linear supports only, since release and the neighbourhood "
+                "of an equilibrium are closed forms there; take reference_model.simulate"
+            )
+    points = getattr(system, "contact_points", None) or 0
+    if points > MOST_POINTS:
         raise ValueError(
-            f"{name} = {value:g}: the compiled ensemble takes linear supports only, since release and the "
-            "neighbourhood of an equilibrium are closed forms there; take reference_model.simulate"
+            f"contact_points = {points}: a compiled run takes up to {MOST_POINTS}; so many are close to the "
+            "continuous ring, contact_points = None"
         )
 
 

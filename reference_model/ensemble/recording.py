@@ -1,0 +1,123 @@
+"""The motion of a single trajectory at any times, from the notes of a compiled run.
+
+The state at some time is that of a short trajectory of its own, from the last note before it. Those of all times run
+side by side in lanes, and end where they should as every trajectory does. So the motion does not depend on the times
+that are asked for, and its error is the same at all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from reference_model.ensemble.notes import KIND, NONE, ON_THE_WAY, SLIPS, STATE, TIME
+from reference_model.ensemble.results import HANDED_OVER, Results
+from reference_model.stepping import Kind
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError, Trajectory
+
+Runs = Callable[[FloatArray, FloatArray, FloatArray], Results]
+"""Takes starts (n, 4 or 6), durations in s (n,) and room for notes of a single one, a flat array; runs them all."""
+
+ROOM_A_UNIT, ROOM_TO_SPARE = 2.0, 64
+"""Notes that there is room for at first, in a unit of time and besides."""
+
+ROUNDED = 1e-12
+"""Of a duration, or of the unit of time if that is more: rounding of times."""
+
+STAGES = 12
+"""Evaluations of the equations of motion in a step."""
+
+
+@dataclass
+class Recording:
+    """A motion under way from t = 0 on.
+
+    Parameters
+    ----------
+    times : array of shape (n,)
+        Those that are asked for, in s, not negative.
+    states : array of shape (n, 4) or (n, 6)
+        At these times, as far as the motion has come.
+    duration, unit : float
+        Of the motion, and of time, in s.
+    phases : list of (kind, start, state)
+        So far.
+    steps, evaluations : int
+        So far, as in ``Solution``.
+
+    """
+
+    times: FloatArray
+    states: FloatArray
+    duration: float
+    unit: float
+    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)
+    steps: int = 0
+    evaluations: int = 0
+
+    def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
+        """Take up the motion from ``state`` at ``since`` as far as ``one`` goes; return what that comes to.
+
+        ``many`` goes from notes to times. Raises ``SimulationError`` if one of them is given up.
+        """
+        start, left = state[np.newaxis], np.array([self.duration - since])
+        room = int(ROOM_A_UNIT * left[0] / self.unit) + ROOM_TO_SPARE
+        while True:
+            notes = np.zeros((room, STATE + len(state)))
+            end = one(start, left, notes.reshape(-1))
+            taken = int(np.count_nonzero(notes[:, KIND] != NONE))
+            if taken < room:
+                break
+            room *= 2  # once more from the start: the motion does not depend on the room
+        if end.ends[0] != HANDED_OVER:
+            self._require_end(end, left, since)
+        notes = notes[:taken]
+        notes[:, TIME] += since
+        self._sample(many, notes, since + float(end.times[0]))
+        for note in notes[notes[:, KIND] != ON_THE_WAY]:
+            self._enter("slip" if note[KIND] == SLIPS else "stick", float(note[TIME]), note[STATE:])
+        self._count(end)
+        return end
+
+    def take(self, motion: Trajectory) -> None:
+        """Take over a part of the motion as the plain reference has it, at all times of this in its span."""
+        asked = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
+        self.states[asked] = motion.states[np.searchsorted(motion.times, self.times[asked])]
+        for phase in motion.phases:
+            self._enter(phase.kind, phase.start, phase.initial_state)
+        self.steps += motion.solution.steps
+        self.evaluations += motion.solution.evaluations
+
+    def _sample(self, many: Runs, notes: FloatArray, until: float) -> None:
+        """Find the states at the times from the first note up to ``until``."""
+        asked = (self.times >= notes[0, TIME]) & (self.times <= until)
+        if not np.any(asked):
+            return
+        before = notes[np.searchsorted(notes[:, TIME], self.times[asked], side="right") - 1]
+        durations = self.times[asked] - before[:, TIME]
+        ends = many(np.ascontiguousarray(before[:, STATE:]), durations, np.zeros(0))
+        self._require_end(ends, durations, until)
+        self.states[asked] = ends.states
+        self.evaluations += STAGES * int(np.sum(ends.steps))
+
+    def _require_end(self, results: Results, durations: FloatArray, since: float) -> None:
+        short = results.times < durations - ROUNDED * max(self.duration, self.unit)
+        if np.any(short):
+            raise SimulationError(
+                f"the compiled run gave up {since + float(np.min(results.times[short])):g} s after its start: the "
+                "motion creeps, or the state is not finite; leave out compiled=True, or take a larger tolerance"
+            )
+
+    def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
+        """Begin a phase of this kind, unless it is under way; one that ends where it began is none."""
+        if self.phases and self.phases[-1][1] == t:
+            self.phases.pop()
+        if not self.phases or self.phases[-1][0] != kind:
+            self.phases.append((kind, t, state))
+
+    def _count(self, results: Results) -> None:
+        self.steps += int(results.steps[0])
+        self.evaluations += STAGES * int(results.steps[0])
