@@ -27,6 +27,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference_model.support import Support
 from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
 
@@ -63,6 +64,9 @@ ENTRY_POINTS = "friction_discs.engines"
 
 USUAL_TOLERANCE = 1e-9
 
+DECLARED = ("kinds", "sticks", "nonlinear", "step")
+"""Attributes of a function that say what it is for, named like the parameters of ``Engine``."""
+
 TIME_ROUNDING = 1e-12
 """Relative: times of the same grid that were added up in another order agree to this."""
 
@@ -83,6 +87,8 @@ class Engine:
     sticks : bool
         Whether it simulates motions that stick. An engine that does not is asked for motions only in which the
         reference finds none.
+    nonlinear : bool
+        Whether it simulates supports that harden or have a stop.
     step : float, optional
         For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
         tolerance of 1e-9. It goes with the square root of the tolerance.
@@ -90,7 +96,7 @@ class Engine:
     Raises
     ------
     ValueError
-        For a kind that there is not, a step that is not > 0, or ``sticks`` that is no yes or no.
+        For a kind that there is not, a step that is not > 0, or ``sticks`` or ``nonlinear`` that is no yes or no.
 
     """
 
@@ -98,6 +104,7 @@ class Engine:
     function: Callable[..., Trajectory]
     kinds: tuple[str, ...] = ("pin",)
     sticks: bool = True
+    nonlinear: bool = True
     step: float | None = None
 
     def __post_init__(self) -> None:
@@ -105,8 +112,9 @@ class Engine:
         object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
             known("kind of system", kind, KINDS)
-        if not isinstance(self.sticks, bool):
-            raise ValueError(f"sticks = {self.sticks!r}: it must be True or False")
+        for name in ("sticks", "nonlinear"):
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} = {getattr(self, name)!r}: it must be True or False")
         if self.step is not None:
             object.__setattr__(self, "step", finite_number("step", self.step))
             if self.step <= 0.0:
@@ -149,12 +157,15 @@ class Engine:
 
     def simulates(self, system: System) -> bool:
         """Return whether the engine promises to simulate ``system``."""
-        return _kind(system) in self.kinds
+        return _kind(system) in self.kinds and (self.nonlinear or Support.of(system).linear)
 
     def lacking(self, systems: Iterable[System]) -> str:
         """Return in a sentence what of ``systems`` the engine does not simulate, "" if it simulates all."""
-        kinds = dict.fromkeys(_kind(system) for system in systems)
-        words = [KINDS[kind] for kind in kinds if kind not in self.kinds]
+        words = dict.fromkeys(
+            KINDS[_kind(system)] + (" on a nonlinear support" if _kind(system) in self.kinds else "")
+            for system in systems
+            if not self.simulates(system)
+        )
         return f"{self.name} does not simulate {' or '.join(words)}" if words else ""
 
 
@@ -263,6 +274,7 @@ def imported(name: str, place: str) -> Engine:
 
         simulate.kinds = ("pin", "points", "ring")
         simulate.sticks = False
+    simulate.nonlinear = False
         simulate.step = 1e-3
     """
     module_name, _, function_name = place.partition(":")
@@ -275,7 +287,7 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
     if not callable(simulate):
         raise ValueError(f"engine {name!r} is no function")
-    declared = {key: getattr(simulate, key) for key in ("kinds", "sticks", "step") if hasattr(simulate, key)}
+    declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
     try:
         return Engine(name, simulate, **declared)
     except (TypeError, ValueError) as error:
@@ -329,4 +341,4 @@ def _simulate_exudyn_native(
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
 exudyn = register(Engine("exudyn", _simulate_exudyn, EVERY_KIND))
 exudyn_native = register(Engine("exudyn-native", _simulate_exudyn_native, ("pin", "points")))
-compiled = register(Engine("compiled", _simulate_compiled, EVERY_KIND), on_request=True)
+compiled = register(Engine("compiled", _simulate_compiled, EVERY_KIND, nonlinear=False), on_request=True)

@@ -25,7 +25,7 @@ ROOM_A_UNIT, ROOM_TO_SPARE = 2.0, 64
 """Notes that there is room for at first, in a unit of time and besides."""
 
 ROUNDED = 1e-12
-"""Of a duration, or of the unit of time if that is more: rounding of times."""
+"""Share of a duration, or of the unit of time if that is longer, that is rounding of times."""
 
 STAGES = 12
 """Evaluations of the equations of motion in a step."""
@@ -58,6 +58,11 @@ class Recording:
     steps: int = 0
     evaluations: int = 0
 
+    @property
+    def _rounding(self) -> float:
+        """Of times, in s."""
+        return ROUNDED * max(self.duration, self.unit)
+
     def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
         """Take up the motion from ``state`` at ``since`` as far as ``one`` goes; return what that comes to.
 
@@ -72,11 +77,13 @@ class Recording:
             if taken < room:
                 break
             room *= 2  # once more from the start: the motion does not depend on the room
+        until = since + float(end.times[0])
         if end.ends[0] != HANDED_OVER:
             self._require_end(end, left, since)
+            until = self.duration
         notes = notes[:taken]
         notes[:, TIME] += since
-        self._sample(many, notes, since + float(end.times[0]))
+        self._sample(many, notes, until)
         for note in notes[notes[:, KIND] != ON_THE_WAY]:
             self._enter("slip" if note[KIND] == SLIPS else "stick", float(note[TIME]), note[STATE:])
         self._count(end)
@@ -104,7 +111,7 @@ class Recording:
         self.evaluations += STAGES * int(np.sum(ends.steps))
 
     def _require_end(self, results: Results, durations: FloatArray, since: float) -> None:
-        short = results.times < durations - ROUNDED * max(self.duration, self.unit)
+        short = results.times < durations - self._rounding
         if np.any(short):
             raise SimulationError(
                 f"the compiled run gave up {since + float(np.min(results.times[short])):g} s after its start: the "
@@ -112,9 +119,12 @@ class Recording:
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
-        """Begin a phase of this kind, unless it is under way; one that ends where it began is none."""
-        if self.phases and self.phases[-1][1] == t:
-            self.phases.pop()
+        """Begin a phase of this kind, unless it is under way; one that lasts for no more than rounding is none.
+
+        The reference begins with such a slip where it takes over a disc that already turns about a point.
+        """
+        if self.phases and t - self.phases[-1][1] <= self._rounding:
+            t = self.phases.pop()[1]
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, state))
 

@@ -39,7 +39,7 @@ def simulate_compiled(
     delays, unit = times - times[0], Units.of(system, state).time
     # A single time asks for no motion, but for the phase that begins.
     duration = float(delays[-1]) if len(times) > 1 else unit
-    recording = Recording(delays, np.empty((len(times), system.state_size)), duration, unit)
+    recording = Recording(delays, np.full((len(times), system.state_size), np.nan), duration, unit)
     if isinstance(system, PinOnDisc):
         from reference_model.ensemble.pins import follow_pin
 

@@ -136,6 +136,7 @@ def test_a_promise_of_what_there_is_not_is_refused(kinds, hint, tmp_path, monkey
     ("declaration", "sentence"),
     [
         ("sticks = 'no'", "sticks = 'no': it must be True or False"),
+        ("nonlinear = 1", "nonlinear = 1: it must be True or False"),
         ("step = 0.0", "step = 0 s: it must be > 0"),
         ("step = 'small'", "step = 'small': it must be a number"),
     ],
