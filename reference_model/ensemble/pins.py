@@ -33,9 +33,9 @@ def simulate_pins(
     table = np.empty((n if varied else 1, len(PARAMETERS)))
     for column, name in zip(table.T, PARAMETERS, strict=True):
         column[:] = varied.get(name, getattr(pin, name))
-    known = np.zeros(KNOWN)
+    known = np.zeros(KNOWN)  # an array that may be written to: the kernel is compiled for one kind
     if not varied:
-        known[:] = known_ends(pin)  # which is read-only: for such an array all would be compiled once more
+        known[:] = known_ends(pin)
     task, results = PinTask(table, starts, np.full(1, duration)), Results.empty(n, pin.state_size)
 
     def run(first: int, last: int) -> None:

@@ -1,0 +1,166 @@
+"""A compiled run is the motion that the plain reference finds, at any times, phase by phase."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.paper import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
+from reference_model import DiscOnDisc, PinOnDisc, Ring, ThreeTermRing, simulate
+from reference_model.ensemble import recording, simulate_ensemble
+
+SECOND = list(FIG5_STARTS.values())[1]
+"""Sticks nine times."""
+
+STICKING = DiscOnDisc(
+    mass=1.0, polar_inertia=0.034, stiffness=1.0, damping=0.255, friction_force=0.14, disc_speed=1.2, offset=0.1,
+    contact_radius=0.28, shaft_damping=0.01, shaft_speed=-0.5,
+)  # fmt: skip
+HARD = replace(FIG9, friction_force=2.0 * FIG9.friction_force)
+
+
+def turning_with(disc, x):
+    return [x, 0.0, 0.0, 0.0, disc.disc_speed * x, disc.disc_speed]
+
+
+def on_six(disc):
+    return replace(disc, contact_points=6)
+
+
+def lasting(motion):
+    """The phases that last: where a disc starts turning about a point the reference slips for no time."""
+    return [phase for phase in motion.phases if phase.end - phase.start > 1e-12 * motion.times[-1]]
+
+
+@pytest.mark.parametrize(
+    ("system", "start", "end", "sticks"),
+    [
+        (FIG5, SECOND, 100.0, 9),
+        (STICKING, turning_with(STICKING, -0.08), 100.0, 10),
+        (HARD, turning_with(HARD, -0.02), 100.0, 1),
+        (on_six(HARD), turning_with(HARD, -0.02), 40.0, 1),
+        (on_six(FIG11), turning_with(FIG11, 0.1), 100.0, 0),
+        (FIG8, [0.3, 0.0, 0.0, 0.1, 0.0, 0.5], 100.0, 0),
+        (FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], 100.0, 0),
+        (on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], 100.0, 0),
+    ],
+    ids=[
+        "Fig. 5", "sticking ring", "ring of Fig. 9 that starts stuck", "six points of Fig. 9 that start stuck",
+        "six points of Fig. 11 that pivot", "ring of Fig. 8", "ring of Fig. 11", "six points of Fig. 11",
+    ],
+)  # fmt: skip
+def test_motion_and_phases_are_those_of_the_plain_reference(system, start, end, sticks):
+    times = np.linspace(0.0, end, 301)
+    plain, found = simulate(system, start, times), simulate(system, start, times, compiled=True)
+    assert len(plain.stick_phases) >= sticks
+    # Each run takes a tenth of the tolerance a step or less, and these motions forget errors in some 30 s.
+    assert np.max(np.abs(found.states - plain.states)) < 2e-8
+    assert [phase.kind for phase in found.phases] == [phase.kind for phase in lasting(plain)]
+    for mine, other in zip(found.phases, lasting(plain), strict=True):
+        assert (mine.start, mine.end) == pytest.approx((other.start, other.end), abs=5e-8)
+        np.testing.assert_allclose(mine.initial_state, other.initial_state, atol=5e-8)
+
+
+@pytest.mark.parametrize(
+    ("pin", "start"),
+    [
+        (replace(FIG5, disc_speed=-1.5), (0.3, 0.1, -0.2, 0.3)),
+        (replace(FIG5, disc_speed=0.0), (0.3, 0.1, -0.2, 0.3)),
+        (replace(FIG5, friction_force=0.0), (0.3, 0.0, -0.2, 0.1)),
+        (replace(FIG5, stiffness=0.0), (0.3, 0.0, -0.2, 0.1)),
+        (replace(FIG5, mass=1e-3, offset=1e3), (900.0, 0.0, 1.0, 0.0)),
+        (replace(FIG5, friction_force=0.25), (0.12, 0.1, -0.15, 0.18)),
+    ],
+    ids=["clockwise", "disc at rest", "no friction", "no springs", "light and far", "stuck for ever"],
+)
+def test_other_pins_move_as_the_reference_says_from_any_time_on(pin, start):
+    rate = max(pin.natural_frequency, abs(pin.disc_speed))
+    times = np.linspace(-7.0, -7.0 + 40.0 / rate, 97)
+    plain, found = simulate(pin, start, times), simulate(pin, start, times, compiled=True)
+    scale = max(np.hypot(*start[:2]), abs(pin.offset)) * np.array([1.0, 1.0, rate, rate])
+    assert np.max(np.abs(found.states - plain.states) / scale) < 2e-8
+    assert [phase.kind for phase in found.phases] == [phase.kind for phase in plain.phases]
+    assert (found.phases[0].start, found.phases[-1].end) == (times[0], times[-1])
+    np.testing.assert_array_equal(found.states[0], start)
+
+
+@pytest.mark.parametrize(("system", "start"), [(FIG5, SECOND), (STICKING, turning_with(STICKING, -0.08))])
+def test_the_times_that_are_asked_for_do_not_change_the_motion(system, start):
+    times = np.linspace(0.0, 60.0, 1201)
+    fine = simulate(system, start, times, compiled=True)
+    coarse = simulate(system, start, times[::48], compiled=True)
+    np.testing.assert_array_equal(fine.states[::48], coarse.states)
+    assert fine.stick_times.tolist() == coarse.stick_times.tolist()
+    assert fine.solution.steps == coarse.solution.steps
+
+
+def test_too_little_room_for_notes_at_first_does_not_change_the_motion(monkeypatch):
+    times = np.linspace(0.0, 60.0, 61)
+    usual = simulate(FIG5, SECOND, times, compiled=True)
+    monkeypatch.setattr(recording, "ROOM_A_UNIT", 0.0)
+    monkeypatch.setattr(recording, "ROOM_TO_SPARE", 1)
+    found = simulate(FIG5, SECOND, times, compiled=True)
+    np.testing.assert_array_equal(found.states, usual.states)
+    assert found.stick_times.tolist() == usual.stick_times.tolist()
+
+
+def test_the_end_is_that_of_an_ensemble_of_the_same_steps():
+    found = simulate(FIG5, SECOND, [0.0, 37.3], tolerance=1e-8, compiled=True)
+    ensemble = simulate_ensemble(FIG5, SECOND, duration=37.3, tolerance=1e-9, early_end=False)
+    assert found.solution.steps == ensemble.steps[0]
+    assert np.max(np.abs(found.at_end - ensemble.states[0])) < 1e-8
+
+
+def test_the_error_falls_with_the_tolerance_at_all_times():
+    times = np.linspace(0.0, 60.0, 200)
+    exact = simulate(FIG5, SECOND, times, tolerance=1e-13).states
+    tolerances = np.array([1e-5, 1e-7, 1e-9])
+    errors = [
+        np.max(np.abs(simulate(FIG5, SECOND, times, tolerance=tolerance, compiled=True).states - exact))
+        for tolerance in tolerances
+    ]
+    # An error per step of the tolerance and steps that grow like tolerance^(−1/8): slope 7/8.
+    assert np.polyfit(np.log(tolerances), np.log(errors), 1)[0] == pytest.approx(7.0 / 8.0, abs=0.25), errors
+
+
+def test_a_single_time_tells_in_which_phase_the_motion_begins():
+    stuck = simulate(HARD, turning_with(HARD, -0.02), [3.0], compiled=True)
+    assert [(phase.kind, phase.start, phase.end) for phase in stuck.phases] == [("stick", 3.0, 3.0)]
+    assert simulate(FIG5, SECOND, [3.0], compiled=True).phases[0].kind == "slip"
+
+
+@pytest.mark.parametrize(
+    ("system", "options", "message"),
+    [
+        (replace(FIG5, hardening=2.0), {}, "hardening = 2: a compiled run takes linear supports only"),
+        (
+            replace(FIG9, stop_gap=0.1, stop_stiffness=3.0), {},
+            "stop_stiffness = 3: a compiled run takes linear supports only",
+        ),
+        (replace(FIG9, contact_points=25), {}, "contact_points = 25: a compiled run takes up to 24"),
+        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs know the law of the system's own parameters only"),
+        (FIG5, {"contact": Ring(0.1)}, "a pin touches in one point"),
+        (FIG5, {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
+        (FIG5, {"times": [0.0, -1.0]}, "times must increase"),
+        (FIG5, {"initial_state": [0.0]}, "initial_state"),
+        ("pin", {}, "it must be a PinOnDisc or a DiscOnDisc"),
+    ],
+)  # fmt: skip
+def test_what_compiled_code_does_not_know_is_refused_by_name(system, options, message):
+    size = system.state_size if isinstance(system, (PinOnDisc, DiscOnDisc)) else 4
+    arguments = {"initial_state": [0.1] * size, "times": [0.0, 1.0]} | options
+    with pytest.raises(ValueError, match=message):
+        simulate(system, compiled=True, **arguments)
+
+
+def test_the_law_of_the_parameters_may_be_named():
+    times, start = [0.0, 3.0], turning_with(FIG9, 0.1)
+    named = simulate(FIG9, start, times, contact=Ring(FIG9.contact_radius), compiled=True)
+    np.testing.assert_array_equal(named.states, simulate(FIG9, start, times, compiled=True).states)
+
+
+def test_the_plain_reference_starts_without_the_compiler():
+    code = "import sys, reference_model; sys.exit('numba' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
