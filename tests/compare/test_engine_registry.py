@@ -26,6 +26,26 @@ def test_the_two_engines_of_the_project_are_registered():
     assert [engine.name for engine in engines()][:2] == ["reference", "exudyn"]
 
 
+def test_compiled_runs_take_part_only_where_they_are_named():
+    assert "compiled" not in [engine.name for engine in engines()]
+    (compiled,) = engines(["compiled"])
+    found = compiled.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 5.0])
+    assert found.solution.method.startswith("compiled")
+    plain = engines(["reference"])[0].simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 5.0])
+    np.testing.assert_allclose(found.at_end, plain.at_end, atol=1e-8)
+
+
+def test_an_engine_of_linear_supports_says_so_of_each_system():
+    (compiled,) = engines(["compiled"])
+    hard = replace(FIG5, hardening=2.0), replace(FIG5, stop_stiffness=1.0)
+    assert [compiled.simulates(system) for system in (FIG5, FIG11, *hard)] == [True, True, False, False]
+    assert compiled.lacking([FIG5, *hard]) == "compiled does not simulate a pin on a nonlinear support"
+    with pytest.raises(UnsupportedSystemError, match="nonlinear support"):
+        compiled.simulate(hard[0], [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
+    pins_only = Engine("mine", fake_studies.straight, nonlinear=False)
+    assert pins_only.lacking([FIG11]) == "mine does not simulate a disc on a continuous ring"
+
+
 @pytest.mark.parametrize(
     ("name", "hint"),
     [("exudin", "did you mean 'exudyn'?"), ("zzz", "known are reference, exudyn")],
