@@ -24,6 +24,7 @@ benchmarks: $(VENV)/installed
 	$(MAKE) --directory benchmarks/limit
 	$(BIN)/python benchmarks/ensemble.py
 	$(BIN)/python benchmarks/ensemble_discs.py
+	$(BIN)/python benchmarks/single_runs.py
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:

@@ -1,4 +1,4 @@
-"""Many trajectories at once, compiled: where they end.
+"""Many trajectories at once, compiled: where they end; and a single one, phase by phase.
 
 - ``simulate``: :func:`simulate_ensemble`, the door; ``results``: what it returns;
 - ``lanes``: how trajectories share a processor; ``runge_kutta``: the step; ``compiled``: what numba is told;
@@ -7,9 +7,11 @@
   ``pin_ends`` with ``regions`` and ``pin_stability`` (how its end state is told), ``pin_watch`` with ``pin_book``
   (what is rare, done lane by lane), and ``pin`` with ``pins``, which put them together;
 - of a disc ``contact_shares`` (friction), ``disc_slip``, ``disc_growth`` (slip from rest), ``disc_lanes``,
-  ``disc_kernel``, ``disc_stability`` and ``disc_regions`` (where it ends), and ``disc``, which puts them together.
+  ``disc_kernel``, ``disc_stability`` and ``disc_regions`` (where it ends), and ``disc``, which puts them together;
+- ``single`` with ``recording``: ``reference_model.simulate(..., compiled=True)`` from the ``notes`` that kernels take.
 
-The plain :func:`reference_model.simulate` judges it: nothing there takes anything from here.
+The plain :func:`reference_model.simulate` judges it: but for handing over to here when asked to, nothing there takes
+anything from here.
 """
 
 from reference_model.ensemble.results import EndState, Ensemble
