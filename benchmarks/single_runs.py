@@ -1,7 +1,7 @@
 """One motion, plain and compiled: what ``simulate(..., compiled=True)`` saves.
 
-Run with ``python benchmarks/single_runs.py``; takes about 20 s, more where the kernels are not compiled yet. Times are
-processor time of a call in ms, the shortest of some, at a tolerance of 1e-9.
+Run with ``python benchmarks/single_runs.py``; takes about 30 s, more where the kernels are not compiled yet. Times
+are processor time of a call in ms, the shortest of some, at a tolerance of 1e-9.
 
 Measured on a core with AVX-512:
 
@@ -18,9 +18,9 @@ Measured on a core with AVX-512:
 | | 5,001 | 19.9 | 4.07 | 5 |
 | the same, starting with a point at rest | 501 | 88.6 | 16.3 | 5 |
 
-A call costs 0.05 to 0.09 ms, a step of all lanes 0.45 µs for the pin, and a time that is asked for 0.8 µs, most of it
-for loading and storing a lane. By hand in C, with a tolerance of each step ten times as large, the pin takes 0.6 ms to
-the end. What is slow in the last row is the plain reference, which takes over where a point rests.
+A call costs 0.05 to 0.09 ms, a step of all lanes 0.45 µs for the pin, and a time that is asked for 0.8 µs, most of
+it for loading and storing a lane. By hand in C, with a tolerance of each step ten times as large, the pin takes 0.6 ms
+to the end. What is slow in the last row is the plain reference, which takes over where a point rests.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -82,8 +83,8 @@ def main() -> None:
     for name, (system, start, duration) in MOTIONS.items():
         for n in TIMES:
             times = np.linspace(0.0, duration, n)
-            plain = milliseconds(lambda: simulate(system, start, times))
-            fast = milliseconds(lambda: simulate(system, start, times, compiled=True))
+            plain = milliseconds(partial(simulate, system, start, times))
+            fast = milliseconds(partial(simulate, system, start, times, compiled=True))
             table.add_row(name, f"{n:,}", f"{plain:.1f}", f"{fast:.2f}", f"{plain / fast:.0f}")
     Console().print(table)
 

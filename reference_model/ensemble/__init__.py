@@ -8,7 +8,7 @@
   (what is rare, done lane by lane), and ``pin`` with ``pins``, which put them together;
 - of a disc ``contact_shares`` (friction), ``disc_slip``, ``disc_growth`` (slip from rest), ``disc_lanes``,
   ``disc_kernel``, ``disc_stability`` and ``disc_regions`` (where it ends), and ``disc``, which puts them together;
-- ``single`` with ``recording``: ``reference_model.simulate(..., compiled=True)`` from the ``notes`` that kernels take.
+- ``single`` with ``recording``: ``reference_model.simulate(..., compiled=True)``, from ``notes`` of kernels.
 
 The plain :func:`reference_model.simulate` judges it: but for handing over to here when asked to, nothing there takes
 anything from here.
