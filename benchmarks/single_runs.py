@@ -19,8 +19,8 @@ Measured on a core with AVX-512:
 | the same, starting with a point at rest | 501 | 88.6 | 16.3 | 5 |
 
 A call costs 0.05 to 0.09 ms, a step of all lanes 0.45 µs for the pin, and a time that is asked for 0.8 µs, most of
-it for loading and storing a lane. By hand in C, with a tolerance of each step ten times as large, the pin takes 0.6 ms
-to the end. What is slow in the last row is the plain reference, which takes over where a point rests.
+it for loading and storing a lane. By hand in C, with a tolerance of each step ten times as large, the pin takes 0.6
+ms to the end. What is slow in the last row is the plain reference, which takes over where a point rests.
 """
 
 from __future__ import annotations

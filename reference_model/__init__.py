@@ -9,6 +9,7 @@ Where to find what:
 - simulation: ``integrate``, which goes through ``phases`` of ``slip`` and ``sticking`` by the equations of motion of
   ``pin`` and ``disc``; ``points`` with ``pivot`` and ``limit_surface`` for discs on single points, ``growth`` for how
   slip begins, ``units`` and ``stepping`` below;
+- many trajectories at once, or a single one, compiled: ``ensemble``;
 - steady motions: ``steady_states`` with ``disc_balance`` and ``zeros``; ``orbits`` by shooting, ``stick_slip`` by the
   map from release to release;
 - boundaries of basins: ``basins`` with ``dividing_curves``;

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compare.paper import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
-from reference_model import DiscOnDisc, PinOnDisc, Ring, ThreeTermRing, simulate
+from reference_model import DiscOnDisc, PinOnDisc, Ring, SimulationError, ThreeTermRing, simulate
 from reference_model.ensemble import recording, simulate_ensemble
 
 SECOND = list(FIG5_STARTS.values())[1]
@@ -153,6 +153,12 @@ def test_what_compiled_code_does_not_know_is_refused_by_name(system, options, me
     arguments = {"initial_state": [0.1] * size, "times": [0.0, 1.0]} | options
     with pytest.raises(ValueError, match=message):
         simulate(system, compiled=True, **arguments)
+
+
+def test_a_run_that_is_given_up_says_when():
+    overdamped = replace(FIG5, damping=1e7)
+    with pytest.raises(SimulationError, match=r"the compiled run gave up 0\.0\d+ s after its start"):
+        simulate(overdamped, SECOND, [0.0, 50.0], compiled=True)
 
 
 def test_the_law_of_the_parameters_may_be_named():
