@@ -46,7 +46,7 @@ class Recording:
     phases : list of (kind, start, state)
         So far.
     steps, evaluations : int
-        So far, as in ``Solution``.
+        So far, as in ``Solution``, with rejected steps and legs of stick.
 
     """
 
