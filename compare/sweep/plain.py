@@ -31,7 +31,7 @@ STEADY = 0.01
 SAME = 1.4
 """Ratio of the spreads in both halves of what is watched, up to which a modulation neither grows nor decays."""
 
-LEAST_TURNS = 20
+LEAST_TURNS = 24
 """After which the second half of a motion is watched, at the earliest."""
 
 
