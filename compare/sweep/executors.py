@@ -103,7 +103,7 @@ class Cluster:
 
     def __init__(self, address: str) -> None:
         self._dask: Any = importlib.import_module("distributed")  # of the extra "cluster", and without types
-        for logger in ("distributed", "distributed.client"):
+        for logger in ("distributed", "distributed.client", "tornado.application"):
             logging.getLogger(logger).setLevel(logging.CRITICAL)  # the sentences are ours
         self._address = _checked_address(address)
         self._counted = -math.inf
