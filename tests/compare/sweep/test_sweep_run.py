@@ -1,6 +1,7 @@
 """Sweeps in this process: what is in their stores, and resumption."""
 
 import json
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from long_sweeps import assert_same, content
 from compare.paper import FIG5
 from compare.sweep.axes import Axis
 from compare.sweep.distributions import Uncertain
-from compare.sweep.executors import AT_ONCE, InProcess
+from compare.sweep.executors import AT_ONCE, InProcess, Task
 from compare.sweep.plain import end_of, plain_trajectory
 from compare.sweep.plan import Basin, Map, RandomBasin, Uncertainty
 from compare.sweep.run import run
@@ -211,3 +212,19 @@ def test_a_chunk_whose_mark_is_missing_is_computed_again(tmp_path):
     swept(tmp_path / "s", RANDOM, 7, again)
     assert again.simulated() == [list(range(21, 28))]
     assert_same(content(tmp_path / "s"), before)
+
+
+@pytest.mark.parametrize(("compiled", "at_once"), [(True, AT_ONCE), (False, 1)])
+def test_only_what_is_compiled_runs_side_by_side(compiled, at_once):
+    running, most = [], []
+
+    def work(number):
+        running.append(number)
+        time.sleep(0.05)
+        most.append(len(running))
+        running.remove(number)
+        return -number
+
+    tasks = [Task(number, work, (number,), compiled) for number in range(2 * AT_ONCE)]
+    assert list(InProcess().run(tasks)) == [(number, -number) for number in range(2 * AT_ONCE)]
+    assert max(most) == at_once
