@@ -26,6 +26,14 @@ def scalar(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy", inline="never")(function))
 
 
+def written_out(function: Function) -> Function:
+    """Write ``function`` into its one caller before that is compiled, with the functions that it is handed over.
+
+    So it is compiled once, where one that is called would be compiled by itself and then again with its caller.
+    """
+    return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
+
+
 def outermost(function: Function) -> Function:
     """Compile ``function``, which Python calls, at its first call, or take what an earlier process left.
 

@@ -26,7 +26,7 @@ import math
 from typing import Any, NamedTuple
 
 from reference_model.ensemble.arc import outward, place_on, velocity_on, where_radius_turns, where_rightmost
-from reference_model.ensemble.compiled import inlined, outermost, scalar
+from reference_model.ensemble.compiled import inlined, outermost, scalar, written_out
 from reference_model.ensemble.disc_lanes import (
     AT_END,
     BOTH,
@@ -148,9 +148,9 @@ def _row(values: Any, number: int) -> Any:
     return values[number if values.shape[0] > 1 else 0]
 
 
-@scalar
+@written_out
 def load_with(
-    scratch: Any, book: Any, lane: int, number: int, task: DiscTask, aims: DiscAims, rates: Any, rest: Any
+    scratch: Any, book: Any, lane: int, number: int, task: DiscTask, aims: DiscAims, rest: Any, slip: Any
 ) -> bool:
     """Put the start of a trajectory into the slots of the trial; return whether it ends there."""
     mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = _row(
@@ -204,11 +204,11 @@ def load_with(
         note(scratch, page, lane, SLIPS)
     if u == 0j and r == 0.0 and friction > 0.0:
         return bool(rest(scratch, page, lane, law, aims))
-    put_slipping(scratch, lane, law, rates)
+    slip(scratch, lane, law)
     return bool(duration <= 0.0)
 
 
-@scalar
+@written_out
 def attend_with(scratch: Any, book: Any, lane: int, aims: DiscAims, slow: Any, shows: Any) -> bool:
     """See to what the flag of a lane says; return whether its trajectory ends here."""
     page = book[lane]
@@ -258,8 +258,13 @@ def _ring_rests(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims
     """Follow a disc on a ring from rest until it slips; return whether its trajectory ends before."""
     ended = _held(scratch, page, lane, law, aims)
     if not ended:
-        put_slipping(scratch, lane, law, ring_rates)
+        _ring_slips(scratch, lane, law)
     return ended
+
+
+@scalar
+def _ring_slips(scratch: Any, lane: int, law: DiscLaw) -> None:
+    put_slipping(scratch, lane, law, ring_rates)
 
 
 @scalar
@@ -275,6 +280,11 @@ def _points_rest(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAim
     """Hand over a disc on points that rests."""
     page[END] = HANDED_OVER
     return True
+
+
+@scalar
+def _points_slip(scratch: Any, lane: int, law: DiscLaw) -> None:
+    put_slipping(scratch, lane, law, points_rates)
 
 
 @scalar
@@ -413,7 +423,7 @@ def _met(
     return _found(scratch, page, lane, kind, WHIRL, t, way, radius, law, aims)
 
 
-@scalar
+@written_out
 def _looked(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims, shows: Any) -> bool:
     """Look at the motion, as once in every free period and at the end; return whether the trajectory ends here."""
     t, due = scratch[(TRIAL + TIME) * LANES + lane], scratch[DUE * LANES + lane]
@@ -547,7 +557,7 @@ def store(scratch: Any, book: Any, lane: int, results: Results) -> None:
 
 @scalar
 def _load_ring(scratch: Any, book: Any, lane: int, number: int, task: DiscTask, aims: DiscAims) -> bool:
-    return load_with(scratch, book, lane, number, task, aims, ring_rates, _ring_rests)
+    return load_with(scratch, book, lane, number, task, aims, _ring_rests, _ring_slips)
 
 
 @scalar
@@ -562,7 +572,7 @@ def _attend_ring(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
 
 @scalar
 def _load_points(scratch: Any, book: Any, lane: int, number: int, task: DiscTask, aims: DiscAims) -> bool:
-    return load_with(scratch, book, lane, number, task, aims, points_rates, _points_rest)
+    return load_with(scratch, book, lane, number, task, aims, _points_rest, _points_slip)
 
 
 @scalar

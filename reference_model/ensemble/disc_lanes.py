@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from reference_model.ensemble.arc import Arc, Motion, arc_between
-from reference_model.ensemble.compiled import inlined, scalar
+from reference_model.ensemble.compiled import inlined, scalar, written_out
 from reference_model.ensemble.contact_shares import LEAST
 from reference_model.ensemble.disc_growth import grown
 from reference_model.ensemble.disc_slip import DiscLaw, direction
@@ -60,7 +60,7 @@ SUDDEN = 0.05
 """Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
 
 
-@inlined
+@written_out
 def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: float) -> None:
     """Make a trial step in every lane; where it does not do the old state goes into the slots of the trial.
 
@@ -218,7 +218,7 @@ def put(scratch: Any, lane: int, values: Any) -> None:
         scratch[(TRIAL + j) * LANES + lane] = values[j]
 
 
-@scalar
+@inlined
 def put_slipping(scratch: Any, lane: int, law: DiscLaw, rates: Any) -> None:
     """Make ready the lane whose place stands in the slots of the trial, with a first step."""
     k = rates(eight_of(scratch, lane, TRIAL)[:6], law)

@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from reference_model.ensemble.compiled import inlined
+from reference_model.ensemble.compiled import written_out
 
 LANES = 16
 """Two vectors of eight: while one waits for a square root the other goes on (measured: 25 ns a step, with eight
 29)."""
 
 
-@inlined
+@written_out
 def run(
     load: Any, advance: Any, attend: Any, accept: Any, store: Any, idle: Any,
     slots: int, items: int, flag: int, first: int, last: int, kind: Any, task: Any, aims: Any, results: Any,
