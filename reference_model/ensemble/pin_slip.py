@@ -126,7 +126,7 @@ def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     Of its pull the part p = k²|X0| is constant, and q, in proportion to the radius, turns with it. Once a turn they
     add up to g + δ, from which the pull falls like B·(ωt)²/2 before and after, B = p·q/(p + q). With
     K = k² − ω² the slip that this sets off takes 4.5·K·δ²/(B·ω²) from δ: less than all of it, so that δ never
-    comes to zero.
+    comes to zero. Nor does it where c² >= 4K, however far the slip goes: see :func:`creeps_steadily`.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)
@@ -134,6 +134,8 @@ def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     q = turning * last
     peak = constant * q / (constant + q) if q > 0.0 else 0.0
     most = CREEP * peak * min(1.0, law.disc_speed**2 / inward) if inward > 0.0 else 0.0
+    if inward > 0.0 and law.damping**2 >= 4.0 * inward:
+        most = max(most, CREEP * law.friction)
     return radius < last and law.friction < constant + turning * radius and constant + q < law.friction + most
 
 

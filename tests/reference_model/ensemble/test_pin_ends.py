@@ -233,6 +233,18 @@ def test_a_pin_that_creeps_by_turns_does_so_in_the_reference():
     assert 1.0 < np.hypot(*motion.at_end[:2]) / sticking_radius(pin) < 1.0005
 
 
+def test_a_strongly_damped_pin_creeps_by_turns_from_farther_out():
+    pin = replace(FIG5, damping=4.5, friction_force=0.19, disc_speed=0.41, offset=-0.16)
+    start = turning_with(pin, 1.08 * sticking_radius(pin))
+    found = simulate_ensemble(pin, start, duration=400.0)
+    assert found.end[0] == EndState.STUCK
+    assert found.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
+    assert found.time[0] < 3.0 * 2.0 * np.pi / pin.disc_speed
+    radius = simulate(pin, start, np.linspace(0.0, 150.0, 11), tolerance=1e-9).radius
+    assert np.all(radius > sticking_radius(pin))
+    assert radius[-1] < radius[0]
+
+
 def law_of(pin):
     return pin_slip.PinLaw(
         pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0
