@@ -60,6 +60,9 @@ SLOW = 0.5
 FARTHEST_PERIOD = 0.5
 """Relative change of the period beyond which an orbit is no longer near to the guess."""
 
+COLLAPSED = 1e-6
+"""Size relative to the guess below which an orbit is no longer near to it: a pin that sticks on the axis has none."""
+
 RECURRENCE = 0.05
 """Largest relative difference of two states between which a motion is taken to have come round."""
 
@@ -333,6 +336,7 @@ def _shoot(flow: Flow, unknowns: FloatArray, sought: list[int], samples: int, wh
     last = math.inf
     for _ in range(MOST_ITERATIONS):
         near = abs(unknowns[PERIOD] / period - 1.0) < FARTHEST_PERIOD
+        near = near and np.max(np.abs(unknowns[:PERIOD]) / scale) > COLLAPSED
         if not (near and unknowns[LOAD] > 0.0 and np.all(np.isfinite(unknowns))):
             break
         miss = flow.miss(unknowns)

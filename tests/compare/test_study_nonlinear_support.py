@@ -44,7 +44,7 @@ NO_ORBIT = "no whirl near the guess"
 
 TABLE = {
     #                       CIRCLE    ORBIT     BALANCE SLIDES STICKS REST  LIMIT  DISC_WHIRL
-    "a linear support": (NO_ORBIT, NO_ORBIT, SEES, SEES, SEES, SEES, SEES, SEES),
+    "a linear support": (NO_ORBIT, NO_ORBIT, NO_ORBIT, SEES, SEES, SEES, SEES, SEES),
     "hardening 0.1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
     "stop 0.1 % off": (SEES, SEES, BLIND, SEES, SEES, SEES, SEES, BLIND),
     "gap 0.1 % off": (SEES, SEES, BLIND, SEES, SEES, SEES, SEES, BLIND),
