@@ -54,7 +54,7 @@ MOST_ITERATIONS = 25
 CONVERGED = 1e-9
 """Largest relative miss of an orbit; Newton's method goes on below it until rounding stops it."""
 
-SLOW = 0.5
+SLOW = 0.3
 """Part of the miss that may be left after an iteration; with more, the derivatives are taken anew."""
 
 FARTHEST_PERIOD = 0.5
