@@ -274,7 +274,7 @@ def imported(name: str, place: str) -> Engine:
 
         simulate.kinds = ("pin", "points", "ring")
         simulate.sticks = False
-    simulate.nonlinear = False
+        simulate.nonlinear = False
         simulate.step = 1e-3
     """
     module_name, _, function_name = place.partition(":")
