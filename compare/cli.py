@@ -24,6 +24,8 @@ from compare.command_input import (
     SOMETHING_DIFFERS,
     BadInputError,
     EngineFailedError,
+    Settings,
+    Tolerance,
     changed,
     check_folder,
     cores,
@@ -227,11 +229,11 @@ def judge(
     """Measure engines with one fault each, to see which claims catch it; write judge.html and judge.json.
 
     Without FAULT right engines are measured with random parameters besides, and the smallest error of each
-    parameter that is noticed is found. The exit status is 0 when
-    each fault that changes the physics is caught by trajectories and by a claim of another kind and every right
-    engine passes, 1 otherwise, 2 on bad input, and 130 after Ctrl-C.
+    parameter that is noticed is found. The exit status is 0 when each fault that changes the physics is caught by
+    trajectories and by a claim of another kind and every right engine passes, 1 otherwise, 2 on bad input, and 130
+    after Ctrl-C.
 
-    
+    \b
     Examples:
       friction-discs judge
       friction-discs judge moment-wrong-sign --study trajectories --study power-balance
@@ -270,15 +272,6 @@ app.add_typer(simulate, name="simulate")
 app.add_typer(sweep, name="sweep")
 
 EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A parameter in SI units, several times for several.",
-        show_default=False,
-    ),
-]
 PinState = Annotated[
     tuple[str, str, str, str],
     typer.Option(metavar="X Y VX VY", help="Position in m and velocity in m/s at time 0."),
@@ -292,7 +285,6 @@ DiscState = Annotated[
 ]
 Until = Annotated[str, typer.Option(metavar="T", help="Last time in s.")]
 Samples = Annotated[str, typer.Option(metavar="N", help="Number of times from 0 to T, >= 2.")]
-Tolerance = Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")]
 File = Annotated[
     Path | None,
     typer.Option(

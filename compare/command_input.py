@@ -1,4 +1,4 @@
-"""What the commands share: how they refuse bad input, read numbers and parameters, and end."""
+"""What the commands share: options, how they refuse bad input, read numbers and parameters, and end."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 if TYPE_CHECKING:
     from reference_model.systems import System
@@ -18,6 +20,18 @@ FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 MOST_SAMPLES, MOST_JOBS = 10_000_000, 1000
 """More would fill the memory of a machine, or its table of processes."""
+
+
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter in SI units, several times for several.",
+        show_default=False,
+    ),
+]
+Tolerance = Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")]
 
 
 class BadInputError(Exception):

@@ -35,7 +35,7 @@ from reference_model.systems import (
     checked_times,
     checked_tolerance,
 )
-from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
 from reference_model.units import Units
 
 METHOD = "DOP853 in slip phases with slip-polar coordinates near rest; closed-form stick phases"
@@ -123,11 +123,7 @@ def simulate_with(
             f"the states are not finite from t = {times[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
             "the parameters differ by too many orders of magnitude"
         )
-    starts = [run.seconds(t) for _, t, _ in run.phases]
-    phases = tuple(
-        Phase(kind, start, end, frame.states(y))
-        for (kind, _, y), start, end in zip(run.phases, starts, [*starts[1:], float(times[-1])], strict=True)
-    )
+    begun = [(kind, run.seconds(t), frame.states(y)) for kind, t, y in run.phases]
     solution = Solution(
         method=METHOD,
         tolerance=tolerance,
@@ -135,7 +131,7 @@ def simulate_with(
         steps=run.steps,
         wall_time=time.perf_counter() - clock,
     )
-    return Trajectory(system, times, states, phases, solution)
+    return Trajectory(system, times, states, phases_of(begun, float(times[-1])), solution)
 
 
 def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, unit: Units) -> Body:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -26,6 +27,16 @@ class Phase:
     start: float
     end: float
     initial_state: FloatArray
+
+
+def phases_of(
+    begun: Sequence[tuple[Literal["slip", "pivot", "stick"], float, FloatArray]], end: float
+) -> tuple[Phase, ...]:
+    """Return the phases from their kinds, starts in s and first states; each lasts to the next one or to ``end``."""
+    ends = [*(start for _, start, _ in begun[1:]), end]
+    return tuple(
+        Phase(kind, start, until, state) for (kind, start, state), until in zip(begun, ends, strict=True)
+    )
 
 
 @dataclass(frozen=True)

@@ -71,23 +71,16 @@ SHRINKS = "The attraction area of the self-centred equilibrium shrinks as ω gro
 
 
 @functools.cache
-def saddle() -> StickSlipOrbit:
+def saddle(tolerance: float = 1e-12) -> StickSlipOrbit:
     """Return the orbit whose stable set is the boundary."""
-    (orbit,) = (orbit for orbit in stick_slip_orbits(FIG5) if not orbit.stable)
-    return orbit
-
-
-@functools.cache
-def rough_saddle() -> StickSlipOrbit:
-    """Return the same with the tolerance at which the boundary is looked for."""
-    (orbit,) = (each for each in stick_slip_orbits(FIG5, tolerance=ON_BOUNDARY) if not each.stable)
+    (orbit,) = (orbit for orbit in stick_slip_orbits(FIG5, tolerance=tolerance) if not orbit.stable)
     return orbit
 
 
 @functools.cache
 def boundary() -> FloatArray:
     """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
-    (curve,) = basin_boundary(rough_saddle(), ranges=WHERE, cells=CELLS)
+    (curve,) = basin_boundary(saddle(ON_BOUNDARY), ranges=WHERE, cells=CELLS)
     points = np.asarray(curve.points)
     return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
 
@@ -258,7 +251,7 @@ def divides_claim(places: FloatArray, ends: NDArray[np.uint8], curve: FloatArray
     beyond, whirled = places[other], ends[other] == EndState.WHIRL
     off = distances(beyond, curve)
     asked = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Sides.of(rough_saddle())
+    sides = Sides.of(saddle(ON_BOUNDARY))
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[asked].T)])
     before, behind = sides.ends
     wrong = (whirled[asked] != ((misses > 0.0) == (behind > before))) & (np.abs(misses) > BARELY)

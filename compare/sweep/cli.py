@@ -16,6 +16,8 @@ from compare.command_input import (
     INTERRUPTED,
     SOMETHING_DIFFERS,
     BadInputError,
+    Settings,
+    Tolerance,
     changed,
     check_folder,
     count,
@@ -59,15 +61,6 @@ of contact come to rest, which the plain reference has to follow, a longer time 
 sweep = typer.Typer(rich_markup_mode=None)
 
 SystemName = Annotated[str, typer.Argument(metavar="pin|disc", help="What is simulated.")]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A parameter in SI units, several times for several.",
-        show_default=False,
-    ),
-]
 Start = Annotated[
     str,
     typer.Option(
@@ -98,7 +91,6 @@ Until = Annotated[
         show_default=f"{UNTIL}, of a disc on single points {UNTIL_ON_POINTS}",
     ),
 ]
-Tolerance = Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")]
 Seed = Annotated[str, typer.Option(metavar="N", help="Of all that is random.")]
 Chunk = Annotated[
     str | None,

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from compare.sweep.refinement import Ends, mixed
 from reference_model.ensemble import EndState
@@ -32,25 +30,18 @@ class Share(NamedTuple):
 
 def of_sample(ends: Ends) -> dict[EndState, Share]:
     """Return the shares among independent random starts of the ends ``ends``, shape (n,)."""
+    from scipy.stats import binomtest  # takes long to load, and grids do without
+
     counts = {end: int(np.count_nonzero(ends == end)) for end in EndState}
     doubtful = counts[EndState.UNDECIDED]
     shares = {}
     for end, count in counts.items():
         most = count if end == EndState.UNDECIDED else count + doubtful
-        low, high = _wilson(count, ends.size)[0], _wilson(most, ends.size)[1]
-        shares[end] = Share(count / ends.size, low, high)
+        low, high = (
+            binomtest(k, ends.size).proportion_ci(CONFIDENCE, method="wilson") for k in (count, most)
+        )
+        shares[end] = Share(count / ends.size, float(low.low), float(high.high))
     return shares
-
-
-def _wilson(count: int, n: int) -> tuple[float, float]:
-    """Return the probabilities whose expectation lies within z standard deviations of ``count`` out of ``n``.
-
-    E. B. Wilson 1927; as ``scipy.stats.binomtest`` has it, without the time that it takes to load.
-    """
-    z = float(ndtri(0.5 + 0.5 * CONFIDENCE))
-    middle = count + 0.5 * z**2
-    half = z * math.sqrt(count * (n - count) / n + 0.25 * z**2)
-    return (middle - half) / (n + z**2), (middle + half) / (n + z**2)
 
 
 def of_grid(ends: Ends) -> dict[EndState, Share]:

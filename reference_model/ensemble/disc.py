@@ -23,6 +23,7 @@ from reference_model.ensemble.disc_kernel import (
     run_rings,
 )
 from reference_model.ensemble.disc_regions import REGION, known_regions
+from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.ensemble.results import HANDED_OVER, Ensemble, Results
 from reference_model.integrate import simulate
@@ -50,9 +51,7 @@ def simulate_discs(
     threads: int,
 ) -> Ensemble:
     """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` discs."""
-    table = np.empty((n if varied else 1, len(PARAMETERS)))
-    for column, name in zip(table.T, PARAMETERS, strict=True):
-        column[:] = varied.get(name, getattr(disc, name))
+    table = parameter_table(disc, PARAMETERS, varied)
     aims = _aims(disc, tolerance, early_end, NOTHING_KNOWN if varied else known_regions(disc))
     results = Results.empty(n, disc.state_size)
     _run_through(
@@ -63,7 +62,7 @@ def simulate_discs(
 
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a disc from ``state`` on."""
-    table = np.array([[getattr(disc, name) for name in PARAMETERS]])
+    table = parameter_table(disc, PARAMETERS)
     aims = _aims(disc, tolerance, False, NOTHING_KNOWN)
 
     def one(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:

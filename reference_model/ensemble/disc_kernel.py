@@ -53,7 +53,6 @@ from reference_model.ensemble.disc_lanes import (
     WATCH,
     WAY,
     R,
-    accept,
     advance_with,
     begin_slip,
     comes_to_rest,
@@ -589,7 +588,7 @@ def _attend_points(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
 def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
-        _load_ring, _advance_rings, _attend_ring, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG,
+        _load_ring, _advance_rings, _attend_ring, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG,
         first, last, aims.around, task, aims, results,
     )  # fmt: skip
 
@@ -598,6 +597,6 @@ def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last
 def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
     run(
-        _load_points, _advance_points, _attend_points, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG,
+        _load_points, _advance_points, _attend_points, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG,
         first, last, aims.around, task, aims, results,
     )  # fmt: skip

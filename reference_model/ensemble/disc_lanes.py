@@ -159,13 +159,6 @@ def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: f
 
 
 @scalar
-def accept(scratch: Any) -> None:
-    """Take over the trial of every lane."""
-    for i in range(TRIAL * LANES):
-        scratch[i] = scratch[TRIAL * LANES + i]
-
-
-@scalar
 def idle(scratch: Any, lane: int) -> None:
     """Put into a lane what goes on for ever without being attended."""
     for slot in range(SLOTS):

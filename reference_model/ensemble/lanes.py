@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from reference_model.ensemble.compiled import written_out
+from reference_model.ensemble.compiled import scalar, written_out
 
 LANES = 16
 """Two vectors of eight: while one waits for a square root the other goes on (measured: 25 ns a step, with eight
@@ -24,21 +24,23 @@ LANES = 16
 
 @written_out
 def run(
-    load: Any, advance: Any, attend: Any, accept: Any, store: Any, idle: Any,
-    slots: int, items: int, flag: int, first: int, last: int, kind: Any, task: Any, aims: Any, results: Any,
+    load: Any, advance: Any, attend: Any, store: Any, idle: Any,
+    slots: int, trial: int, items: int, flag: int, first: int, last: int, kind: Any,
+    task: Any, aims: Any, results: Any,
 ) -> None:  # fmt: skip
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task`` to their ends.
 
     Parameters
     ----------
-    load, advance, attend, accept, store, idle : compiled functions
+    load, advance, attend, store, idle : compiled functions
         ``load(scratch, book, lane, number, task, aims)`` puts the start of a trajectory into the trial slots of a
         lane, ``advance(scratch, kind)`` makes a trial step in all lanes, ``attend(scratch, book, lane, aims)`` sees
-        to a lane with a flag and may change its trial, ``accept(scratch)`` takes over the trial of all lanes,
-        ``store(scratch, book, lane, results)`` writes down what stands in the trial slots, and ``idle(scratch,
-        lane)`` puts something harmless into a lane. ``load`` and ``attend`` return whether the trajectory has ended.
-    slots : int
-        Length of a lane in the scratch array.
+        to a lane with a flag and may change its trial, ``store(scratch, book, lane, results)`` writes down what
+        stands in the trial slots, and ``idle(scratch, lane)`` puts something harmless into a lane. ``load`` and
+        ``attend`` return whether the trajectory has ended.
+    slots, trial : int
+        Length of a lane in the scratch array; how many of these slots, the first, make up the motion. As many that
+        follow are those of the trial.
     items : int
         Length of its page in the book, where scalar code keeps what no vector needs.
     flag : int
@@ -78,5 +80,12 @@ def run(
                 number += 1
         if active == 0:
             break
-        accept(scratch)
+        _accept(scratch, trial)
         advance(scratch, kind)
+
+
+@scalar
+def _accept(scratch: Any, trial: int) -> None:
+    """Take over the trial of every lane."""
+    for i in range(trial * LANES):
+        scratch[i] = scratch[trial * LANES + i]

@@ -51,7 +51,6 @@ from reference_model.ensemble.pin_lanes import (
     UNWATCHED,
     WATCH,
     WAY,
-    accept,
     advance,
     idle,
     law_of,
@@ -211,6 +210,6 @@ def run_pins(
 def _run_with(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
     """Do so; in a function of its own, which costs time to compile, the rounds of pins are a tenth faster."""
     run(
-        load, advance, attend, accept, store, idle, SLOTS, ITEMS + results.notes.size, FLAG, first, last, None,
+        load, advance, attend, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG, first, last, None,
         task, aims, results,
     )  # fmt: skip

@@ -110,13 +110,6 @@ def advance(scratch: Any, _: None) -> None:
 
 
 @scalar
-def accept(scratch: Any) -> None:
-    """Take over the trial of every lane."""
-    for i in range(TRIAL * LANES):
-        scratch[i] = scratch[TRIAL * LANES + i]
-
-
-@scalar
 def idle(scratch: Any, lane: int) -> None:
     """Put into a lane what goes on for ever without being attended."""
     for slot in range(SLOTS):

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from reference_model.ensemble.chunks import in_chunks
+from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin import PARAMETERS, PinTask, run_pins
 from reference_model.ensemble.pin_book import KNOWN
 from reference_model.ensemble.recording import Recording
@@ -30,9 +31,7 @@ def simulate_pins(
     threads: int,
 ) -> Ensemble:
     """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` pins."""
-    table = np.empty((n if varied else 1, len(PARAMETERS)))
-    for column, name in zip(table.T, PARAMETERS, strict=True):
-        column[:] = varied.get(name, getattr(pin, name))
+    table = parameter_table(pin, PARAMETERS, varied)
     known = np.zeros(KNOWN)  # an array that may be written to: the kernel is compiled for one kind
     if not varied:
         known[:] = known_ends(pin)
@@ -48,7 +47,7 @@ def simulate_pins(
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a pin from ``state`` on."""
     local = max(LOCAL * tolerance, TIGHTEST)
-    table, nothing = np.array([[getattr(pin, name) for name in PARAMETERS]]), np.zeros(KNOWN)
+    table, nothing = parameter_table(pin, PARAMETERS), np.zeros(KNOWN)
 
     def run(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
         results = Results.empty(len(starts), pin.state_size)._replace(notes=notes)

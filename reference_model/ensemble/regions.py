@@ -17,6 +17,7 @@ from functools import lru_cache, partial
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
+from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin import PARAMETERS, PinTask, run_pins
 from reference_model.ensemble.pin_book import (
     KNOWN,
@@ -145,7 +146,7 @@ def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
-    task = PinTask(np.array([[getattr(pin, name) for name in PARAMETERS]]), starts, np.full(1, duration))
+    task = PinTask(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
     run_pins(task, TOLERANCE, early, once, np.zeros(KNOWN), results, 0, len(starts))
     return results
 

@@ -11,7 +11,7 @@ from reference_model.contact import Contact, contact_of
 from reference_model.ensemble.recording import Recording
 from reference_model.ensemble.simulate import require_known
 from reference_model.systems import PinOnDisc, System, checked_state, checked_times, checked_tolerance
-from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
 from reference_model.units import Units
 
 METHOD = "compiled DOP853 in stretched time; closed-form stick phases"
@@ -53,15 +53,9 @@ def simulate_compiled(
         raise SimulationError(
             "the states are not finite: the parameters differ by too many orders of magnitude"
         )
-    begun = [phase for phase in recording.phases if phase[1] < delays[-1]] or recording.phases[:1]
-    starts = [float(times[0]) + start for _, start, _ in begun]
-    phases = tuple(
-        Phase(kind, start, end, phase_state)
-        for (kind, _, phase_state), start, end in zip(
-            begun, starts, [*starts[1:], float(times[-1])], strict=True
-        )
-    )
+    lasting = [phase for phase in recording.phases if phase[1] < delays[-1]] or recording.phases[:1]
+    begun = [(kind, float(times[0]) + start, first) for kind, start, first in lasting]
     solution = Solution(
         METHOD, tolerance, recording.evaluations, recording.steps, wall_time=time.perf_counter() - clock
     )
-    return Trajectory(system, times, recording.states, phases, solution)
+    return Trajectory(system, times, recording.states, phases_of(begun, float(times[-1])), solution)
