@@ -22,6 +22,29 @@ simulation's motion, or what is read off it. An engine that shares a mistake wit
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
+THEORY = "theory"
+"""Stands for the engine of a claim in which none takes part."""
+
+Evidence = Literal["independent", "self-check", "algebra", "implied"]
+"""What agreement is worth, see ``EVIDENCE``."""
+
+EVIDENCE: dict[Evidence, str] = {
+    "independent": "beside a formula, a conservation law, an order of convergence, or a code that shares nothing",
+    "self-check": "an engine against itself: at another tolerance, or with the same law of friction on both sides",
+    "algebra": "formulas of the theory against each other; no engine takes part",
+    "implied": "it follows from another verdict, which agrees and is independent",
+}
+"""Kinds of evidence, from the one that counts to those that do not add to it, in words."""
+
+Basis = Literal["independent", "reference", "self-check", "algebra"]
+"""What evidence a claim is, before it is known which engine it is about.
+
+"reference": the prediction is a motion of the reference, or is computed with its law of friction. That is a
+self-check of the reference and of what shares code with it, and independent of all others.
+"""
+
+BASES: tuple[Basis, ...] = get_args(Basis)
+
 
 class Verdict(Enum):
     """What a claim has shown; only AGREES is a pass."""
@@ -90,6 +113,14 @@ class Claim:
         "" for a dimensionless number.
     note : str
         How the measurement or its error estimate was made, where that is not obvious.
+    basis : str
+        What evidence it is, one of ``BASES``. Without it: "reference" for the kind "trajectory", else "algebra" where
+        no engine takes part and "independent" where one does.
+    implied_by : str
+        Sentence of a claim of the same study from which this one follows for the same engine, by algebra or because
+        it is read off the same numbers; "" for none.
+    answers : bool
+        Whether the numbers count answers of yes or no, see ``compare.answers``.
 
     """
 
@@ -104,6 +135,9 @@ class Claim:
     source: str
     unit: str = ""
     note: str = ""
+    basis: Basis = "independent"
+    implied_by: str = ""
+    answers: bool = False
 
     def __init__(
         self,
@@ -119,6 +153,9 @@ class Claim:
         source: str,
         unit: str = "",
         note: str = "",
+        basis: Basis | None = None,
+        implied_by: str = "",
+        answers: bool = False,
     ) -> None:
         values = {
             "sentence": sentence,
@@ -132,11 +169,18 @@ class Claim:
             "source": source,
             "unit": unit,
             "note": note,
+            "basis": _usual_basis(kind, engine) if basis is None else basis,
+            "implied_by": implied_by,
+            "answers": answers,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
         if kind not in KINDS:
             raise ValueError(f"claim {sentence!r}: kind = {kind!r}: it must be one of {', '.join(KINDS)}")
+        if self.basis not in BASES:
+            raise ValueError(f"claim {sentence!r}: basis = {basis!r}: it must be one of {', '.join(BASES)}")
+        if self.basis == "algebra" and engine != THEORY:
+            raise ValueError(f"claim {sentence!r} is about {engine}: algebra is of the theory alone")
         if self.predicted.shape != self.measured.shape:
             raise ValueError(
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
@@ -156,10 +200,28 @@ class Claim:
         return np.abs(self.measured - self.predicted)
 
     @property
+    def ratio(self) -> FloatArray:
+        """Difference over budget, elementwise: agreement is up to 1.
+
+        Without a difference it is 0, whatever the budget; a difference without a budget, and a number that is
+        missing, is infinitely far off.
+        """
+        difference, total = np.broadcast_arrays(self.difference, self.budget.total)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(difference == 0.0, 0.0, difference / total)
+        missing = np.isnan(total) | ~np.isfinite(self.measured) | ~np.isfinite(self.predicted)
+        return np.asarray(np.where(missing, np.inf, ratio))
+
+    @property
     def worst(self) -> int:
-        """Flat index of the element that exceeds its budget the most (or comes nearest to it)."""
-        excess = np.atleast_1d(self.difference - self.budget.total)
-        return int(np.argmax(np.where(np.isfinite(excess), excess, np.inf)))
+        """Flat index of the element with the largest ratio; among several, of the largest difference."""
+        ratio = self.ratio
+        return _place_of_largest(np.where(ratio == np.max(ratio), self.difference, -1.0))
+
+    @property
+    def largest(self) -> int:
+        """Flat index of the element with the largest difference, a missing one before all."""
+        return _place_of_largest(self.difference)
 
     @property
     def verdict(self) -> Verdict:
@@ -170,3 +232,13 @@ class Claim:
         if np.any(self.budget.total > self.budget.resolution):
             return Verdict.INCONCLUSIVE
         return Verdict.AGREES
+
+
+def _place_of_largest(values: FloatArray) -> int:
+    return int(np.argmax(np.nan_to_num(values, nan=np.inf, posinf=np.inf)))
+
+
+def _usual_basis(kind: Kind, engine: str) -> Basis:
+    if kind == "trajectory":
+        return "reference"
+    return "algebra" if engine == THEORY else "independent"

@@ -28,9 +28,9 @@ def renewed(listed: Sentences, results: Path) -> Sentences:
 
     Raises ``ValueError`` if an engine of the project is missing there, or has no result.
     """
+    from compare.claim import THEORY
     from compare.engines import engines
     from compare.report.matrix import State
-    from compare.runner import THEORY
     from compare.studies import STUDIES
 
     report = json.loads(results.read_text(encoding="utf-8"))

@@ -20,7 +20,7 @@ import os
 import reprlib
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
 from typing import Protocol
 
@@ -92,6 +92,13 @@ class Engine:
     step : float, optional
         For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
         tolerance of 1e-9. It goes with the square root of the tolerance.
+    kin : str
+        Name of the engine whose code it shares, so that neither is independent evidence about the other.
+    contact_only : bool
+        Whether all but its contact is its kin's: then it is measured only where the contact decides, see
+        ``Study.contact``, unless it is asked for by its name.
+    about : str
+        What a reader of the report has to know of it, in a sentence or two.
 
     Raises
     ------
@@ -106,6 +113,9 @@ class Engine:
     sticks: bool = True
     nonlinear: bool = True
     step: float | None = None
+    kin: str = ""
+    contact_only: bool = False
+    about: str = ""
 
     def __post_init__(self) -> None:
         """Refuse a promise that no study could ask for."""
@@ -234,6 +244,7 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or all that are registered but those on request.
 
+    One that is named is measured in all that it promises, see ``Engine.contact_only``.
     A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
     does one of the entry points "friction_discs.engines" of an installed package.
     Raises ``ValueError`` for a name that is unknown or can't be imported.
@@ -248,11 +259,22 @@ def on_request() -> tuple[Engine, ...]:
     return tuple(_REGISTRY[name] for name in sorted(_ON_REQUEST))
 
 
+def shares_code(name: str, other: str) -> bool:
+    """Return whether the engine called ``name`` is the one called ``other``, or shares code with it."""
+    return name == other or (name in _REGISTRY and _REGISTRY[name].kin == other)
+
+
+def repeated_by(name: str) -> str:
+    """Return the engine that the one called ``name`` repeats in all but its contact, "" if there is none."""
+    engine = _REGISTRY.get(name)
+    return engine.kin if engine is not None and engine.contact_only else ""
+
+
 def _named(name: str) -> Engine:
     if ":" in name:
         return imported(name, name)
     if name in _REGISTRY:
-        return _REGISTRY[name]
+        return replace(_REGISTRY[name], contact_only=False)
     return imported(name, _installed()[known_name(name)])
 
 
@@ -340,5 +362,19 @@ def _simulate_exudyn_native(
 
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
 exudyn = register(Engine("exudyn", _simulate_exudyn, EVERY_KIND))
-exudyn_native = register(Engine("exudyn-native", _simulate_exudyn_native, ("pin", "points")))
-compiled = register(Engine("compiled", _simulate_compiled, EVERY_KIND, nonlinear=False), on_request=True)
+exudyn_native = register(
+    Engine(
+        "exudyn-native",
+        _simulate_exudyn_native,
+        ("pin", "points"),
+        kin="exudyn",
+        contact_only=True,
+        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. "
+        "Integrator, support and the smoothing of friction are the same, so it is asked only where the contact's own "
+        "code decides: the contact by itself, a motion of each kind, a whirl, and free bodies. With --engine "
+        "exudyn-native it is measured in all that it simulates.",
+    )
+)
+compiled = register(
+    Engine("compiled", _simulate_compiled, EVERY_KIND, nonlinear=False, kin="reference"), on_request=True
+)

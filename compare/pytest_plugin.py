@@ -225,9 +225,18 @@ def _account(study: Study, claim: Claim) -> str:
     """Return a claim with the numbers that decide, and all that is needed to repeat it."""
     from compare.claim import Verdict
     from compare.report.numbers import error_text, value_text
-    from compare.report.worst import worst
+    from compare.report.worst import answers_text, in_short, worst
 
     element = worst(claim)
+    repeat = {
+        "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
+        "source": claim.source,
+        "note": claim.note,
+        "again": f"friction-discs report {study.name} --engine {claim.engine}",
+    }
+    if claim.answers:
+        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"
+        return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
     unit = f" {claim.unit}" if claim.unit else ""
     allowed = f"{error_text(element.total)}{unit}"
     differs = claim.verdict is Verdict.DIFFERS
@@ -239,17 +248,22 @@ def _account(study: Study, claim: Claim) -> str:
         "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, as the engine's own change says) "
         f"+ {error_text(element.model)} (model)",
         "resolution": f"{error_text(claim.budget.resolution)}{unit}: a larger budget shows nothing",
-        "element": f"{element.index + 1} of {element.count}" if element.count > 1 else "",
-        "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
-        "source": claim.source,
-        "note": claim.note,
-        "again": f"friction-discs report {study.name} --engine {claim.engine}",
+        "element": f"{element.index + 1} of {element.count}, the nearest to its budget or the farthest beyond"
+        if element.count > 1
+        else "",
+        "largest": f"{error_text(element.largest_difference)}{unit}, element {element.largest_index + 1}"
+        if element.largest_index != element.index
+        else "",
     }
     first = (
         f"differs by {error_text(element.difference)}{unit}, allowed are {allowed}"
         if differs
         else f"an error budget of {allowed} leaves it open"
     )
+    return _listed(first, lines | repeat)
+
+
+def _listed(first: str, lines: dict[str, str]) -> str:
     return "\n".join([first, *(f"  {name:12}  {text}" for name, text in lines.items() if text)])
 
 

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from compare.claim import THEORY
 from compare.engines import Engine, UnsupportedSystemError
 from compare.errata import Erratum, Evidence
 from compare.report.style import paper_style, saved
 from compare.store import Store, stamp
 from compare.study import Data, Findings, Study
 from compare.workers import Done, Failure, Workers
-
-THEORY = "theory"
 
 
 @dataclass(frozen=True)
@@ -33,6 +32,10 @@ class Run:
     ----------
     studies, engines : tuple
         What was asked for; ``engines`` are names, without "theory".
+    contact_only : tuple of str
+        Names of the engines that take part only in studies in which the contact decides.
+    about : tuple of str
+        What there is to know of the engines.
     errata : tuple of Erratum
         Whose evidence was asked for.
     outcomes : dict
@@ -51,6 +54,8 @@ class Run:
     studies: tuple[Study, ...]
     engines: tuple[str, ...]
     errata: tuple[Erratum, ...] = ()
+    contact_only: tuple[str, ...] = ()
+    about: tuple[str, ...] = ()
     outcomes: dict[tuple[str, str], Findings | Failure] = field(default_factory=dict)
     seconds: dict[tuple[str, str], float] = field(default_factory=dict)
     drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
@@ -60,7 +65,10 @@ class Run:
     def columns(self, study: Study) -> tuple[str, ...]:
         """Return who takes part in ``study``: "theory" if it has any, and the engines that it is about."""
         theory = (THEORY,) if study.theory is not None else ()
-        return theory + tuple(name for name in self.engines if not study.only or name in study.only)
+        return theory + tuple(name for name in self.engines if self._takes_part(name, study))
+
+    def _takes_part(self, name: str, study: Study) -> bool:
+        return (not study.only or name in study.only) and (study.contact or name not in self.contact_only)
 
     @property
     def missing(self) -> tuple[tuple[str, str], ...]:
@@ -116,7 +124,13 @@ def run(
         With ``interrupted`` set, and without what was not finished, after Ctrl-C.
 
     """
-    result = Run(studies, tuple(engine.name for engine in engines), errata)
+    result = Run(
+        studies,
+        tuple(engine.name for engine in engines),
+        errata,
+        tuple(engine.name for engine in engines if engine.contact_only),
+        tuple(engine.about for engine in engines if engine.about),
+    )
     with Workers(jobs, limit) as workers:
         try:
             _Runner(result, workers, Store(folder), progress).work({e.name: e for e in engines}, resume)
@@ -147,6 +161,8 @@ class _Runner:
         for key, (study, engine) in work.items():
             simulate = () if engine is None else (engine.function,)
             self._stamps[key] = stamp(study.measure, *simulate)
+            if engine is not None and engine.contact_only:  # less is measured
+                self._stamps[key] += ", contact only"
             found = self._store.find(*key, self._stamps[key]) if resume else None
             if found is None:
                 self._workers.submit(key, measured, study, engine)

@@ -140,6 +140,9 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "parameters": {name: _parameter_as_json(value) for name, value in claim.parameters.items()},
         "source": claim.source,
         "note": claim.note,
+        "basis": claim.basis,
+        "implied_by": claim.implied_by,
+        "answers": claim.answers,
     }
 
 
@@ -161,6 +164,9 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
         source=content["source"],
         unit=content["unit"],
         note=content["note"],
+        basis=content["basis"],
+        implied_by=content["implied_by"],
+        answers=content["answers"],
     )
 
 

@@ -107,6 +107,9 @@ class Study:
         claims, in the same order.
     quick : bool
         Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
+    contact : bool
+        Whether an engine's code of contact decides in it, see ``Engine.contact_only``. Where other parts decide
+        too, ``measure`` leaves those out for an engine of which that is true.
 
     The callables are functions of a module (no lambdas), because they are sent to other processes.
 
@@ -127,3 +130,4 @@ class Study:
     tables: Callable[[], tuple[Table, ...]] | None = None
     recorded: Callable[[], tuple[Recorded, ...]] | None = None
     quick: bool = False
+    contact: bool = False

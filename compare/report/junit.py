@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from compare.claim import Claim
 from compare.report.matrix import Matrix, Row, State, state_of
 from compare.report.numbers import error_text
-from compare.report.worst import worst
+from compare.report.worst import answers_text, in_short, worst
 from compare.runner import Run
 from compare.workers import Failure
 
@@ -37,7 +37,11 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
     cell = row.cells[column]
     for claim in cell.claims:
         case = _case(suite, study, column, row.sentence)
-        ET.SubElement(ET.SubElement(case, "properties"), "property", name="kind", value=claim.kind)
+        properties = ET.SubElement(case, "properties")
+        said = {"kind": claim.kind, "evidence": cell.evidence, "implied by": cell.implied_by}
+        for name, value in said.items():
+            if value:
+                ET.SubElement(properties, "property", name=name, value=value)
         if state_of(claim) is State.DIFFERS:
             ET.SubElement(case, "failure", message=_message(claim))
         elif state_of(claim) is State.INCONCLUSIVE:
@@ -63,11 +67,14 @@ def _error(case: ET.Element, reason: str, failure: object) -> None:
 def _message(claim: Claim) -> str:
     """Return the numbers of the element that decides."""
     element = worst(claim)
+    if claim.answers:
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
     unit = f" {claim.unit}" if claim.unit else ""
     return (
         f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
         f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
-        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}"
+        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
+        f"largest difference of {element.count}: {error_text(element.largest_difference)}"
     )
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Literal
 
-import numpy as np
-
-from compare.claim import Claim, Verdict
-from compare.report.numbers import error_text
-from compare.runner import THEORY, Run
+from compare.claim import THEORY, Claim, Evidence, Verdict
+from compare.engines import repeated_by
+from compare.evidence import evidence_of
+from compare.report.worst import deciding, in_short
+from compare.runner import Run
 from compare.study import Findings, Recorded, Study
 from compare.workers import Failure
 
@@ -40,6 +41,8 @@ _SYMBOLS = {
     "not simulated": "∅",
 }
 
+VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
+
 WORST_FIRST = (
     State.FAILED,
     State.DIFFERS,
@@ -63,29 +66,27 @@ class Cell:
         Usually one; several where a study makes the same claim for several parameters.
     reason : str
         Why there is no verdict.
+    evidence : str
+        Its kind, see ``compare.claim.EVIDENCE``; "" where there is no verdict.
+    implied_by : str
+        From which claim, or from which engine's verdict on the same claim, it follows.
 
     """
 
     state: State
     claims: tuple[Claim, ...] = ()
     reason: str = ""
+    evidence: Evidence | Literal[""] = ""
+    implied_by: str = ""
 
     @property
-    def within(self) -> str:
-        """The largest error that can have hidden where nothing differs, with its unit; "" for a yes or no."""
-        if self.state not in (State.AGREES, State.INCONCLUSIVE):
-            return ""
-        claim = max(self.claims, key=lambda claim: float(np.max(claim.budget.total)))
-        error = float(np.max(claim.budget.total))
-        return f"{error_text(error)} {claim.unit}".rstrip() if error > 0.0 else ""
+    def number(self) -> str:
+        """What stands beside the verdict, see ``compare.report.worst.in_short``; "" where there is none."""
+        return in_short(deciding(self._decisive)) if self.claims else ""
 
     @property
-    def off(self) -> str:
-        """By how much it differs, with its unit; "" where it does not."""
-        if self.state is not State.DIFFERS:
-            return ""
-        claim = max(self.claims, key=lambda claim: float(np.max(claim.difference)))
-        return f"{error_text(float(np.max(claim.difference)))} {claim.unit}".rstrip()
+    def _decisive(self) -> list[Claim]:
+        return [claim for claim in self.claims if state_of(claim) is self.state]
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,11 @@ class Group:
     def reasons(self, state: State) -> Counter[str]:
         """Return the reasons of all cells in ``state``, and how many cells give each."""
         return Counter(cell.reason for row in self.rows for cell in row.cells.values() if cell.state is state)
+
+    def number_of(self, sentence: str) -> int | None:
+        """Return the number, from 1, of the row of a claim; None for what is none."""
+        numbers = {row.sentence: i for i, row in enumerate(self.rows, 1)}
+        return numbers.get(sentence)
 
     @property
     def agrees(self) -> bool:
@@ -189,6 +195,16 @@ class Matrix:
         """How many cells are in each state."""
         return sum((self.count(column) for column in self.columns), Counter())
 
+    def of_evidence(self, evidence: Evidence, column: str = "") -> Counter[State]:
+        """Return how many verdicts of a kind of evidence, in one column or in all, are in each state."""
+        return Counter(
+            cell.state
+            for group in self.groups
+            for row in group.rows
+            for name, cell in row.cells.items()
+            if cell.evidence == evidence and column in ("", name)
+        )
+
 
 def matrix(run: Run) -> Matrix:
     """Return the matrix of a run, also of an incomplete one."""
@@ -221,6 +237,7 @@ def _group(run: Run, study: Study) -> Group:
             elif column in gaps and column != THEORY and not theory_only:
                 cells[column] = gaps[column]
         rows.append(Row(sentence, equation, cells))
+    rows = [_weighed(row, rows, study) for row in rows]
     # a gap that no row shows, because nobody made a claim there, still has to be seen
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
@@ -228,6 +245,38 @@ def _group(run: Run, study: Study) -> Group:
     if unseen:
         rows.append(Row("(claims not known)", "", unseen))
     return Group(study, tuple(rows))
+
+
+def _weighed(row: Row, rows: list[Row], study: Study) -> Row:
+    """Return ``row`` with the kind of evidence of each verdict, which may follow from another one of ``rows``."""
+    return replace(row, cells={column: _weighed_cell(row, column, rows, study) for column in row.cells})
+
+
+def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
+    cell = row.cells[column]
+    if not cell.claims:
+        return cell
+    own, engine = evidence_of(cell.claims[0]), repeated_by(column)
+    if engine and not study.contact and _agrees(row.cells.get(engine)):
+        return replace(cell, evidence="implied", implied_by=engine)
+    sentence = cell.claims[0].implied_by
+    by = (
+        next((each.cells.get(column) for each in rows if each.sentence == sentence), None)
+        if sentence
+        else None
+    )
+    # A self-check implies nothing that is more than one.
+    if (
+        by is not None
+        and _agrees(by)
+        and (own != "independent" or evidence_of(by.claims[0]) == "independent")
+    ):
+        return replace(cell, evidence="implied", implied_by=sentence)
+    return replace(cell, evidence=own)
+
+
+def _agrees(cell: Cell | None) -> bool:
+    return cell is not None and cell.state is State.AGREES
 
 
 def _gap(run: Run, study: Study, column: str) -> Cell | None:

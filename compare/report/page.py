@@ -11,11 +11,11 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from compare.claim import Claim
-from compare.report.matrix import WORST_FIRST, Matrix, Row, State, state_of
+from compare.claim import EVIDENCE, THEORY, Claim, Evidence
+from compare.report.matrix import WORST_FIRST, Cell, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
-from compare.report.worst import Worst, worst
-from compare.runner import THEORY, Drawing, Run
+from compare.report.worst import Worst, answers_text, in_short, worst
+from compare.runner import Drawing, Run
 from compare.study import Study
 from compare.workers import Failure
 
@@ -30,6 +30,12 @@ class Measurement:
     element: Worst | None = None
     particular: str = ""
     reason: str = ""
+    cell: Cell | None = None
+
+    @property
+    def number(self) -> str:
+        """What stands beside the verdict."""
+        return in_short(self.claim) if self.claim is not None else ""
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,8 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
             matrix=matrix,
             stamp=stamp,
             State=State,
+            EVIDENCE=EVIDENCE,
+            kinds=[evidence for evidence in EVIDENCE if matrix.of_evidence(evidence)],
             summary=summary(matrix),
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
@@ -84,18 +92,39 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    result.filters.update(number=_number, value=_value, paragraphs=_paragraphs)
+    result.filters.update(number=_number, value=_value, answers=_answers, paragraphs=_paragraphs)
     return result
 
 
 def summary(matrix: Matrix) -> str:
-    """Return the totals in words: "41 agree, 1 differs, 0 inconclusive", and the gaps."""
-    return _in_words(matrix.totals)
+    """Return the totals in words, what is independent evidence first, and the gaps.
+
+    "41 agree on independent evidence; 7 self-checks, 3 of algebra and 5 implied agree besides; 1 differs, ...".
+    """
+    agree = {evidence: matrix.of_evidence(evidence)[State.AGREES] for evidence in EVIDENCE}
+    besides = [f"{agree[evidence]} {name}" for evidence, name in BESIDES.items() if agree[evidence]]
+    parts = [f"{_agree(agree['independent'])} on independent evidence"]
+    if besides:
+        listed = " and ".join([", ".join(besides[:-1]), besides[-1]] if len(besides) > 1 else besides)
+        total = sum(agree[evidence] for evidence in BESIDES)
+        parts.append(f"{listed} agree{'s' * (total == 1)} besides")
+    return "; ".join([*parts, _others_in_words(matrix.totals)])
+
+
+BESIDES: dict[Evidence, str] = {"self-check": "by self-check", "algebra": "of algebra", "implied": "implied"}
+"""How verdicts that are no independent evidence are counted."""
 
 
 def _in_words(totals: Counter[State]) -> str:
+    return f"{_agree(totals[State.AGREES])}, {_others_in_words(totals)}"
+
+
+def _agree(count: int) -> str:
+    return f"{count} agree" + "s" * (count == 1)
+
+
+def _others_in_words(totals: Counter[State]) -> str:
     words = [
-        f"{totals[State.AGREES]} agree" + "s" * (totals[State.AGREES] == 1),
         f"{totals[State.DIFFERS]} differ" + "s" * (totals[State.DIFFERS] == 1),
         f"{totals[State.INCONCLUSIVE]} inconclusive",
     ]
@@ -131,7 +160,9 @@ def _measurements(row: Row) -> list[Measurement]:
     for engine, cell in row.cells.items():
         for claim in cell.claims:
             own = {name: value for name, value in claim.parameters.items() if name not in shared}
-            lines.append(Measurement(engine, state_of(claim), claim, worst(claim), _parameters(own)))
+            lines.append(
+                Measurement(engine, state_of(claim), claim, worst(claim), _parameters(own), cell=cell)
+            )
         if not cell.claims and cell.state is not State.NOT_SIMULATED:  # which is said once a study
             lines.append(Measurement(engine, cell.state, reason=cell.reason))
     return lines
@@ -225,6 +256,11 @@ def _number(value: float) -> Markup:
 def _value(value: float, uncertainty: float) -> Markup:
     """Return a result with the digits that mean something; the exact number goes along."""
     return _data(value, value_text(value, uncertainty))
+
+
+def _answers(value: float) -> Markup:
+    """Return a number of answers."""
+    return _data(value, answers_text(value))
 
 
 def _data(value: float, text: str) -> Markup:

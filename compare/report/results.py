@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from compare.claim import EVIDENCE, Claim
 from compare.errata import Evidence
-from compare.report.matrix import Matrix, State
+from compare.report.matrix import VERDICTS, Cell, Matrix, State
+from compare.report.worst import worst
 from compare.runner import Drawing, Run
 from compare.store import claim_as_json, number_as_json
 from compare.workers import Failure
@@ -18,6 +20,10 @@ def results(run: Run, matrix: Matrix, stamp: dict[str, str]) -> dict[str, Any]:
         "engines": list(run.engines),
         "interrupted": run.interrupted,
         "totals": {state.value: matrix.totals[state] for state in State},
+        "evidence": {
+            evidence: {state.value: matrix.of_evidence(evidence)[state] for state in VERDICTS}
+            for evidence in EVIDENCE
+        },
         "studies": [_study(run, matrix, i) for i in range(len(run.studies))],
         "recorded": [
             {
@@ -53,7 +59,27 @@ def _study(run: Run, matrix: Matrix, i: int) -> dict[str, Any]:
         "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",
-        "claims": [claim_as_json(claim) for row in group.rows for claim in row.claims],
+        "claims": [
+            _verdict(claim, cell)
+            for row in group.rows
+            for cell in row.cells.values()
+            for claim in cell.claims
+        ],
+    }
+
+
+def _verdict(claim: Claim, cell: Cell) -> dict[str, Any]:
+    """Return a claim with its kind of evidence in this report, and the numbers of the element that decides."""
+    element = worst(claim)
+    return claim_as_json(claim) | {
+        "evidence": cell.evidence,
+        "implied_by": cell.implied_by,
+        "decided_by": {
+            "element": element.index,
+            "difference": number_as_json(element.difference),
+            "allowed": number_as_json(element.total),
+            "largest_difference": number_as_json(element.largest_difference),
+        },
     }
 
 

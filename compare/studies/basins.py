@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from compare.accuracy import refined
+from compare.answers import asked, holds
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.paper import FIG5
@@ -164,30 +165,34 @@ def parts_claim(engine: Engine) -> Claim:
         )
     ]
     sides = np.concatenate((middle - ASIDE * ways, middle + ASIDE * ways))
-    measured = [
-        float(whirls_at(engine.simulate(FIG5, start, [0.0, AFTER], tolerance=ASIDE_TOLERANCE).at_end))
-        for start in starts_at(*sides.T)
-    ]
+    outwards = np.repeat((-1.0, 1.0), PLACES)
+
+    def margins(tolerance: float) -> FloatArray:
+        ends = [
+            engine.simulate(FIG5, start, [0.0, AFTER], tolerance=tolerance).at_end
+            for start in starts_at(*sides.T)
+        ]
+        return outwards * [beyond_equilibrium(end) for end in ends]
+
     return Claim(
         PARTS,
         equation="(3), (17)",
         engine=engine.name,
-        predicted=np.repeat((0.0, 1.0), PLACES),
-        measured=measured,
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(*asked(margins, ASIDE_TOLERANCE)),
         parameters=parameters_of(FIG5),
         source="Fig. 5; starts from rest in y",
-        note=f"{len(sides)} starts, {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: 1 for the "
-        "whirl, 0 for the equilibrium, as the distance from the place (3) is larger than X0 or not.",
+        note=f"{len(sides)} starts, {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: whether the "
+        "distance from the place (3) is smaller, or larger, than X0.",
+        basis="reference",
     )
 
 
-def whirls_at(state: FloatArray) -> bool:
-    """Tell whether a motion has left the neighbourhood of the equilibrium for good."""
+def beyond_equilibrium(state: FloatArray) -> float:
+    """Return by how much in m a state is farther than X0 from the equilibrium: beyond it is on the whirl."""
     from reference_model import self_centred_equilibria
 
     (rest,) = self_centred_equilibria(FIG5)
-    return math.hypot(state[0] - rest.x, state[1] - rest.y) > FIG5.offset
+    return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
 
 
 def inside(points: FloatArray, curve: FloatArray) -> NDArray[np.bool_]:
@@ -250,25 +255,26 @@ def divides_claim(places: FloatArray, ends: NDArray[np.uint8], curve: FloatArray
     other = ends != np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
     beyond, whirled = places[other], ends[other] == EndState.WHIRL
     off = distances(beyond, curve)
-    asked = np.argsort(off)[: -ASKED - 1 : -1]
+    farthest = np.argsort(off)[: -ASKED - 1 : -1]
     sides = Sides.of(saddle(ON_BOUNDARY))
-    misses = np.array([sides.miss(start) for start in starts_at(*beyond[asked].T)])
+    misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
-    wrong = (whirled[asked] != ((misses > 0.0) == (behind > before))) & (np.abs(misses) > BARELY)
-    farthest = f", none farther than {off.max():.2g} from it" if len(off) else ""
+    as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
+    how_far = f", none farther than {off.max():.2g} from it" if len(off) else ""
+    # The others end as their side of the curve says, or lie nearer to it than those that are asked.
+    margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
     return Claim(
         DIVIDES,
         equation="",
         engine="theory",
-        predicted=0.0,
-        measured=np.count_nonzero(wrong),
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(margins, BARELY),
         parameters=parameters_of(FIG5),
         source="Fig. 5; starts from rest in y",
         note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary from {len(boundary()) - 1} starts that "
         f"come to the saddle, and cubic splines. {len(off)} starts end as the other side of the splines "
-        f"does{farthest}. {len(asked)} of these, the farthest, were asked by shooting on which side of the saddle's "
-        "stable set they are: those count for which that is not their end.",
+        f"does{how_far}. {len(farthest)} of these, the farthest, were asked by shooting on which side of the "
+        "saddle's stable set they are: those do not hold for which that is not their end.",
+        basis="reference",
     )
 
 
@@ -288,6 +294,7 @@ def area_claim(ends: NDArray[np.uint8], curve: FloatArray) -> Claim:
         parameters=parameters_of(FIG5),
         source="Fig. 5; starts from rest in y",
         note="Numerical error: half of the cells through which the boundary passes.",
+        basis="reference",
     )
 
 
@@ -305,12 +312,16 @@ def recomputes_claim(random: np.random.Generator, drawn: FloatArray, curve: Floa
         equation="(1), (6)",
         kind="trajectory",
         engine="theory",
-        predicted=[float(whirls_at(simulate(FIG5, start, [0.0, SETTLED]).at_end)) for start in starts],
-        measured=found == EndState.WHIRL,
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(
+            [
+                (beyond_equilibrium(simulate(FIG5, start, [0.0, SETTLED]).at_end) > 0.0)
+                == (end == EndState.WHIRL)
+                for start, end in zip(starts, found, strict=True)
+            ]
+        ),
         parameters=parameters_of(FIG5),
         source="Fig. 5; random starts, half of them beside the boundary",
-        note=f"1 for the whirl; {RECOMPUTED} starts, of which half are not farther than {ASIDE:g} from the boundary.",
+        note=f"{RECOMPUTED} starts, of which half are not farther than {ASIDE:g} from the boundary.",
     )
 
 
@@ -320,19 +331,20 @@ def shrinks_claim(shares: dict[EndState, FloatArray]) -> Claim:
 
     rest = shares[EndState.SELF_CENTRED][:, 0]
     last = max(int(np.argmax(rest < 1.0)) - 1, 0)
-    grows = np.count_nonzero(np.diff(rest[last:]) > 0.0)
+    # Equal shares are no growth; a start whose end is not known may be on either side.
+    shrinks = -np.diff(rest[last:]) + 0.5 / STARTS
+    open_ends = shares[EndState.UNDECIDED][last:, 0]
     return Claim(
         SHRINKS,
         equation="",
         engine="theory",
-        predicted=0.0,
-        measured=grows,
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(shrinks, open_ends[:-1] + open_ends[1:]),
         parameters=parameters_of(FIG5, without=("disc_speed",)),
         source="Section 6; Fig. 5 but for ω",
-        note=f"How often the share of the same {STARTS} random starts grows from one of {len(SPEEDS)} speeds to the "
-        f"next. All come to the equilibrium up to ω = {SPEEDS[last]:.3g} rad/s; {rest[-1]:.2%} still do at "
+        note=f"Whether the share of the same {STARTS} random starts does not grow from one of {len(SPEEDS)} speeds "
+        f"to the next. All come to the equilibrium up to ω = {SPEEDS[last]:.3g} rad/s; {rest[-1]:.2%} still do at "
         f"{SPEEDS[-1]:g} rad/s.",
+        basis="independent",
     )
 
 

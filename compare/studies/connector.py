@@ -248,4 +248,5 @@ STUDY = Study(
     },
     only=("exudyn", "exudyn-native"),
     seconds=0.3,
+    contact=True,
 )

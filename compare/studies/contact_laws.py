@@ -146,4 +146,5 @@ STUDY = Study(
     },
     seconds=2.0,
     quick=True,
+    contact=True,
 )

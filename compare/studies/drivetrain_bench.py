@@ -153,6 +153,7 @@ def balance_claim(
         source=SOURCE,
         note="The largest of gains less losses less the growth of what is stored, over the energy turned over, "
         f"{balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
+        basis="self-check",  # the model's own law of friction gives the heat
     )
 
 

@@ -224,6 +224,7 @@ def claim_of_sticking(engine: Engine, scan: Scan) -> Part:
         + _range_of(scan.sticking, "tolerance"),
         note="Root mean square over the first stick and release of every start, against the reference at tolerance "
         "1e-13. Exponent and errors as for the sliding pin.",
+        basis="reference",
     )
     return (claim,), {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
 

@@ -175,6 +175,7 @@ def _claims_of_orders(
         source=SOURCE + f"; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m",
         note="Real and imaginary part of (x+iy) of (18) over the measured one, less 1, extrapolated in X0²; "
         "model error: the change against the extrapolation from the two larger offsets.",
+        implied_by=order_claim.sentence,
     )
     return order_claim, limit_claim
 

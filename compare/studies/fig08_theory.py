@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from compare.accuracy import ROUNDING
+from compare.answers import holds
 from compare.claim import Claim, ErrorBudget
 from compare.paper import FIG8
 from compare.studies.common import at_each, parameters_of
@@ -118,19 +119,16 @@ def corrected_claim(discs: Sequence[DiscOnDisc]) -> Claim:
 def printed_claim(discs: Sequence[DiscOnDisc]) -> Claim:
     """Count the places of (26) at which the disc would rest."""
     left = {as_printed: [_unbalanced(disc, as_printed) for disc in discs] for as_printed in (False, True)}
-    balanced = {kind: sum(force < BALANCED for force in forces) for kind, forces in left.items()}
     return Claim(
         PRINTED,
         equation="(26)",
         engine="theory",
-        predicted=[len(discs), 0.0],
-        measured=[balanced[False], balanced[True]],
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds([BALANCED - force for force in left[False]] + [force - BALANCED for force in left[True]]),
         parameters=parameters_of(RING, without=("friction_force", "offset")),
         source=SOURCE_OF_GRID,
-        note=f"Number of places, by the corrected and by the printed (26), where the force that is left is below "
-        f"{BALANCED:g}·μN, of {len(discs)}. By the corrected one it is at most {max(left[False]):.1g}·μN, by the "
-        f"printed one {min(left[True]):.2g} to {max(left[True]):.2g}·μN.",
+        note=f"Whether the force that is left at a place is below {BALANCED:g}·μN by the corrected (26), and above "
+        f"by the printed one, at {len(discs)} places each. By the corrected one it is at most "
+        f"{max(left[False]):.1g}·μN, by the printed one {min(left[True]):.2g} to {max(left[True]):.2g}·μN.",
     )
 
 

@@ -246,6 +246,7 @@ def merging_claim(found: Sequence[Orbit]) -> Claim:
         f"their size (root of the mean square distance from the centre, {math.sqrt(square[-4]):.2g} to "
         f"{math.sqrt(square[-1]):.2g} m), at zero. Model error: the change with one orbit less. So the basin of the "
         "equilibrium shrinks to nothing there.",
+        basis="reference",
     )
 
 

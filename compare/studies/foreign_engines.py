@@ -130,6 +130,7 @@ def _claim(
         parameters=parameters_of(CASES[cases[0]].system),
         source=f"Recorded on {dates}; " + "; ".join(f"{case}: {CASES[case].title}" for case in cases),
         note=f"Orders observed while the step is halved, {how} {words}.",
+        basis="independent",
     )
 
 
@@ -156,6 +157,7 @@ def _claim_of_law(sentence: str, law: Law, case: str, wanted: tuple[str, ...]) -
         note="How far it is off the exact one, recorded and extrapolated to a step of 0. Predicted by our own "
         "integration of that law, smoothed over 1e-5 m/s. Numerical error: what the last halving changes of the "
         "extrapolation, the digits that are recorded, and eight times the change at an eighth of the smoothing.",
+        basis="independent",
     )
 
 
@@ -176,6 +178,7 @@ def _claim_of_creep() -> Claim:
         unit="m",
         note="Predicted: |(1 + iωh)ⁿ − exp(iωnh)| times the radius, which is off by ω²h/2 per second to first order. "
         "Numerical error: a unit in the last digit that is recorded.",
+        basis="independent",
     )
 
 

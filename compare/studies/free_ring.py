@@ -342,6 +342,7 @@ def approach_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         note=f"A = t·(ln(8/|ln U/W|) − 2) at {at_each('A/t', NEARNESSES)}. {_described(throws)} Predicted by the "
         "integrals over the ratio. Error: the tolerance of both speeds, and the change at a "
         "smaller one. Model error: the change of the integrals if they end at the δ of the measurement.",
+        basis="reference",
     )
 
 
@@ -370,6 +371,7 @@ def ratio_other_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         note=f"U/W at {at_each('t/T', REMAINING[:3])} of the time to rest, extrapolated to zero as a power. "
         f"{_described(throws)} Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: the change "
         "from twice as far away, and at a smaller tolerance.",
+        basis="reference",
     )
 
 
@@ -437,6 +439,7 @@ def stop_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         unit="s, m, rad",
         note=f"Time to rest, x, y and angle there. {_described(throws)} Predicted by integrals over the ratio U/W, "
         "without a step in time.",
+        basis="reference",
     )
 
 
@@ -513,6 +516,7 @@ def heat_claim(engine: Engine, throws: Sequence[Throw]) -> Claim:
         source=SOURCE,
         note=f"Largest difference at any time, as a fraction of the energy at the start. {_described(throws)} "
         "Error: the tolerance, and every second sample left out of the quadrature of μN·P(U, W).",
+        basis="reference",
     )
 
 

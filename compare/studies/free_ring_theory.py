@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import quad, quad_vec
 from scipy.optimize import brentq
 
+from compare.answers import holds
 from compare.claim import Claim, ErrorBudget
 from compare.studies.common import at_each
 from compare.study import Findings
@@ -166,12 +167,10 @@ def _existence() -> Claim:
         EXISTS,
         equation="(20)",
         engine="theory",
-        predicted=[float(0.5 < inertia < 2.0) for inertia in INERTIAS],
-        measured=[float(has_ratio(inertia)) for inertia in INERTIAS],
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds([has_ratio(inertia) == (0.5 < inertia < 2.0) for inertia in INERTIAS]),
         parameters={},
         source="assumption: J/(mR²) from 0.1 to 10; limits as Goyal, Ruina and Papadopoulos 1991",
-        note=f"Whether the closed form of (20) has a balance of both decelerations (1: yes), for "
+        note=f"Whether the closed form of (20) has a balance of both decelerations, or has none, for "
         f"{at_each('J/mR²', INERTIAS)}.",
     )
 

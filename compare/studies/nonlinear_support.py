@@ -417,6 +417,7 @@ def disc_claim(engine: Engine) -> Claim:
         source="Figs. 9 and 10 with X0 = 0; β, μN and C₃ are our choice",
         unit="m, rad/s",
         note="Radius, frequency and spin of the motion that comes back turned in the engine's own flow.",
+        basis="reference",
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from compare.answers import holds
 from compare.claim import Claim, ErrorBudget
 from compare.paper import FIG11
 from compare.studies.common import ComplexArray, at_each, eigenvalues_with_rounding, parameters_of
@@ -157,13 +158,14 @@ def critical_eigenvalues(
 
 def marginal_claims(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> tuple[Claim, ...]:
     """Return how far from the imaginary axis, and from zero, the eigenvalues on the curves are."""
-    real, errors, others = [], [], 0
+    real, errors, others, roundings = [], [], [], []
     for law, disc, alpha in points_of(traced, "Hopf"):
         values, error = critical_eigenvalues(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
         frequency = abs(values[0].imag)
         real.append(values[0].real / frequency)
         errors.append(error / frequency)
-        others += int(np.count_nonzero(values[2:].real >= 0.0))
+        others += values[2:].real.tolist()
+        roundings += [error] * len(values[2:])
     zero, zero_errors = [], []
     for law, disc, alpha in points_of(traced, "fold"):
         values, error = critical_eigenvalues(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
@@ -187,10 +189,8 @@ def marginal_claims(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -
         Claim(
             BORDER,
             equation="(19)",
-            predicted=0.0,
-            measured=float(others),
-            budget=ErrorBudget(0.0, resolution=0.5),
-            note=f"Number of other eigenvalues whose real part is not negative, at {len(real)} points.",
+            **holds(-np.array(others), roundings),
+            note=f"Whether the real parts of all other eigenvalues are negative, at {len(real)} points.",
             **common,
         ),
         Claim(
@@ -350,7 +350,7 @@ def nearest(values: Sequence[float], to: float) -> list[float]:
 def hardness(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> tuple[Data, Claim]:
     """Return Re c of :mod:`reference_model.modulation` along the Hopf curves, and the claim on the ring."""
     data: Data = {}
-    ring, soft = 0, 0
+    on_ring: list[float] = []
     for (plane, law, kind), curves in traced.items():
         for i, curve in enumerate(curves if kind == "Hopf" else ()):
             growth = np.full(len(curve.alpha), np.nan)
@@ -360,19 +360,16 @@ def hardness(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> tuple
                     growth[j] = growth_by_amplitude(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
             data[f"{plane}/{law}/growth/{i}"] = growth
             if law == "ring":
-                ring += int(np.count_nonzero(np.isfinite(growth)))
-                soft += int(np.count_nonzero(growth <= 0.0))
+                on_ring += growth[np.isfinite(growth)].tolist()
     return data, Claim(
         HARD,
         equation="(19)",
         engine="theory",
-        predicted=0.0,
-        measured=float(soft),
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(on_ring),
         parameters=parameters_of(DISC),
         source=SOURCE,
-        note="Number of points of the Hopf curves at which the growth of the modulation falls with its amplitude, by "
-        f"the third-order terms of (19), of {ring} that are farther than {FAR_FROM_KINK:g} from U = W in U : W.",
+        note="Whether the growth of the modulation rises with its amplitude, by the third-order terms of (19), at "
+        f"each point of the Hopf curves that is farther than {FAR_FROM_KINK:g} from U = W in U : W.",
     )
 
 
@@ -388,9 +385,7 @@ def fig11_claims() -> tuple[Claim, Claim]:
                 sentence,
                 equation="(19), (23)",
                 engine="theory",
-                predicted=sign,
-                measured=np.sign(values[0].real) if abs(values[0].real) > error else 0.0,
-                budget=ErrorBudget(0.0, resolution=0.5),
+                **holds(sign * values[0].real, error),
                 parameters=parameters_of(DISC),
                 source="Fig. 11 with X0 = 0",
                 note=f"Sign of the largest real part. Radius {whirl.radius:.5f} m, spin {whirl.spin:.5f} rad/s, "
@@ -417,17 +412,15 @@ def pin_claim() -> Claim:
         for speed in speeds.tolist()
         for damping in np.linspace(low, high, 20).tolist()
     ]
-    unstable = sum(upper_branch_margin(pin) <= 0.0 or whirl_eigenvalues(pin)[1].real >= 0.0 for pin in pins)
+    margins = [(upper_branch_margin(pin), -whirl_eigenvalues(pin)[1].real) for pin in pins]
     return Claim(
         PIN_STABLE,
         equation="(16)",
         engine="theory",
-        predicted=0.0,
-        measured=float(unstable),
-        budget=ErrorBudget(0.0, resolution=0.5),
+        **holds(margins),
         parameters=parameters_of(DISC, without=("disc_speed", "damping")),
         source=SOURCE,
-        note=f"Number of points at which (16) or the eigenvalues say otherwise, of {len(pins)} over ω/k from 1 to "
+        note=f"Whether (16), and whether the eigenvalues say so, at {len(pins)} points over ω/k from 1 to "
         f"{speeds[-1] / K:g} and β from {low:g} to {high:g} N s/m; the load and the torsion do not matter.",
     )
 

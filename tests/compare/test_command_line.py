@@ -72,9 +72,10 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     assert process.returncode == 1
     assert process.stderr == ""  # no progress bar but on a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
-    assert process.stdout.endswith(
-        f"5 agree, 1 differs, 1 inconclusive, 4 failed ({folder / 'index.html'})\n"
+    first = (
+        "4 agree on independent evidence; 1 of algebra agrees besides; 1 differs, 1 inconclusive, 4 failed"
     )
+    assert process.stdout.endswith(f"{first} ({folder / 'index.html'})\n")
 
 
 def test_a_report_without_differences_ends_with_status_0(command, tmp_path):
@@ -82,18 +83,26 @@ def test_a_report_without_differences_ends_with_status_0(command, tmp_path):
         "report", "agreement", "--engine", "good", "--output", "new/folder", fake=True, cwd=tmp_path
     )
     assert (process.returncode, process.stderr) == (0, "")
-    assert (
-        process.stdout
-        == f"1 agrees, 0 differ, 0 inconclusive ({os.path.join('new', 'folder', 'index.html')})\n"
-    )
+    totals, page = "1 agrees on independent evidence; 0 differ, 0 inconclusive", os.path.join("new", "folder")
+    assert process.stdout == f"{totals} ({os.path.join(page, 'index.html')})\n"
 
 
 @pytest.mark.parametrize(
     ("study", "engine", "status", "totals"),
     [
-        ("verdicts", "straight", 1, "3 agree, 1 differs, 1 inconclusive"),
-        ("verdicts", "failing", 1, "1 agrees, 0 differ, 0 inconclusive, 1 failed"),
-        ("inconclusive", "straight", 0, "0 agree, 0 differ, 1 inconclusive"),
+        (
+            "verdicts",
+            "straight",
+            1,
+            "2 agree on independent evidence; 1 of algebra agrees besides; 1 differs, 1 inconclusive",
+        ),
+        (
+            "verdicts",
+            "failing",
+            1,
+            "0 agree on independent evidence; 1 of algebra agrees besides; 0 differ, 0 inconclusive, 1 failed",
+        ),
+        ("inconclusive", "straight", 0, "0 agree on independent evidence; 0 differ, 1 inconclusive"),
     ],
 )
 def test_status_of_a_report(study, engine, status, totals, tmp_path, capsys):
@@ -127,7 +136,7 @@ def test_a_system_that_an_engine_is_not_made_for_is_no_failure(tmp_path, capsys)
     lacking = "fake_studies:straight does not simulate a disc on single points or a disc on a continuous ring"
     assert lines == [
         f"partly fake_studies:straight not simulated: {lacking}",
-        f"1 agrees, 0 differ, 0 inconclusive, 1 not simulated ({tmp_path / 'index.html'})",
+        f"1 agrees on independent evidence; 0 differ, 0 inconclusive, 1 not simulated ({tmp_path / 'index.html'})",
     ]
 
 

@@ -9,8 +9,8 @@ import xml.etree.ElementTree as ET
 import pytest
 from processes import ROOT
 
+from compare.claim import THEORY
 from compare.claim_list import sentences
-from compare.runner import THEORY
 from compare.studies import STUDIES
 
 ENGINES = """

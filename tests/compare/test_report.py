@@ -72,7 +72,10 @@ def results(reported):
 def test_the_totals_are_those_of_the_claims(results, page):
     gaps = {"failed": 4, "missing": 0, "not simulated": 0}
     assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
-    assert "5 agree, 1 differs, 1 inconclusive, 4 failed." in page
+    assert (
+        "4 agree on independent evidence; 1 of algebra agrees besides; 1 differs, 1 inconclusive, 4 failed."
+        in page
+    )
     verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
     for verdict in ("agrees", "differs", "inconclusive"):
         assert verdicts.count(verdict) == results["totals"][verdict]
@@ -102,9 +105,9 @@ def test_an_array_shows_its_worst_element(results, cells):
         c for study in results["studies"] for c in study["claims"] if isinstance(c["predicted"], list)
     ]
     worst = max(range(21), key=lambda i: claim["difference"][i])
-    shown = [cell for cell in cells.cells if "worst of 21" in cell[3]]
+    shown = [cell for cell in cells.cells if "of 21" in cell[3]]
     assert [cell[4] for cell in shown] == [[claim["predicted"][worst]]]
-    assert f"worst of 21: no. {worst + 1}" in shown[0][3]
+    assert f"no. {worst + 1} of 21" in shown[0][3]
 
 
 def test_the_matrix_says_every_verdict_in_a_word_and_a_mark(cells):
@@ -223,7 +226,7 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
     assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
-    assert summary(matrix) == "7 agree, 0 differ, 0 inconclusive, 5 not simulated"
+    assert summary(matrix) == "7 agree on independent evidence; 0 differ, 0 inconclusive, 5 not simulated"
     assert set(result.data(RING_ONLY)) == {"all"}  # the others have nothing to draw
 
 
@@ -242,6 +245,7 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
         for table in ("overview", "matrix")
     }
     assert said["overview"] == [
+        "2 of 2 agree",  # independent evidence
         "2 of 2 agree, 2 not simulated",
         "2 of 2 agree, 1 not simulated",
         "1 not simulated",
@@ -292,7 +296,7 @@ def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
     (row,) = matrix.groups[0].rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
-    assert summary(matrix) == "0 agree, 0 differ, 0 inconclusive, 1 not simulated"
+    assert summary(matrix) == "0 agree on independent evidence; 0 differ, 0 inconclusive, 1 not simulated"
 
 
 def recorded():
@@ -358,7 +362,7 @@ def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_rep
         *("ours 0.1, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
     ]
     assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
-    assert "1 agrees, 0 differ, 0 inconclusive." in page
+    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive." in page
     assert "4 agree, 2 differ, 0 inconclusive." in page
 
 

@@ -160,7 +160,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
     assert process.returncode == 130
     missing = "unending also-good, unending failing"
     assert err == f"Interrupted; missing: {missing}. The same command with --resume completes it.\n"
-    assert "1 agrees, 0 differ, 0 inconclusive, 2 missing" in out
+    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
     results = json.loads((output / "results.json").read_text(encoding="utf-8"))
     assert results["interrupted"]
     states = {engine: unit["state"] for engine, unit in results["studies"][0]["units"].items()}
