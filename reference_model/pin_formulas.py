@@ -465,6 +465,34 @@ def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
     return _mirrored(pin, error.conjugate())
 
 
+def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
+    """Third order in X0 of the whirl's mean over its first order, to leading order in d = β/(mk): its imaginary part.
+
+    With lengths in units of ρ_c and τ = kt, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ). Damping
+    and friction, both of order d, choose ρ and σ, and add −d times the mean direction of slip to the mean. Slip has
+    the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and
+    b = (2w − 1)σ/ρ, of which these harmonics are left, to third order::
+
+        exp(iτ)   1 − a²/4           = ρ
+        exp(−iτ)  b/2 − a²/8         = −σ
+        mean      a/2 + a³/16 − ab/4
+
+    so that σ = a²/(4(2w + 1)), and the mean is X0·(1 + ½idw) to first order and, relative to it, to third::
+
+        i·d·w(w + 1)/(4(2w + 1))·(wX0/ρ_c)²
+
+    Raises
+    ------
+    ValueError
+        As :func:`whirl_radius`.
+
+    """
+    _require_whirl(pin)
+    d, w = _relative_damping(pin), _speed_ratio(pin)
+    turn = w * pin.offset / whirl_radius(pin)
+    return _turning_direction(pin) * d * w * (w + 1.0) / (4.0 * (2.0 * w + 1.0)) * turn**2
+
+
 # ---------------------------------------------------------------- terms and conditions that several share
 
 

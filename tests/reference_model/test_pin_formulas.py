@@ -276,6 +276,7 @@ def test_slow_disc_brakes_the_whirl_instead_of_driving_it(frequency):
         formulas.whirl_shift,
         formulas.first_order_whirl_shift,
         formulas.whirl_shift_error_limit,
+        formulas.third_order_of_whirl_shift,
     ],
 )
 def test_formulas_of_the_whirl_are_refused_where_there_is_none(formula, changes, message):
@@ -503,6 +504,24 @@ def test_18_balances_the_mean_force_on_a_shifted_circle(pin):
 
     offset = 0.02 * formulas.whirl_radius(pin)
     assert np.log2(mean_force(offset) / mean_force(offset / 2.0)) == pytest.approx(3.0, abs=0.05)
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
+    """What the formula leaves out is of the order d relative to it, and halves with the damping."""
+    offset, errors = 2e-3, []
+    for damping in (0.02, 0.01):
+        # Damping and load fall together, so that the radius of the whirl remains.
+        weak = replace(
+            pin, damping=damping * pin.mass * pin.natural_frequency, friction_force=1.0, offset=0.0
+        )
+        load = pin.stiffness * weak.damping / (pin.mass * pin.natural_frequency)  # ρ_c = 1 m
+        small = replace(weak, friction_force=load, offset=offset)
+        first = complex(*formulas.first_order_whirl_shift(small))
+        relative = whirl_with_offset(small)[0][0] / first - 1.0
+        errors.append(abs(relative / (1j * formulas.third_order_of_whirl_shift(small)) - 1.0))
+    assert errors[1] < 0.1
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
 
 
 def test_18_is_exact_in_first_order_at_twice_the_natural_frequency_only():

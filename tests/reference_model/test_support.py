@@ -152,6 +152,7 @@ OF_A_PIN = {
     "first-order response": pin_formulas.first_order_whirl_response,
     "first-order shift": pin_formulas.first_order_whirl_shift,
     "limit of the error of 18": pin_formulas.whirl_shift_error_limit,
+    "third order of the shift": pin_formulas.third_order_of_whirl_shift,
     "10": lambda pin: simulate_polar_form(pin, np.array([0.3, 0.0, 0.0, 0.3]), np.linspace(0.0, 0.1, 3)),
 }
 OF_A_DISC = {
@@ -214,6 +215,7 @@ REFUSING = {
     "resonant_disc_speed", "variational_matrix", "characteristic_coefficients",
     "characteristic_coefficients_as_printed", "coefficient_margins", "lower_branch_margin", "upper_branch_margin",
     "whirl_shift", "first_order_whirl_response", "first_order_whirl_shift", "whirl_shift_error_limit",
+    "third_order_of_whirl_shift",
     "simulate_polar_form", "reduced_parameters", "speed_difference_at", "squared_distance",
     "squared_distance_as_printed", "places_by_26", "whirl_at", "smallest_load_with_whirl", "growth_by_amplitude",
     "whirl_arm", "least_load_with_whirl", "stick_slip_orbits",
