@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -155,7 +155,11 @@ def report(
     ] = None,
     resume: Annotated[
         bool,
-        typer.Option("--resume", help="Keep what the same version of everything has already measured there."),
+        typer.Option(
+            "--resume",
+            help="Keep what the same code and libraries have already measured there. "
+            "Files of data that an engine of your own reads are not looked at.",
+        ),
     ] = False,
 ) -> int:
     """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
@@ -191,6 +195,8 @@ def report(
             errata=ERRATA if context.obj is None and not names else (),  # part of the whole paper only
             progress=progress,
         )
+    if resume:
+        _tell_unknown(result.unknown)
     with interrupts_ignored():  # a second or so, and then nothing is half written
         matrix = write_report(result, output)
     _print_summary(result, matrix, output / "index.html")
@@ -506,6 +512,12 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     for what, failure in _failures(result).items():
         print(f"{what}: {failure.reason}")
     print(f"{summary(matrix)} ({index})")
+
+
+def _tell_unknown(unknown: Mapping[str, str]) -> None:
+    """Say what could not be taken from an earlier run, and why."""
+    for name, reason in unknown.items():
+        say(f"{name} is measured anew, since what it depends on can't be seen: {reason}", FINE)
 
 
 def _print_judged(judged: Judged, page: Path) -> None:
