@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -23,18 +23,23 @@ from compare.command_input import (
     MOST_SAMPLES,
     SOMETHING_DIFFERS,
     BadInputError,
+    Command,
     EngineFailedError,
+    InterruptedByUserError,
     Settings,
     Tolerance,
     changed,
     check_folder,
+    close_output,
     cores,
     count,
     positive,
+    printing,
     refused,
     say,
 )
 from compare.sweep.cli import sweep
+from compare.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
     from compare.faults import Fault
@@ -69,24 +74,24 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
     # public names only: typer brings its own copy of click or takes the installed one
     usage_error: type[Exception] = typer.BadParameter.__mro__[1]
     try:
-        result = app(list(arguments), standalone_mode=False, obj=studies, prog_name="friction-discs")
-        sys.stdout.flush()
+        with printing():
+            result = app(list(arguments), standalone_mode=False, obj=studies, prog_name="friction-discs")
     except (BadInputError, usage_error) as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
         return say(" ".join(message.split()), BAD_INPUT)
     except EngineFailedError as error:
         return say(str(error), SOMETHING_DIFFERS)
+    except SystemExit as end:
+        if not isinstance(end.__context__, BrokenPipeError):  # which typer ends with status 1
+            raise
+        close_output()
+        return FINE
     except OSError as error:
-        _close_output()
+        close_output()
         return say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
-    except (KeyboardInterrupt, typer.Abort):
+    except (KeyboardInterrupt, InterruptedByUserError, typer.Abort):
         return say("Interrupted.", INTERRUPTED)
     return result if isinstance(result, int) else FINE
-
-
-def _close_output() -> None:
-    """Leave nothing behind that would be written once more, and fail again, at the end of the process."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @app.callback(invoke_without_command=True)
@@ -114,7 +119,7 @@ def friction_discs(
         print(context.get_help())
 
 
-@app.command("list")
+@app.command("list", cls=Command)
 def list_studies(context: typer.Context) -> None:
     """List the studies and the engines.
 
@@ -126,14 +131,14 @@ def list_studies(context: typer.Context) -> None:
 
     studies = _studies(context, [])
     width = max((len(study.name) for study in studies), default=0)
+    usual, others = (", ".join(engine.name for engine in some) for some in (engines(), on_request()))
     print("Studies:")
     for study in studies:
         print(f"  {study.name:{width}}  {study.title}")
-    usual, others = (", ".join(engine.name for engine in some) for some in (engines(), on_request()))
     print(f"Engines: {usual}; on request {others}")
 
 
-@app.command()
+@app.command(cls=Command)
 def report(
     context: typer.Context,
     names: Annotated[
@@ -155,7 +160,11 @@ def report(
     ] = None,
     resume: Annotated[
         bool,
-        typer.Option("--resume", help="Keep what the same version of everything has already measured there."),
+        typer.Option(
+            "--resume",
+            help="Keep what the same code and libraries have already measured there. "
+            "Files of data that an engine of your own reads are not looked at.",
+        ),
     ] = False,
 ) -> int:
     """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
@@ -191,9 +200,12 @@ def report(
             errata=ERRATA if context.obj is None and not names else (),  # part of the whole paper only
             progress=progress,
         )
+    if resume:
+        _tell_unknown(result.unknown)
     with interrupts_ignored():  # a second or so, and then nothing is half written
         matrix = write_report(result, output)
-    _print_summary(result, matrix, output / "index.html")
+    with printing():
+        _print_summary(result, matrix, output / "index.html")
     if result.interrupted:
         missing = ", ".join(f"{study} {column}" for study, column in result.missing) or "figures"
         return say(
@@ -202,7 +214,7 @@ def report(
     return SOMETHING_DIFFERS if _wrong(result, matrix) else FINE
 
 
-@app.command()
+@app.command(cls=Command)
 def judge(
     context: typer.Context,
     names: Annotated[
@@ -261,7 +273,8 @@ def judge(
         )
     with interrupts_ignored():
         judging.write_judged(judged, output)
-    _print_judged(judged, output / "judge.html")
+    with printing():
+        _print_judged(judged, output / "judge.html")
     if judged.interrupted:
         return say("Interrupted. The same command with --resume completes it.", INTERRUPTED)
     return FINE if judged.good else SOMETHING_DIFFERS
@@ -304,7 +317,7 @@ def simulate_system() -> None:
     """
 
 
-@simulate.command("pin")
+@simulate.command("pin", cls=Command)
 def simulate_pin(
     engine: EngineName = "reference",
     settings: Settings = None,
@@ -331,7 +344,7 @@ def simulate_pin(
     _simulate(FIG5, engine, settings or [], start, until, samples, tolerance, output)
 
 
-@simulate.command("disc")
+@simulate.command("disc", cls=Command)
 def simulate_disc(
     engine: EngineName = "reference",
     settings: Settings = None,
@@ -392,14 +405,11 @@ def _simulate(
     except Exception as error:  # whatever an engine raises
         raise EngineFailedError(_failed(chosen.name, error)) from error
     if output is None:
-        try:
+        with printing():
             write(trajectory, chosen.name, sys.stdout)
-            sys.stdout.flush()
-        except BrokenPipeError:  # the reader, "head" for instance, has seen enough
-            _close_output()
         return
     try:
-        with open(output, "w", encoding="utf-8", newline="\n") as stream:
+        with replacing(output) as stream:
             write(trajectory, chosen.name, stream)
     except OSError as error:
         raise BadInputError(_unwritable(output, error)) from None
@@ -419,7 +429,7 @@ def _unwritable(path: Path, error: OSError) -> str:
     return f"can't write the file {str(path)!r}: {error.strerror}"
 
 
-@app.command()
+@app.command(cls=Command)
 def errata() -> None:
     """Print where the paper's formulas are wrong, their corrections, and the numbers that show it.
 
@@ -463,15 +473,10 @@ def _faults(names: Sequence[str]) -> tuple[Fault, ...]:
 
 def _check_file(path: Path) -> None:
     """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
-    existed = path.exists()
     try:
-        with open(path, "ab"):
-            pass
+        check_writable(path)
     except OSError as error:
         raise ValueError(_unwritable(path, error)) from None
-    if not existed:
-        with suppress(OSError):
-            path.unlink()
 
 
 @contextmanager
@@ -506,6 +511,12 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     for what, failure in _failures(result).items():
         print(f"{what}: {failure.reason}")
     print(f"{summary(matrix)} ({index})")
+
+
+def _tell_unknown(unknown: Mapping[str, str]) -> None:
+    """Say what could not be taken from an earlier run, and why."""
+    for name, reason in unknown.items():
+        say(f"{name} is measured anew, since what it depends on can't be seen: {reason}", FINE)
 
 
 def _print_judged(judged: Judged, page: Path) -> None:

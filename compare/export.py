@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import TextIO
+from typing import IO
 
 from compare.store import version_of
 from reference_model.systems import DiscOnDisc, PinOnDisc, System
@@ -26,14 +26,14 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
 """Name and unit of each state of a system."""
 
 
-def writer(path: Path) -> Callable[[Trajectory, str, TextIO], None]:
+def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:
     """Return the function for the ending of ``path``; raise ``ValueError`` if there is none."""
     if path.suffix not in WRITERS:
         raise ValueError(f"can't tell the format of {path.name!r}: it must end in {' or '.join(WRITERS)}")
     return WRITERS[path.suffix]
 
 
-def write_csv(trajectory: Trajectory, engine: str, stream: TextIO) -> None:
+def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
     """Write a line of column names with units, then a line for each time; numbers in full."""
     header = [("t", "s"), *COLUMNS[type(trajectory.system)]]
     stream.write(",".join(f"{name} [{unit}]" for name, unit in header) + "\n")
@@ -41,7 +41,7 @@ def write_csv(trajectory: Trajectory, engine: str, stream: TextIO) -> None:
         stream.write(",".join(repr(float(value)) for value in (time, *state)) + "\n")
 
 
-def write_json(trajectory: Trajectory, engine: str, stream: TextIO) -> None:
+def write_json(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
     """Write the motion with all that is known about it: parameters, phases, and how it was computed."""
     columns = COLUMNS[type(trajectory.system)]
     content = {
@@ -68,4 +68,4 @@ def write_json(trajectory: Trajectory, engine: str, stream: TextIO) -> None:
     stream.write("\n")
 
 
-WRITERS: dict[str, Callable[[Trajectory, str, TextIO], None]] = {".csv": write_csv, ".json": write_json}
+WRITERS: dict[str, Callable[[Trajectory, str, IO[str]], None]] = {".csv": write_csv, ".json": write_json}

@@ -20,8 +20,8 @@ from compare.engines import Engine
 from compare.repetitions import REPEATED, REPETITIONS
 from compare.report.stamp import platform_stamp
 from compare.runner import Run, run
-from compare.store import write_text
 from compare.study import Findings, Study
+from compare.text_files import write_text
 from compare.workers import Failure
 
 if TYPE_CHECKING:

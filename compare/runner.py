@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from compare.claim import THEORY
+from compare.code_files import UnknownCodeError
 from compare.engines import Engine, UnsupportedSystemError
 from compare.errata import Erratum, Evidence
+from compare.fingerprint import fingerprint
 from compare.report.style import paper_style, saved
-from compare.store import Store, stamp
+from compare.store import PACKAGES, Store, stamp
 from compare.study import Data, Findings, Study
 from compare.workers import Done, Failure, Workers
 
@@ -46,6 +48,8 @@ class Run:
         Drawing or failure for each study.
     evidence : dict
         Evidence or failure for each erratum, by its place in ``errata``.
+    unknown : dict
+        Why a study or an engine is always measured anew, by its name: what it depends on can't be seen.
     interrupted : bool
         Whether Ctrl-C came before all was done.
 
@@ -60,6 +64,7 @@ class Run:
     seconds: dict[tuple[str, str], float] = field(default_factory=dict)
     drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
     evidence: dict[int, Evidence | Failure] = field(default_factory=dict)
+    unknown: dict[str, str] = field(default_factory=dict)
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
@@ -149,7 +154,8 @@ class _Runner:
         self._workers = workers
         self._store = store
         self._progress = progress
-        self._stamps: dict[tuple[str, str], str] = {}
+        self._stamps: dict[tuple[str, str], str | None] = {}
+        self._prints: dict[int, str | None] = {}
 
     def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
         result = self._result
@@ -159,10 +165,7 @@ class _Runner:
             for column in result.columns(study)
         }
         for key, (study, engine) in work.items():
-            simulate = () if engine is None else (engine.function,)
-            self._stamps[key] = stamp(study.measure, *simulate)
-            if engine is not None and engine.contact_only:  # less is measured
-                self._stamps[key] += ", contact only"
+            self._stamps[key] = self._stamp(study, engine)
             found = self._store.find(*key, self._stamps[key]) if resume else None
             if found is None:
                 self._workers.submit(key, measured, study, engine)
@@ -178,6 +181,24 @@ class _Runner:
         for finished in self._workers.finished():
             done += 1
             self._progress(done, total, self._take(finished))
+
+    def _stamp(self, study: Study, engine: Engine | None) -> str | None:
+        """Return what the findings depend on, None where that is not known."""
+        what = (
+            {study.name: study.theory} if engine is None else {study.name: study.measure, engine.name: engine}
+        )
+        prints = [self._fingerprint(name, thing) for name, thing in what.items()]
+        return None if None in prints else stamp(*filter(None, prints))
+
+    def _fingerprint(self, name: str, thing: object) -> str | None:
+        """Return what ``thing`` depends on besides the packages; file why that is not known."""
+        if id(thing) not in self._prints:
+            try:
+                self._prints[id(thing)] = fingerprint(thing, PACKAGES)
+            except UnknownCodeError as error:
+                self._prints[id(thing)] = None
+                self._result.unknown[name] = str(error)
+        return self._prints[id(thing)]
 
     def _take(self, done: Done) -> str:
         """File what is finished where it belongs and return its name."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 import math
-import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -20,6 +18,7 @@ import numpy as np
 
 from compare.claim import Claim, ErrorBudget
 from compare.study import Findings
+from compare.text_files import replacing, write_text
 from reference_model.systems import FloatArray
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -42,13 +41,12 @@ class Store:
 
     folder: Path
 
-    def keep(self, study: str, engine: str, stamp: str, findings: Findings, seconds: float) -> None:
-        """Write the findings; a file that is there is complete."""
+    def keep(self, study: str, engine: str, stamp: str | None, findings: Findings, seconds: float) -> None:
+        """Write the findings; a file that is there is complete. Without a stamp they are never found again."""
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self._path(study, engine)
-        with open(path.with_suffix(".npz.part"), "wb") as stream:
+        with replacing(path.with_suffix(".npz"), "wb") as stream:
             np.savez_compressed(stream, **findings.data)  # type: ignore[arg-type]
-        os.replace(path.with_suffix(".npz.part"), path.with_suffix(".npz"))
         content = {
             "study": study,
             "engine": engine,
@@ -59,12 +57,12 @@ class Store:
         }
         write_text(path.with_suffix(".json"), json.dumps(content, indent=1, ensure_ascii=False))
 
-    def find(self, study: str, engine: str, stamp: str) -> tuple[Findings, float] | None:
+    def find(self, study: str, engine: str, stamp: str | None) -> tuple[Findings, float] | None:
         """Return findings and their seconds if they are there, legible, and of this stamp."""
         path = self._path(study, engine)
         try:
             content = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-            if content["stamp"] != stamp:
+            if stamp is None or content["stamp"] != stamp:
                 return None
             claims = tuple(claim_from_json(claim) for claim in content["claims"])
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
@@ -78,25 +76,9 @@ class Store:
         return self.folder / re.sub(r"[^\w-]", "_", f"{study}--{engine}")
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a file that is either the old or the new one, whole, at every moment."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
-
-
-def stamp(
-    *functions: Callable[..., Any], code: Sequence[str] = PACKAGES, libraries: Sequence[str] = LIBRARIES
-) -> str:
-    """Return what findings depend on: packages or modules ``code``, the modules of ``functions``, libraries."""
-    digest = hashlib.sha256(_digest(ROOT, tuple(code)).encode())
-    for function in functions:
-        try:
-            source = inspect.getsourcefile(inspect.unwrap(function))
-        except TypeError:  # an object with __call__
-            source = inspect.getsourcefile(type(function))
-        if source is not None:
-            digest.update(Path(source).read_bytes())
+def stamp(*fingerprints: str, code: Sequence[str] = PACKAGES, libraries: Sequence[str] = LIBRARIES) -> str:
+    """Return what findings depend on: packages or modules ``code``, libraries, and what else has a fingerprint."""
+    digest = hashlib.sha256("".join([_digest(ROOT, tuple(code)), *fingerprints]).encode())
     versions = " ".join(f"{name}-{version_of(name)}" for name in libraries)
     return f"{version_of('friction-discs')} {digest.hexdigest()[:16]} {versions}"
 

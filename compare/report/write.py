@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 from compare.report.junit import junit
@@ -12,7 +11,7 @@ from compare.report.page import page
 from compare.report.results import results
 from compare.report.stamp import platform_stamp
 from compare.runner import Drawing, Run
-from compare.store import write_text
+from compare.text_files import replacing, write_text
 
 
 def write_report(run: Run, output: Path) -> Matrix:
@@ -35,6 +34,5 @@ def _write_pictures(drawing: Drawing, folder: Path) -> None:
     for name, (svg, png) in drawing.figures.items():
         files |= {f"{name}.svg": svg, f"{name}.png": png}
     for name, content in files.items():
-        part = folder / f"{name}.part"
-        part.write_bytes(content)
-        os.replace(part, folder / name)
+        with replacing(folder / name, "wb") as stream:
+            stream.write(content)

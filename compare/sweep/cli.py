@@ -16,12 +16,14 @@ from compare.command_input import (
     INTERRUPTED,
     SOMETHING_DIFFERS,
     BadInputError,
+    Command,
     Settings,
     Tolerance,
     changed,
     check_folder,
     count,
     positive,
+    printing,
     refused,
     say,
 )
@@ -125,7 +127,7 @@ def sweep_command() -> None:
     """  # noqa: D301
 
 
-@sweep.command("basin")
+@sweep.command("basin", cls=Command)
 def sweep_basin(
     system: SystemName,
     settings: Settings = None,
@@ -182,7 +184,7 @@ def sweep_basin(
     return _sweep(plan, chunk, scheduler, output, resume)
 
 
-@sweep.command("map")
+@sweep.command("map", cls=Command)
 def sweep_map(
     system: SystemName,
     settings: Settings = None,
@@ -223,7 +225,7 @@ def sweep_map(
     return _sweep(plan, chunk, scheduler, output, resume)
 
 
-@sweep.command("uncertainty")
+@sweep.command("uncertainty", cls=Command)
 def sweep_uncertainty(
     system: SystemName,
     settings: Settings = None,
@@ -281,7 +283,7 @@ def sweep_uncertainty(
     return _sweep(plan, chunk, scheduler, output, resume)
 
 
-@sweep.command("figures")
+@sweep.command("figures", cls=Command)
 def sweep_figures(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished sweep.")],
 ) -> None:
@@ -440,10 +442,11 @@ def _finish(store: SweepStore, folder: Path) -> int:
     from compare.sweep.figures import write_figures
     from compare.sweep.summary import same_ends, summary
 
-    for line in summary(store):
-        print(line)
     written = write_figures(store, folder)
-    print(f"Results: {store.path}; figures: {', '.join(str(path) for path in written)}")
+    with printing():
+        for line in summary(store):
+            print(line)
+        print(f"Results: {store.path}; figures: {', '.join(str(path) for path in written)}")
     return FINE if same_ends(store) else SOMETHING_DIFFERS
 
 

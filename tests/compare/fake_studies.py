@@ -168,6 +168,18 @@ COUNTED = Study(
 )
 
 
+MEASURED = []
+"""Names of the engines that ``measure_motion`` was called with."""
+
+
+def measure_motion(engine):
+    MEASURED.append(engine.name)
+    return Findings(data={"end": engine.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0]).at_end})
+
+
+MOTION = Study("motion", "Where a pin is after 1 s", "Somewhere.", measure_motion, draw_nothing)
+
+
 def measure_too_roughly(engine):
     return Findings((claim("Nothing is shown", engine.name, 2.0, 2.1, 0.5),))
 

@@ -3,10 +3,11 @@ import json
 import numpy as np
 from fake_studies import GOOD, claim, measure_verdicts, straight
 
-from compare.store import Store, claim_as_json, claim_from_json, stamp
+from compare.fingerprint import fingerprint
+from compare.store import PACKAGES, Store, claim_as_json, claim_from_json, stamp
 from compare.study import Findings
 
-NOW = stamp(straight)
+NOW = stamp(fingerprint(straight, PACKAGES))
 
 
 def same(a, b):
@@ -57,5 +58,6 @@ def test_engines_of_ones_own_have_files_of_their_own(tmp_path):
 
 
 def test_the_stamp_knows_the_code_of_the_engine_and_of_the_packages():
-    assert stamp(straight) == NOW
-    assert stamp(json.dumps) != NOW
+    assert stamp(fingerprint(straight, PACKAGES)) == NOW
+    assert stamp(fingerprint(json.dumps, PACKAGES)) != NOW
+    assert stamp(fingerprint(straight, PACKAGES), code=("reference_model",)) != NOW

@@ -22,6 +22,7 @@ BESIDE = {
     "compare.sweep.figures",
     "compare.sweep.stamp",
     "compare.sweep.summary",
+    "compare.text_files",
 }
 """Names, where the work is done, what is said and drawn of it, and this stamp itself: they change no number."""
 

@@ -1,0 +1,106 @@
+"""Files are the old or the new ones, whole, whatever happens while they are written."""
+
+import errno
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from compare import cli
+from compare.export import WRITERS
+from compare.text_files import check_writable, replacing
+
+OLD = "old\n"
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "folder" / "pin.csv"
+    path.parent.mkdir()
+    path.write_text(OLD)
+    return path
+
+
+def alone(path):
+    return [one.name for one in path.parent.iterdir()] == [path.name]
+
+
+def fail_to_write(path, error):
+    with replacing(path) as stream:
+        stream.write("half of the new o")
+        stream.flush()
+        raise error
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
+def test_the_older_file_stays_when_writing_fails(error, file):
+    with pytest.raises(error):
+        fail_to_write(file, error)
+    assert file.read_text() == OLD
+    assert alone(file)
+
+
+def test_nothing_is_left_where_there_was_no_file(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        fail_to_write(tmp_path / "new.csv", KeyboardInterrupt)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_leads_to_the_new_file_which_may_be_read_by_whoever_read_the_older_one(file, tmp_path):
+    file.chmod(0o640)
+    link = tmp_path / "link.csv"
+    link.symlink_to(file)
+    with replacing(link) as stream:
+        stream.write("new\n")
+    assert link.is_symlink()
+    assert file.read_text() == "new\n"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o640
+    assert alone(file)
+
+
+def test_what_is_no_ordinary_file_is_written_to_as_it_is():
+    with replacing(Path(os.devnull)) as stream:
+        stream.write("new\n")
+    assert not Path(os.devnull).is_file()
+
+
+def test_a_check_leaves_everything_as_it_is(file):
+    before = file.stat()
+    check_writable(file)
+    check_writable(file.with_name("new.csv"))
+    assert (file.stat().st_mtime_ns, file.stat().st_ino) == (before.st_mtime_ns, before.st_ino)
+    assert alone(file)
+    with pytest.raises(IsADirectoryError):
+        check_writable(file.parent)
+
+
+FAILURES = [
+    (KeyboardInterrupt(), 130, "Interrupted.\n"),
+    (
+        OSError(errno.ENOSPC, "No space left on device"),
+        2,
+        "can't write the file {path!r}: No space left on device\n",
+    ),
+]
+
+
+@pytest.mark.parametrize("kind", ["csv", "json"])
+@pytest.mark.parametrize(("error", "status", "sentence"), FAILURES, ids=["Ctrl-C", "full disk"])
+def test_a_motion_that_is_only_half_written_leaves_the_older_file(
+    kind, error, status, sentence, file, monkeypatch, capsys
+):
+    path = file.rename(file.with_suffix(f".{kind}"))
+    whole = WRITERS[path.suffix]
+
+    def failing(trajectory, engine, stream):
+        whole(trajectory, engine, stream)
+        stream.flush()
+        raise error
+
+    monkeypatch.setitem(WRITERS, path.suffix, failing)
+    arguments = ["simulate", "pin", "--until", "1", "--samples", "3", "--output", str(path)]
+    assert cli.status(arguments) == status
+    assert capsys.readouterr().err == sentence.format(path=str(path))
+    assert path.read_text() == OLD
+    assert alone(path)
