@@ -1,6 +1,8 @@
 """What each study claims of engines, known before anything is measured: ``claims.json`` beside the studies.
 
-It is taken from reports with all of the project's engines. A claim that changes needs its study's part anew::
+With every sentence stands its basis, and the claim that implies it, see ``compare.claim.Claim``: with the name of an
+engine they say what kind of evidence it is. The file is taken from reports with all of the project's engines. A claim
+that changes needs its study's part anew::
 
     friction-discs report trajectories
     python -m compare.claim_list report/results.json
@@ -11,24 +13,40 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import TypedDict
+
+from compare.claim import THEORY, Basis
 
 PATH = Path(__file__).with_name("studies") / "claims.json"
 
-Sentences = dict[str, list[str]]
+
+class Listed(TypedDict):
+    """What is known of a claim besides its sentence; ``implied_by`` is the sentence of another one, or ""."""
+
+    basis: Basis
+    implied_by: str
 
 
-def sentences() -> Sentences:
+Claims = dict[str, dict[str, Listed]]
+"""By the study's name and by their sentences."""
+
+
+def listed_claims() -> Claims:
+    """Return the claims that each study makes of engines."""
+    claims: Claims = json.loads(PATH.read_text(encoding="utf-8"))
+    return claims
+
+
+def sentences() -> dict[str, list[str]]:
     """Return the sentences that each study claims of engines, by the study's name."""
-    listed: Sentences = json.loads(PATH.read_text(encoding="utf-8"))
-    return listed
+    return {study: list(claims) for study, claims in listed_claims().items()}
 
 
-def renewed(listed: Sentences, results: Path) -> Sentences:
+def renewed(listed: Claims, results: Path) -> Claims:
     """Return ``listed`` with what the report of ``results``, a ``results.json``, measured; in report order.
 
     Raises ``ValueError`` if an engine of the project is missing there, or has no result.
     """
-    from compare.claim import THEORY
     from compare.engines import engines
     from compare.report.matrix import State
     from compare.studies import STUDIES
@@ -38,16 +56,32 @@ def renewed(listed: Sentences, results: Path) -> Sentences:
     lost = [state.value for state in (State.FAILED, State.MISSING) if report["totals"][state.value]]
     if missing or lost:
         raise ValueError(f"{results} is not complete: {', '.join([*sorted(missing), *lost])}")
-    found = {
-        study["name"]: list(
-            dict.fromkeys(claim["sentence"] for claim in study["claims"] if claim["engine"] != THEORY)
-        )
+    found: Claims = {
+        study["name"]: {
+            claim["sentence"]: {"basis": claim["basis"], "implied_by": claim["implied_by"]}
+            for claim in study["claims"]
+            if claim["engine"] != THEORY
+        }
         for study in report["studies"]
     }
     both = listed | found
     return {study.name: both[study.name] for study in STUDIES if both.get(study.name)}
 
 
+def as_text(listed: Claims) -> str:
+    """Return the file's text: a line for each claim."""
+
+    def written(value: object) -> str:
+        return json.dumps(value, ensure_ascii=False)
+
+    studies = (
+        f" {written(study)}: {{\n"
+        + ",\n".join(f"  {written(sentence)}: {written(claim)}" for sentence, claim in claims.items())
+        + "\n }"
+        for study, claims in listed.items()
+    )
+    return "{\n" + ",\n".join(studies) + "\n}\n"
+
+
 if __name__ == "__main__":
-    text = json.dumps(renewed(sentences(), Path(sys.argv[1])), ensure_ascii=False, indent=1)
-    PATH.write_text(text + "\n", encoding="utf-8", newline="\n")
+    PATH.write_text(as_text(renewed(listed_claims(), Path(sys.argv[1]))), encoding="utf-8", newline="\n")

@@ -73,7 +73,7 @@ def _verdict(claim: Claim, cell: Cell) -> dict[str, Any]:
     element = worst(claim)
     return claim_as_json(claim) | {
         "evidence": cell.evidence,
-        "implied_by": cell.implied_by,
+        "follows_from": cell.implied_by,
         "decided_by": {
             "element": element.index,
             "difference": number_as_json(element.difference),

@@ -37,6 +37,52 @@ def test_one_element_of_an_array_decides_for_all():
     assert worst(differing).difference == 3e-9
 
 
+@pytest.mark.parametrize(
+    ("differences", "budgets", "nearest", "largest"),
+    [
+        (
+            [1e-13, 9e-6, 1e-7],
+            [1e-12, 1e-5, 1e-3],
+            1,
+            1,
+        ),  # a tenth, nine tenths, a ten-thousandth of the budget
+        ([9e-9, 1e-6], [1e-8, 1e-3], 0, 1),
+        ([0.0, 1e-9], [0.0, 1.0], 1, 1),  # exact, and so without a budget: no difference is far from none
+        ([1e-30, 5.0], [0.0, 10.0], 0, 1),  # any difference is infinitely far beyond no budget
+        ([1e-9, 1e-8, 2.0], [0.0, 0.0, 4.0], 1, 2),
+        ([3.0, 1.0], [np.inf, 10.0], 1, 0),
+        ([0.5, np.nan], [0.1, 1.0], 1, 1),  # what is missing comes before all
+        ([0.5, 0.2], [1.0, np.nan], 1, 0),
+    ],
+)
+def test_the_element_that_stands_for_an_array_is_the_one_with_the_least_of_its_budget_left(
+    differences, budgets, nearest, largest
+):
+    made = claim("c", "good", np.zeros(len(differences)), differences, budgets, resolution=100.0)
+    assert made.worst == nearest
+    assert made.largest == largest
+
+
+def test_an_exact_number_without_a_budget_agrees_at_a_ratio_of_zero():
+    made = claim("c", "good", [1.0, 2.0], [1.0, 2.0], 0.0)
+    assert made.verdict is Verdict.AGREES
+    np.testing.assert_array_equal(made.ratio, [0.0, 0.0])
+
+
+def test_the_largest_difference_is_told_beside_the_one_that_decides():
+    made = claim("c", "good", np.zeros(2), [9e-9, 1e-6], [1e-8, 1e-3], resolution=1.0)
+    element = worst(made)
+    assert (element.index, element.difference, element.total) == (0, 9e-9, 1e-8)
+    assert (element.largest_index, element.largest_difference) == (1, 1e-6)
+
+
+def test_algebra_is_of_the_theory_alone():
+    with pytest.raises(ValueError, match="algebra is of the theory alone"):
+        claim("c", "good", 1.0, 1.0, 1.0, basis="algebra")
+    with pytest.raises(ValueError, match="basis = 'luck': it must be one of independent"):
+        claim("c", "good", 1.0, 1.0, 1.0, basis="luck")
+
+
 def test_a_missing_element_differs_and_is_the_worst():
     made = claim("c", "good", np.zeros(3), np.array([0.0, np.nan, 0.5]), 1e-9)
     assert made.verdict is Verdict.DIFFERS

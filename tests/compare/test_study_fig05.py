@@ -139,11 +139,11 @@ def test_the_critical_velocity_of_the_map_divides_the_ends_of_long_runs():
     """The map from one stick phase to the next, and a plain bisection on where the pin is after 220 s."""
     reference = engines(["reference"])[0]
     low, high = 0.0277, 0.0279
-    assert not study.ends_on_whirl(reference, low, 1e-9)
-    assert study.ends_on_whirl(reference, high, 1e-9)
+    assert study.outside_at_end(reference, low, 1e-9) < 0.0
+    assert study.outside_at_end(reference, high, 1e-9) > 0.0
     while high - low > study.CAPTURE:
         middle = 0.5 * (low + high)
-        if study.ends_on_whirl(reference, middle, 1e-9):
+        if study.outside_at_end(reference, middle, 1e-9) > 0.0:
             high = middle
         else:
             low = middle
