@@ -302,10 +302,15 @@ def sweep_figures(
 
 
 def _check_finished(store: SweepStore) -> None:
-    from compare.sweep.run import RESULT
+    from compare.sweep.run import finished
 
-    if store.get(RESULT) is None:
-        raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
+    if finished(store):
+        return
+    if store.broken:
+        raise ValueError(
+            f"{str(store.path)!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
+        )
+    raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
 
 
 def _common(
@@ -393,6 +398,9 @@ def _sweep(plan: Plan, chunk: str | None, scheduler: str | None, folder: Path, r
         )
     except KeyboardInterrupt:
         return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
+    finally:
+        if store is not None and store.broken:
+            say(f"{str(path)!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
     return _finish(store, folder)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -38,6 +40,20 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
         store.put(CURVES, curves_of(store.plan))
     if store.get(RESULT) is None:
         store.put(RESULT, result_of(store.plan, rounds, grid))
+
+
+def finished(store: SweepStore) -> bool:
+    """Return whether all of the sweep is there as it was written; what is not is in ``store.broken``."""
+    groups = (CHECK, RESULT, *((CURVES,) if isinstance(store.plan, Map) else ()))
+    missing = [name for name in groups if store.get(name) is None]
+    plan, ends = store.plan.rounds(), None
+    with suppress(StopIteration):
+        for i in itertools.count():
+            found = store.look(i, plan.send(ends))  # type: ignore[arg-type]  # None starts it
+            if found is None or not np.all(found.done):
+                return False
+            ends = found.read("end")
+    return not missing
 
 
 def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tuple[list[Round], Any]:

@@ -31,8 +31,8 @@ def long_sweep(folder, *more, limit=None):
 
 def marks(folder: Path) -> set[str]:
     """Return the files that mark written chunks."""
-    done = folder / "sweep.zarr" / "round-0" / "done"
-    return {path.name for path in done.iterdir() if path.name.isdigit()} if done.exists() else set()
+    written = folder / "sweep.zarr" / "round-0" / "checksum"
+    return {path.name for path in written.iterdir() if path.name.isdigit()} if written.exists() else set()
 
 
 def wait_for_marks(folder, least, process):
@@ -60,7 +60,7 @@ def content(path):
         (group, name): values.values
         for group in groups
         for name, values in xr.open_zarr(path, group=group, consolidated=False).variables.items()
-        if name != "done"
+        if name != "checksum"
     }
 
 

@@ -46,7 +46,7 @@ def times(folder):
     """Return when the files of all chunks that are marked were written."""
     chunks = folder / "sweep.zarr" / "round-0"
     return {
-        mark: [(chunks / name / mark).stat().st_mtime_ns for name in ("end", "time", "steps", "done")]
+        mark: [(chunks / name / mark).stat().st_mtime_ns for name in ("end", "time", "steps", "checksum")]
         for mark in marks(folder)
     }
 

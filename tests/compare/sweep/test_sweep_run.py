@@ -190,7 +190,7 @@ def test_an_interrupted_sweep_goes_on_without_computing_anything_twice(plan, tmp
     with pytest.raises(KeyboardInterrupt):
         swept(tmp_path / "s", plan, 7, first)
     rounds = (tmp_path / "s").glob("round-*")
-    done = sum(int(xr.open_zarr(one, consolidated=False)["done"].sum()) for one in rounds)
+    done = sum(int((xr.open_zarr(one, consolidated=False)["checksum"] > 0).sum()) for one in rounds)
     swept(tmp_path / "s", plan, 7, second)
     assert 5 - AT_ONCE <= done <= 5
     assert first.simulated()[:done] + second.simulated() == whole.simulated()
@@ -207,7 +207,7 @@ def test_a_finished_sweep_is_not_computed_again(tmp_path):
 def test_a_chunk_whose_mark_is_missing_is_computed_again(tmp_path):
     swept(tmp_path / "s", RANDOM, 7)
     before = content(tmp_path / "s")
-    (tmp_path / "s" / "round-0" / "done" / "3").unlink()
+    (tmp_path / "s" / "round-0" / "checksum" / "3").unlink()
     again = Recording()
     swept(tmp_path / "s", RANDOM, 7, again)
     assert again.simulated() == [list(range(21, 28))]
