@@ -40,7 +40,7 @@ MOTIONS = {
     "pin on a fast disc, backwards": (replace(PIN, disc_speed=-4.5), (0.2, 0.1, 0.3, 0.1), 3.0),
     "pin let go by a fast disc": (
         replace(FIG5, disc_speed=5.0, friction_force=0.12),
-        (0.005, 0.0, 0.0, 0.025),
+        (-0.005, 0.0, 0.0, -0.025),
         1.0,
     ),
 }
