@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 
 from compare.claim import Verdict
 from compare.engines import Engine
-from compare.studies.trajectories import MOTIONS, measure
+from compare.studies.trajectories import measure
+from compare.studies.trajectories_motions import MOTIONS
 from compare.study import Data, Findings, Study
 from reference_model.systems import DiscOnDisc, PinOnDisc, System
 from reference_model.trajectory import Trajectory

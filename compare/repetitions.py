@@ -10,7 +10,8 @@ from numpy.random import Generator
 from compare.detection import no_figures
 from compare.engines import Engine
 from compare.studies.error_estimates_problems import any_disc, any_pin, any_start
-from compare.studies.trajectories import EXACT, Motion, measure
+from compare.studies.trajectories import measure
+from compare.studies.trajectories_motions import EXACT, Motion
 from compare.study import Findings, Study
 from reference_model import simulate
 from reference_model.systems import System

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import functools
 import math
 from collections.abc import Callable
@@ -16,8 +17,10 @@ from compare.faults import plain
 from compare.faults.plain import Make
 from reference_model import simulate
 from reference_model.contact import ThreeTermRing
-from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
-from reference_model.trajectory import Trajectory
+from reference_model.pin_formulas import release_time
+from reference_model.support import Support
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.trajectory import Phase, Trajectory
 
 
 @dataclass(frozen=True)
@@ -153,6 +156,17 @@ def disc_backwards(system: System) -> dict[str, Any]:
     return {"disc_speed": -system.disc_speed}
 
 
+def stronger_at_extremes(system: System) -> dict[str, Any]:
+    """Return a load that is 1 % larger on a disc that is fast or slow."""
+    usual = 0.3 <= abs(system.disc_speed) <= 4.0
+    return {} if usual else {"friction_force": 1.01 * system.friction_force}
+
+
+def weaker_backwards(system: System) -> dict[str, Any]:
+    """Return a load that is 1e-4 smaller for ω < 0."""
+    return {"friction_force": (1.0 - 1e-4) * system.friction_force} if system.disc_speed < 0.0 else {}
+
+
 def in_single_precision(trajectory: Trajectory) -> FloatArray:
     """Round to 24 bits."""
     return trajectory.states.astype(np.float32).astype(float)
@@ -191,6 +205,68 @@ def with_velocities_by_differences(trajectory: Trajectory) -> FloatArray:
     steps = np.diff(trajectory.times)[:, np.newaxis]
     states[1:, half:] = np.diff(states[:, :half], axis=0) / steps
     return states
+
+
+def output_late(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return states of 1e-7 s before the times asked for, but for the first."""
+    times = np.asarray(times, dtype=float)
+    early = np.append(times[0], np.maximum(times[1:] - 1e-7, times[0]))
+    return replace(simulate(system, initial_state, early, tolerance=tolerance), times=times)
+
+
+def phases_late(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the right states, and phases that begin and end 1 ms late, but for the start and the end of it all."""
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    start, end = trajectory.times[0], trajectory.times[-1]
+
+    def late(time: float) -> float:
+        return min(time + 1e-3, end) if time > start else time
+
+    phases = (replace(one, start=late(one.start), end=late(one.end)) for one in trajectory.phases)
+    return replace(trajectory, phases=tuple(phases))
+
+
+def without_centripetal_term(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Simulate a pin that is let go when friction can no longer hold it without its mass.
+
+    Where that is too early, it sticks again at once.
+    """
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    if not isinstance(system, PinOnDisc) or not Support.of(system).linear:
+        return trajectory
+    massless = replace(system, mass=1e-12 * system.mass)
+    times = trajectory.times
+    for i, phase in enumerate(trajectory.phases):
+        if phase.kind != "stick":
+            continue
+        z = complex(*phase.initial_state[:2])
+        until = min(phase.start + release_time(massless, abs(z), cmath.phase(z)), float(times[-1]))
+        if until > phase.end:
+            held, after = (times > phase.end) & (times <= until), times > until
+            states = trajectory.states.copy()
+            states[held] = [_carried_on(phase, system.disc_speed, t) for t in times[held]]
+            phases = [*trajectory.phases[:i], replace(phase, end=until)]
+            if np.any(after):
+                rest = [until, *times[after]]
+                let_go = _carried_on(phase, system.disc_speed, until)
+                later = without_centripetal_term(system, let_go, rest, tolerance=tolerance)
+                states[after] = later.states[1:]
+                phases += later.phases
+            return replace(trajectory, states=states, phases=tuple(phases))
+    return trajectory
+
+
+def _carried_on(phase: Phase, speed: float, time: float) -> FloatArray:
+    """Return the state of a pin that still sticks at ``time``."""
+    turn = cmath.exp(1j * speed * (time - phase.start))
+    z, v = (complex(*pair) * turn for pair in np.split(phase.initial_state, 2))
+    return np.array([z.real, z.imag, v.real, v.imag])
 
 
 def half_a_pitch_on(
@@ -294,6 +370,25 @@ FORCE: tuple[Fault, ...] = (
     made("creep-in-stick", "What sticks creeps with up to 1e-5 m/s.", creep_speed=1e-5),
     made("late-release", "Stick ends 0.02 s late.", release_delay=0.02),
     made("no-release", "Stick never ends.", release_delay=math.inf),
+    made("release-late-by-1e-3", "Stick lasts 0.1 % too long.", release_late=1e-3),
+    _fault(
+        "no-centripetal-term-in-stick",
+        "Stick goes on while friction holds springs and dampers, without the term mω²ρ of (7).",
+        without_centripetal_term,
+    ),
+    made(
+        "friction-stronger-beside",
+        "Friction is stronger by 1e-5 of itself where |y| > x.",
+        stronger_beside=1e-5,
+    ),
+    mistaken(
+        "friction-stronger-at-extremes",
+        "Friction is stronger by 1 % where |ω| is above 4 or below 0.3 rad/s.",
+        stronger_at_extremes,
+    ),
+    mistaken(
+        "friction-weaker-backwards", "Friction is weaker by 1e-4 of itself for ω < 0.", weaker_backwards
+    ),
 )
 
 MOMENT: tuple[Fault, ...] = (
@@ -315,6 +410,12 @@ MOMENT: tuple[Fault, ...] = (
         points_turn=0.0,
     ),
     made("points-turn-backwards", "The points of contact turn against the disc.", points_turn=-1.0),
+    made("points-lag", "The points' directions are 1e-5 s behind the disc's angle.", points_lag=1e-5),
+    made(
+        "moment-larger-in-slip",
+        "The moment of a ring is larger by 1e-4 of itself where its centre slips faster than its rim.",
+        moment_of_slip=1.0 + 1e-4,
+    ),
     _fault("points-half-a-pitch-on", "Point i is at φ + 2π(i + ½)/n.", half_a_pitch_on),
     _fault(
         "expansion-for-ring", "The ring's friction is that of three terms of an expansion (23).", three_terms
@@ -344,6 +445,8 @@ SUPPORT: tuple[Fault, ...] = (
         hardening_power=1.0,
     ),
     made("stop-that-pulls", "The stop pulls while it is not touched.", stop_pulls=True),
+    made("stop-on-one-side", "There is no stop at deflections of negative x.", stop_on_one_side=True),
+    made("stiffer-in-y", "The spring of the y axis is stiffer by 1e-5 of itself.", stiffer_in_y=1e-5),
     mistaken("hardening-forgotten", "Springs are linear.", hardening_forgotten),
     mistaken("stop-without-play", "The stop acts from the first.", stop_without_play),
     mistaken(
@@ -371,6 +474,8 @@ NUMERICS: tuple[Fault, ...] = (
     ),
     spoilt("single-precision", "States have 24 bits.", in_single_precision),
     spoilt("one-sample-late", "Every state is that of the sample before.", one_sample_late),
+    _fault("output-late", "Every state but the first is of 1e-7 s before its time.", output_late),
+    _fault("phases-late", "Phases begin and end 1 ms after the states say so.", phases_late),
     spoilt("angle-wrapped", "Angles are brought between −π and π.", with_angle_wrapped),
     spoilt("no-number-at-the-end", "The last state is not a number.", without_end),
     spoilt("relative-velocities", "Velocities are relative to the disc below.", with_relative_velocities),

@@ -51,8 +51,12 @@ class Make(NamedTuple):
         What friction in stick can hold, over μN.
     release_delay : float
         Time in s by which stick goes on when friction can no longer hold.
+    release_late : float
+        Share of its time by which stick goes on when friction can no longer hold.
     weakening : float
         Share of the friction force that is lost by 1 m/s of slip speed.
+    stronger_beside : float
+        Share by which friction is stronger where |y| > x.
     sides, circumscribed, first_side : int, bool, float
         Number of sides of the polygon that bounds the friction force in place of the circle (0), whether it lies
         around the circle or inside, and the direction in rad of the middle of its first side.
@@ -64,20 +68,28 @@ class Make(NamedTuple):
         Share of the spin that the slip of a contact on a circle takes part in.
     moment : float
         Factor of the moment of friction.
+    moment_of_slip : float
+        Factor of the moment of a ring whose centre slips faster than its rim.
     uncoupled : bool
         Whether slip and spin of a ring are resisted each as if the other were not there.
     points_turn : float
         Share of its angle by which the contact of a disc turns with it.
+    points_lag : float
+        Time in s by which the points' directions are behind the disc's angle.
     damping_on_slip : bool
         Whether the dampers act against the velocity relative to the master disc.
     anchor : complex
         Direction in which the offset lies.
     anchor_turns : bool
         Whether the springs turn with the master disc.
+    stiffer_in_y : float
+        Share by which the spring of the y axis is stiffer.
     hardening_power : float
         Of the deflection, to which the hardening is proportional.
     stop_pulls : bool
         Whether the stop acts inside of its gap too.
+    stop_on_one_side : bool
+        Whether there is no stop at deflections of negative x.
     coriolis : float
         Share of 2ρ̇ψ̇ in the tangential acceleration.
     energy_gain : float
@@ -91,7 +103,9 @@ class Make(NamedTuple):
     creep_speed: float = 0.0
     static_ratio: float = 1.0
     release_delay: float = 0.0
+    release_late: float = 0.0
     weakening: float = 0.0
+    stronger_beside: float = 0.0
     sides: int = 0
     circumscribed: bool = False
     first_side: float = 0.0
@@ -99,13 +113,17 @@ class Make(NamedTuple):
     about_anchor: bool = False
     spin_in_slip: float = 1.0
     moment: float = 1.0
+    moment_of_slip: float = 1.0
     uncoupled: bool = False
     points_turn: float = 1.0
+    points_lag: float = 0.0
     damping_on_slip: bool = False
     anchor: complex = 1.0 + 0.0j
     anchor_turns: bool = False
+    stiffer_in_y: float = 0.0
     hardening_power: float = 2.0
     stop_pulls: bool = False
+    stop_on_one_side: bool = False
     coriolis: float = 1.0
     energy_gain: float = 0.0
     order: int = 0
@@ -237,6 +255,8 @@ def contact(
     speed, by_slip, by_rim = mean_slip(u, w)
     if make.uncoupled:
         by_slip, by_rim = min(u / width, 1.0), min(w / width, 1.0)
+    if u > w:
+        by_rim *= make.moment_of_slip
     share = min(speed / width, strength) * (1.0 - make.weakening * speed)
     force = -share * by_slip * slip / u if u > 0.0 else 0j
     return force, -share * math.copysign(radius * by_rim, spin), speed
@@ -270,10 +290,13 @@ def support(t: float, z: complex, v: complex, numbers: Numbers, make: Make) -> c
     pull = numbers.stiffness
     if d > 0.0:
         pull += numbers.hardening * d**make.hardening_power
-        if make.stop_pulls or d > numbers.stop_gap:
+        if (make.stop_pulls or d > numbers.stop_gap) and not (
+            make.stop_on_one_side and deflection.real < 0.0
+        ):
             pull += numbers.stop_stiffness * (d - numbers.stop_gap) / d
     damped = v - 1j * numbers.omega * z if make.damping_on_slip else v
-    return -pull * deflection - numbers.damping * damped
+    unlike = make.stiffer_in_y * numbers.stiffness * deflection.imag
+    return -pull * deflection - complex(0.0, unlike) - numbers.damping * damped
 
 
 @compiled
@@ -283,7 +306,10 @@ def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbe
     z, u = complex(y[0], y[1]), complex(y[half], y[half + 1])
     v = u + 1j * numbers.omega * z
     slip, turning = slip_of(y, numbers, make)
-    force, moment, _ = contact(slip, turning, y[2] if half == 3 else 0.0, width, strength, numbers, make)
+    angle = y[2] - make.points_lag * (y[5] + numbers.omega) if half == 3 else 0.0
+    force, moment, _ = contact(slip, turning, angle, width, strength, numbers, make)
+    if abs(z.imag) > z.real:
+        force *= 1.0 + make.stronger_beside
     a = (numbers.friction * force + support(t, z, v, numbers, make)) / numbers.mass
     if make.energy_gain > 0.0:
         a += make.energy_gain / (2.0 * math.pi) * math.sqrt(numbers.stiffness / numbers.mass) * v
@@ -442,11 +468,13 @@ class _Run:
             if t >= end:
                 return
             if stuck:
+                since = t
                 t, y = self.follow(
                     t, y, end, creep, make.static_ratio, lambda y: release - self.speed(y), self.glance
                 )
-                if t < end and make.release_delay > 0.0:
-                    t, y = self.follow(t, y, min(t + make.release_delay, end), creep, math.inf)
+                delay = make.release_delay + make.release_late * (t - since)
+                if t < end and delay > 0.0:
+                    t, y = self.follow(t, y, min(t + delay, end), creep, math.inf)
             else:
                 t, y = self.follow(t, y, end, self.epsilon, 1.0, lambda y: self.speed(y) - self.epsilon)
                 if t < end:  # full friction brings what is left to zero, viscous friction never does

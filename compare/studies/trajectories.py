@@ -1,27 +1,37 @@
 """Plain motions: state by state beside the reference, and whether velocities and forces add up along them.
 
-In the paper's parameters m, J and C are one: an engine that takes one for the other moves as it should. Here no two
-parameters are equal, so that each has a part of its own in the motion.
+The motions are those of ``trajectories_motions``.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legvander
 
 from compare.accuracy import SAFETY, refined
 from compare.claim import Basis, Claim, ErrorBudget, Kind
-from compare.engines import EVERY_KIND, Engine
-from compare.paper import FIG5, FIG5_STARTS
+from compare.engines import Engine
 from compare.report.style import axis, curve, engines_in, new_figure
-from compare.studies.common import parameters_of
+from compare.studies.common import at_each, parameters_of
+from compare.studies.trajectories_motions import (
+    EXACT,
+    MOTIONS,
+    NODES,
+    PANEL,
+    WEIGHTS,
+    Motion,
+    by_reference,
+    drawn_motions,
+    times_of,
+)
+from compare.studies.trajectories_stick import stick_claims
 from compare.study import Data, Findings, Study
-from reference_model import DiscOnDisc, PinOnDisc, simulate
+from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.contact import contact_of
 from reference_model.support import Support
 from reference_model.systems import FloatArray, System
@@ -32,84 +42,8 @@ if TYPE_CHECKING:
 States = Callable[[float], FloatArray]
 """Gives the states at ``times_of(motion)`` that an engine finds at a tolerance."""
 
-EXACT = 1e-13
-"""Tolerance of the reference."""
-
-PANEL = 0.25
-"""Length in s of the pieces of time over which forces are integrated."""
-
-NODES, WEIGHTS = leggauss(10)
-"""Of Gauss's rule, on (−1, 1): forces are integrated to rounding where no point of the contact comes to rest."""
-
 SLOWEST_FALL = 0.9
 """Largest ratio of neighbouring Legendre coefficients of what is integrated."""
-
-PIN = PinOnDisc(mass=1.3, stiffness=2.1, damping=0.17, friction_force=0.11, disc_speed=1.9, offset=0.07)
-
-STIFFENING = replace(PIN, hardening=0.4, stop_gap=0.2, stop_stiffness=0.2)
-
-DISC = DiscOnDisc(
-    mass=1.3,
-    polar_inertia=0.7,
-    stiffness=2.1,
-    damping=0.4,
-    friction_force=0.055,
-    disc_speed=1.9,
-    offset=0.03,
-    contact_radius=0.15,
-    shaft_damping=0.02,
-    shaft_speed=0.8,
-)
-
-SIX = replace(DISC, contact_points=6)
-
-OTHER_WAY = replace(DISC, damping=0.15, disc_speed=-1.9, shaft_speed=-1.6)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Parameters, start, length in s, whether it sticks on its way, resolution in SI units, and where it is from.
-
-    ``tolerance`` is that of the engine.
-    """
-
-    system: System
-    start: tuple[float, ...]
-    until: float
-    sticks: bool = False
-    tolerance: float = 1e-10
-    resolution: float = 1e-7
-    source: str = (
-        "parameters of which no two are equal, and a start from which nothing sticks, are our choice"
-    )
-
-
-DISC_START = (0.06, 0.01, 0.2, -0.01, 0.02, 0.9)
-
-MOTIONS = {
-    "a pin": Motion(PIN, (0.6, 0.1, -0.2, 0.5), 20.0),
-    "a pin inside the play of its stop, with the disc turning the other way": Motion(
-        replace(PIN, disc_speed=-PIN.disc_speed, stop_gap=1.0, stop_stiffness=0.2),
-        (0.6, 0.1, -0.1, -0.6),
-        20.0,
-    ),
-    "a pin on a support that hardens, beyond its stop": Motion(STIFFENING, (0.6, 0.1, -0.2, 0.5), 20.0),
-    "a pin that sticks on its way": Motion(
-        FIG5,
-        FIG5_STARTS["whirl"],
-        15.0,
-        sticks=True,
-        tolerance=1e-9,
-        resolution=1e-5,
-        source="Fig. 5, second start",
-    ),
-    "a disc on the continuous ring": Motion(DISC, DISC_START, 20.0),
-    "a disc on six points": Motion(SIX, DISC_START, 20.0),
-    "a disc on the continuous ring, all turning the other way": Motion(
-        OTHER_WAY, (0.3, 0.1, 0.3, 0.05, -0.4, -1.7), 20.0
-    ),
-}
-"""Nowhere but in the pin that sticks does a point of the contact come to rest: there friction has a bend."""
 
 ONE_OF_EACH_KIND = ("a pin", "a pin that sticks on its way", "a disc on six points")
 """What an engine is asked for that differs from another in its contact alone."""
@@ -119,6 +53,9 @@ KINEMATICS = "Places and angle change by the integrals of velocity and spin: {}"
 MOMENTUM = "Momentum and spin change by the impulses of friction, springs and dampers: {}"
 
 
+DRAWN = "{} with parameters from the whole range"
+
+
 def measure(engine: Engine, motions: Mapping[str, Motion] = MOTIONS) -> Findings:
     """Follow each motion that the engine simulates."""
     claims: list[Claim] = []
@@ -126,42 +63,107 @@ def measure(engine: Engine, motions: Mapping[str, Motion] = MOTIONS) -> Findings
     if engine.contact_only:
         motions = {name: motion for name, motion in motions.items() if name in ONE_OF_EACH_KIND}
     for name, motion in motions.items():
-        if not engine.simulates(motion.system) or (motion.sticks and not engine.sticks):
+        if not follows(engine, motion):
             continue
-        states = functools.cache(functools.partial(run, engine, motion))
-        claims.append(movement_claim(engine, name, motion, states))
-        if not motion.sticks:  # there friction holds, and is none of the contact's law
-            claims += sum_claims(engine, name, motion, states)
+        run = functools.cache(functools.partial(_run, engine, motion))
+        claims += claims_of(engine, name, motion, run)
+        error = run(motion.tolerance).states - by_reference(motion).states
         data[f"{name}: times"] = times_of(motion)
-        data[f"{name}: error"] = np.max(np.abs(states(motion.tolerance) - run_of_reference(motion)), axis=1)
-    lacking = engine.lacking(motion.system for motion in motions.values())
-    if not lacking and not engine.sticks:
-        lacking = f"{engine.name} does not simulate stick"
-    return Findings(tuple(claims), data, not_simulated=lacking)
+        data[f"{name}: error"] = np.max(np.abs(error), axis=1)
+    return Findings(tuple(claims), data, not_simulated=_lacking(engine, motions.values()))
 
 
-def times_of(motion: Motion) -> FloatArray:
-    """Return bounds and Gauss nodes of all panels in their order: each panel begins with a bound."""
-    bounds = np.linspace(0.0, motion.until, round(motion.until / PANEL) + 1)
-    places = np.concatenate(([0.0], 0.5 + 0.5 * NODES))
-    return np.append(bounds[:-1, np.newaxis] + PANEL * places, motion.until)
+def measure_whole_range(engine: Engine) -> Findings:
+    """Follow the motions by hand each for itself, and those that are drawn by kinds."""
+    by_hand = measure(engine)
+    if engine.contact_only:
+        return by_hand
+    return replace(by_hand, claims=by_hand.claims + claims_by_kinds(engine, drawn_motions()))
 
 
-def run(engine: Engine, motion: Motion, tolerance: float) -> FloatArray:
-    """Return the states at ``times_of(motion)``."""
-    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance).states
+def claims_by_kinds(engine: Engine, drawn: Mapping[str, Sequence[Motion]]) -> tuple[Claim, ...]:
+    """Return the claims on each kind of motions that the engine follows."""
+    claims: list[Claim] = []
+    for kind, motions in drawn.items():
+        if not all(follows(engine, motion) for motion in motions):
+            continue
+        name = DRAWN.format(kind)
+        parts: dict[str, list[Claim]] = {}
+        for motion in motions:
+            run = functools.cache(functools.partial(_run, engine, motion))
+            for claim in claims_of(engine, name, motion, run):
+                parts.setdefault(claim.sentence, []).append(claim)
+        claims += [pooled(part) for part in parts.values()]
+    return tuple(claims)
 
 
-@functools.cache
-def run_of_reference(motion: Motion) -> FloatArray:
-    """Return the states at ``times_of(motion)`` by the reference at its tightest."""
-    return run(Engine("reference", simulate, EVERY_KIND), motion, EXACT)
+def follows(engine: Engine, motion: Motion) -> bool:
+    """Return whether the engine promises to follow the motion."""
+    return engine.simulates(motion.system) and (engine.sticks or not motion.sticks)
+
+
+def _lacking(engine: Engine, motions: Iterable[Motion]) -> str:
+    lacking = engine.lacking(motion.system for motion in motions)
+    return lacking if lacking or engine.sticks else f"{engine.name} does not simulate stick"
+
+
+def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+    """Return the motion at ``times_of(motion)``."""
+    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
+
+
+def claims_of(
+    engine: Engine, name: str, motion: Motion, run: Callable[[float], Trajectory]
+) -> tuple[Claim, ...]:
+    """Return all claims on one motion, which ``run`` follows at a tolerance."""
+
+    def states(tolerance: float) -> FloatArray:
+        return run(tolerance).states
+
+    moves = movement_claim(engine, name, motion, states)
+    if motion.sticks:  # there friction holds, and is none of the contact's law
+        return (moves, *stick_claims(engine, name, motion, run))
+    return (moves, *sum_claims(engine, name, motion, states))
+
+
+def pooled(claims: Sequence[Claim]) -> Claim:
+    """Return claims of one sentence on several systems as one, with the numbers and error bars of all of them."""
+    first = claims[0]
+    budgets = [np.broadcast_to(claim.budget.numerical, claim.measured.shape).ravel() for claim in claims]
+    speeds = [claim.parameters["disc_speed"] for claim in claims]
+    return Claim(
+        first.sentence,
+        equation=first.equation,
+        kind=first.kind,
+        engine=first.engine,
+        predicted=np.concatenate([claim.predicted.ravel() for claim in claims]),
+        measured=np.concatenate([claim.measured.ravel() for claim in claims]),
+        budget=ErrorBudget(
+            np.concatenate(budgets), resolution=max(claim.budget.resolution for claim in claims)
+        ),
+        parameters=_ranges([claim.parameters for claim in claims]),
+        source=first.source,
+        unit=first.unit,
+        note=f"{len(claims)} motions, for {at_each('ω', np.array(speeds, dtype=float))} rad/s. {first.note}",
+        basis=first.basis,
+    )
+
+
+def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
+    """Return the smallest and the largest value of each parameter in words, or the one that all have."""
+    found: dict[str, float | str] = {}
+    for name, value in parameters[0].items():
+        values = [one[name] for one in parameters]
+        numbers = [one for one in values if not isinstance(one, str)]
+        spread = len(set(values)) > 1
+        found[name] = f"{min(numbers):.3g} … {max(numbers):.3g}" if spread else value
+    return found
 
 
 def movement_claim(engine: Engine, name: str, motion: Motion, states: States) -> Claim:
     """Compare all states with the reference's."""
     measured, error = refined(states, motion.tolerance)
-    predicted = run_of_reference(motion)
+    predicted = by_reference(motion).states
     # A single number may be right by chance, and so may all of them where both runs take the same steps.
     worst = float(np.max(error)) + motion.tolerance * float(np.max(np.abs(predicted)))
     return Claim(
@@ -318,8 +320,11 @@ STUDY = Study(
     paper="Equations (1) and (19) say how a pin and a disc move. In the paper's figures mass, inertia and stiffness "
     "are all one, so that an engine which takes one for another moves as it should. Here no two parameters are "
     "equal. Each motion is compared with the reference's, and besides with nothing but the laws of force: in "
-    "every quarter of a second places must change by the integral of velocity, momentum by the impulse of forces.",
-    measure=measure,
+    "every quarter of a second places must change by the integral of velocity, momentum by the impulse of forces. A "
+    "mistake may be confined to a corner of the parameters, so motions drawn from the whole range that the other "
+    "studies use are followed besides: slow and fast discs in both senses, offsets of both signs, supports with "
+    "stops, points, rings, and pins that stick, whose release (7) gives.",
+    measure=measure_whole_range,
     draw=draw,
     figures={
         "trajectories": "Difference of each motion from the reference's at tolerance 1e-13, the largest of all "

@@ -35,6 +35,14 @@ MOTIONS = {
     "pin on a stop": (PIN, (0.2, 0.1, 0.3, 0.1), 6.0),
     "ring": (RING, MOVING, 6.0),
     "points": (POINTS, MOVING, 6.0),
+    "points that slip more than they spin": (POINTS, (0.2, 0.1, 0.3, 0.3, 0.6, 2.0), 1.0),
+    "ring that slips more than it spins": (RING, (0.2, 0.1, 0.3, 0.3, 0.6, 2.0), 1.0),
+    "pin on a fast disc, backwards": (replace(PIN, disc_speed=-4.5), (0.2, 0.1, 0.3, 0.1), 3.0),
+    "pin let go by a fast disc": (
+        replace(FIG5, disc_speed=5.0, friction_force=0.12),
+        (-0.005, 0.0, 0.0, -0.025),
+        1.0,
+    ),
 }
 
 
@@ -46,6 +54,11 @@ def motion(engine, name, tolerance):
 
 def apart(first, second):
     return float(np.max(np.abs(first.states - second.states)))
+
+
+def apart_in_time(first, second):
+    times, others = first.stick_times, second.stick_times
+    return float(np.max(np.abs(times - others), initial=0.0)) if times.shape == others.shape else math.inf
 
 
 # ---------------------------------------------------------------- the plain engine is right
@@ -153,6 +166,9 @@ def test_a_fault_changes_a_motion_by_more_than_the_error_of_the_engine_that_it_i
         except (BadTrajectoryError, SimulationError):
             return  # no motion at all is a change too
         if changed > 3.0 * apart(motion(base, name, 8e-9), right):
+            return
+        late = apart_in_time(motion(fault.engine, name, 1e-9), right)
+        if late > 3.0 * apart_in_time(motion(base, name, 8e-9), right):
             return
     pytest.fail("no motion is changed")
 

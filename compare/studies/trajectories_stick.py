@@ -1,0 +1,93 @@
+"""Stick phases of a pin: when they begin and end beside the reference's, and release beside (7)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from compare.accuracy import refined
+from compare.claim import Claim, ErrorBudget
+from compare.engines import Engine
+from compare.studies.common import parameters_of
+from compare.studies.trajectories_motions import Motion, by_reference
+from reference_model.pin_formulas import release_time
+from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.trajectory import Trajectory
+
+Run = Callable[[float], Trajectory]
+"""Gives the trajectory at ``times_of(motion)`` that an engine finds at a tolerance."""
+
+RESOLUTION = 1e-4
+"""In s. A law that only approximates stick lets go the later the wider it is, at 1e-9 by some 1e-5 s."""
+
+PHASES = "It sticks and lets go when the reference does: {}"
+RELEASE = "What sticks half way through a stick phase is let go when (7) says so: {}"
+
+
+def stick_claims(engine: Engine, name: str, motion: Motion, run: Run) -> tuple[Claim, ...]:
+    """Compare beginnings and ends of all stick phases, and ends with (7) where the reference finds any release."""
+    pin, exact = motion.system, by_reference(motion)
+    if not isinstance(pin, PinOnDisc):
+        return ()
+    middles = samples_in_stick(exact)
+
+    def claim(
+        sentence: str, trajectory: bool, predicted: FloatArray, found: Callable[[Trajectory], FloatArray]
+    ) -> Claim:
+        measured, error = refined(lambda tolerance: found(run(tolerance)), motion.tolerance)
+        # An error of the state may make the first number of two right by chance; one of the tolerance is in all.
+        worst = float(np.max(error)) + motion.tolerance * motion.until
+        return Claim(
+            sentence.format(name),
+            equation="" if trajectory else "(7)",
+            kind="trajectory" if trajectory else "formula",
+            engine=engine.name,
+            predicted=predicted,
+            measured=measured,
+            budget=ErrorBudget(worst, resolution=RESOLUTION),
+            parameters=parameters_of(pin),
+            source=motion.source,
+            unit="s",
+            note="Times of all stick phases, beside those of the reference."
+            if trajectory
+            else "End of each stick phase, less what (7) says for the place in the middle of it.",
+        )
+
+    phases = claim(PHASES, True, exact.stick_times, lambda found: stick_times(found, exact))
+    if not middles:
+        return (phases,)
+    zeros = np.zeros(len(middles))
+    return phases, claim(RELEASE, False, zeros, lambda found: late(found, pin, middles))
+
+
+def samples_in_stick(run: Trajectory) -> list[int]:
+    """Return the number of the sample in the middle of each stick phase that ends by release."""
+    found = []
+    for phase in run.stick_phases:
+        inside = np.flatnonzero((run.times > phase.start) & (run.times < phase.end))
+        if len(inside) > 0 and phase.end < run.times[-1]:
+            found.append(int(inside[len(inside) // 2]))
+    return found
+
+
+def stick_times(run: Trajectory, exact: Trajectory) -> FloatArray:
+    """Return beginnings and ends in s of stick phases; no numbers where there are not as many as in ``exact``."""
+    found = run.stick_times
+    return found if found.shape == exact.stick_times.shape else np.full(exact.stick_times.shape, math.nan)
+
+
+def late(run: Trajectory, pin: PinOnDisc, samples: list[int]) -> FloatArray:
+    """Return by how many s each phase outlasts (7), asked at a sample in it; not a number if nothing ends there."""
+    result = []
+    for i in samples:
+        time = float(run.times[i])
+        phase = next((one for one in run.stick_phases if one.start <= time <= one.end), None)
+        if phase is None:
+            result.append(math.nan)
+        else:
+            x, y = run.states[i, :2]
+            rest = release_time(pin, math.hypot(x, y), math.atan2(y, x))
+            result.append(phase.end - time - rest if math.isfinite(rest) else math.nan)
+    return np.array(result)
