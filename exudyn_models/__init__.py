@@ -1,9 +1,9 @@
 """The paper's systems as multibody models in Exudyn.
 
-For models of your own: ``ring_friction`` with its ``friction_sensors``, ``radial_support``, ``energy_balance`` and
-``native_contact``; ``drivetrain`` is made of them, and ``drivetrain_picture`` draws it. The paper's systems:
-``pin_on_disc`` and ``disc_on_disc`` on a ``supported_body``, chosen by ``models``. ``simulate`` goes through turns of
-``slip_and_creep`` and reads ``phases`` from the motion; ``linearisation`` gives eigenvalues.
+For models of your own: ``ring_friction`` with its ``friction_sensors``, ``radial_support``, ``energy_balance``,
+``step_limit`` and ``native_contact``; ``drivetrain`` is made of them, and ``drivetrain_picture`` draws it. The
+paper's systems: ``pin_on_disc`` and ``disc_on_disc`` on a ``supported_body``, chosen by ``models``. ``simulate`` goes
+through turns of ``slip_and_creep`` and reads ``phases`` from the motion; ``linearisation`` gives eigenvalues.
 """
 
 from exudyn_models.checked_solve import solve_dynamic
@@ -23,6 +23,7 @@ from exudyn_models.pin_on_disc import build_pin_on_disc
 from exudyn_models.radial_support import RadialSupport, add_radial_support
 from exudyn_models.ring_friction import add_ring_friction
 from exudyn_models.simulate import simulate, simulate_fixed_step
+from exudyn_models.step_limit import largest_stable_step
 
 __all__ = [
     "PASSENGER_CAR",
@@ -40,6 +41,7 @@ __all__ = [
     "build_pin_on_disc",
     "eigenvalues",
     "four_cylinder",
+    "largest_stable_step",
     "simulate",
     "simulate_fixed_step",
     "simulate_with_native_contact",

@@ -8,6 +8,7 @@ from typing import Any
 import exudyn as exu
 
 from exudyn_models.solving import NOT_FINITE, advice, after_every_step, raise_interrupt
+from exudyn_models.step_limit import StepCheck
 from reference_model.trajectory import SimulationError
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -21,6 +22,12 @@ def solve_dynamic(
     Exudyn's explicit solvers ignore algebraic constraints, or lose their order where they eliminate them, and they go
     on with a state that is not finite and report success. A look at every step, which costs about 1.5 μs, ends the
     run there; the model's own function after a step is called besides.
+
+    A step beyond what is stable where contacts stick gives a run that looks like any other: before a run with a fixed
+    step a ``RuntimeWarning`` tells of it, see ``largest_stable_step``. It sees the contacts of ``add_ring_friction``,
+    whether they will stick or not, and all dampers at the initial values. Loads and coefficients that are functions
+    are looked at at the start and at a hundred times of the run, where the warning may come too: they are never asked
+    about a time or a motion that is not the run's.
 
     Parameters
     ----------
@@ -55,10 +62,14 @@ def solve_dynamic(
         )
     start = reached = simulationSettings.timeIntegration.startTime
     finite = True
+    check = StepCheck(mbs, solver.name, simulationSettings.timeIntegration)
+    check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
 
     def look(mbs: Any, t: float) -> bool:
         nonlocal reached, finite
         reached = t
+        if t >= check.next_time:
+            check.warn(t, data.GetODE2Coordinates())
         state = (data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE1Coordinates())
         finite = math.isfinite(sum(sum(part.tolist()) for part in state))
         return finite
@@ -68,6 +79,8 @@ def solve_dynamic(
             mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
         raise_interrupt(error)
+        if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
+            raise error.__cause__ from None
         if isinstance(error, (exu.SolverError, exu.InternalError)):
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error

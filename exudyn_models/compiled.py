@@ -1,7 +1,4 @@
-"""Compiled functions: a cache on disk that forgets them in time, and the cheapest way to call one from Exudyn.
-
-numba forgets a function when the file of it changes, but the code of the functions that it calls is part of it too,
-and they may come from other files: the cache here is forgotten when any module of this package has changed.
+"""Compiled functions: kept on disk, and called from Exudyn in the cheapest way.
 
 Exudyn passes coordinates to a user function as lists of floats. Of a call with 14 numbers numba spends 180 ns on
 finding out their types, and Python 60 ns on unpacking and packing lists: ``taking_lists`` does without both.
@@ -10,13 +7,13 @@ finding out their types, and Python 60 ns on unpacking and packing lists: ``taki
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 import numba.core.datamodel.models
 import numba.extending
+
+from reference_model.compiled_cache import known_by_content
 
 extending: Any = numba.extending  # not typed throughout
 
@@ -26,20 +23,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def compiled(function: Function) -> Function:
     """Compile ``function`` at its first call, or take what an earlier process left."""
     dispatcher = numba.njit(cache=True, error_model="numpy")(function)
-    forget_outdated(dispatcher.stats.cache_path, str(Path(__file__).parent))
+    known_by_content(dispatcher)
     return cast(Function, dispatcher)
-
-
-@cache
-def forget_outdated(folder: str, sources: str) -> None:
-    """Delete the indices of numba's cache in ``folder`` that are older than a module in ``sources``."""
-    newest = max(path.stat().st_mtime_ns for path in Path(sources).glob("*.py"))
-    for index in Path(folder).glob("*.nbi"):
-        try:
-            if index.stat().st_mtime_ns < newest:
-                index.unlink()
-        except FileNotFoundError:
-            pass  # another process was faster
 
 
 class Floats(numba.types.UniTuple):

@@ -15,6 +15,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.solving import quiet
 from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -88,7 +89,8 @@ def add_energy_balance(
     Raises
     ------
     ValueError
-        If ``unit`` is no positive number, or a name is a gain and a loss.
+        If ``unit`` is no positive number, a name is a gain and a loss, or a ``spring_energy`` is that of an object
+        without potential energy. Exudyn tells that of a model that can be assembled: of any other the run tells it.
 
     """
     unit = finite_number("unit", unit)
@@ -97,6 +99,7 @@ def add_energy_balance(
     for name in gains:
         if name in losses:
             raise ValueError(f"{name!r} is among gains and losses: it must be one of them")
+    _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     powers = [*gains.values(), *losses.values()]
     bodies: list[int] = []
 
@@ -108,7 +111,7 @@ def add_energy_balance(
             bodies.extend(_bodies(mbs))
         return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
 
-    quiet = {"storeInternal": True, "writeToFile": False}
+    internal = {"storeInternal": True, "writeToFile": False}
     node = mbs.AddNode(
         items.NodeGenericODE1(
             referenceCoordinates=[0.0] * len(powers),
@@ -118,9 +121,9 @@ def add_energy_balance(
     )
     mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
     works_sensor = mbs.AddSensor(
-        items.SensorNode(nodeNumber=node, outputVariableType=exu.OutputVariableType.Coordinates, **quiet)
+        items.SensorNode(nodeNumber=node, outputVariableType=exu.OutputVariableType.Coordinates, **internal)
     )
-    energy_sensor = mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **quiet))
+    energy_sensor = mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **internal))
 
     def read() -> EnergyBalance:
         times, *works = mbs.GetSensorStoredData(works_sensor).T
@@ -137,7 +140,38 @@ def add_energy_balance(
 
 def spring_energy(connector: Any) -> Energy:
     """Return the energy of a native connector with springs, from its ``ObjectIndex``."""
-    return lambda mbs: float(mbs.GetObjectOutput(connector, exu.OutputVariableType.PotentialEnergy))
+    return _SpringEnergy(connector)
+
+
+@dataclass(frozen=True)
+class _SpringEnergy:
+    connector: Any
+
+    def __call__(self, mbs: Any) -> float:
+        return float(mbs.GetObjectOutput(self.connector, exu.OutputVariableType.PotentialEnergy))
+
+
+def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
+    """Raise ``ValueError`` if one of ``springs`` has no energy; what belongs to it may still be missing."""
+    for spring in springs:
+        try:
+            kind = mbs.GetObject(spring.connector)["objectType"]
+        except exu.ExudynError:
+            raise ValueError(
+                f"spring_energy({spring.connector!r}): it must be the ObjectIndex of an object of this model"
+            ) from None
+        with quiet():
+            try:
+                mbs.Assemble()
+            except exu.ExudynError:
+                return
+            try:
+                spring(mbs)
+            except exu.ExudynError:
+                raise ValueError(
+                    f"spring_energy of object {int(spring.connector)}: this {kind} tells no potential energy; take "
+                    "a spring of Exudyn without a function of yours, or a function of mbs that returns the energy"
+                ) from None
 
 
 def _bodies(mbs: Any) -> list[int]:

@@ -23,6 +23,7 @@ from exudyn_models.slip_map import (
     friction_on_nodes,
     jacobian_on_any,
 )
+from exudyn_models.stick_dampers import StickDampers
 from exudyn_models.strength import Strength
 from reference_model.systems import FloatArray
 
@@ -33,16 +34,29 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def functions_of_pair(
     kinds: Kinds, reference: FloatArray, strength: Strength
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return force and Jacobian for the strength as it is now, with the nodes' ``reference`` coordinates."""
+    """Return force and Jacobian for the strength as it is now, with the nodes' ``reference`` coordinates.
+
+    The force carries the ``StickDampers`` of the contact.
+    """
     if strength.depends_on_motion:
-        return _force_by_motion(kinds, reference, strength), _jacobian_by_motion(kinds, reference, strength)
-    force, jacobian = LAWS.get(kinds, (force_on_any, jacobian_on_any))
-    rest, size = [*kinds, *reference.tolist()], len(reference)
-    sizes = CONTACT_SIZE + len(rest), None, None, None, size, size
-    return (
-        _under(strength, rest, taking_lists(force, *sizes)),
-        _under(strength, rest, taking_lists(jacobian, *sizes, float, float)),
-    )
+        force = _force_by_motion(kinds, reference, strength)
+        jacobian = _jacobian_by_motion(kinds, reference, strength)
+    else:
+        laws = LAWS.get(kinds, (force_on_any, jacobian_on_any))
+        rest, size = [*kinds, *reference.tolist()], len(reference)
+        sizes = CONTACT_SIZE + len(rest), None, None, None, size, size
+        force = _under(strength, rest, taking_lists(laws[0], *sizes))
+        jacobian = _under(strength, rest, taking_lists(laws[1], *sizes, float, float))
+    setattr(force, _DAMPERS, StickDampers(kinds, reference, strength))
+    return force, jacobian
+
+
+_DAMPERS = "stick_dampers"
+
+
+def stick_dampers_of(force: Any) -> StickDampers | None:
+    """Return what a ``force`` of ``functions_of_pair`` carries, None for any other function."""
+    return getattr(force, _DAMPERS, None)
 
 
 def _under(strength: Strength, rest: Floats, evaluate: Callable[..., Any]) -> Callable[..., Any]:

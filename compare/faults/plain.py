@@ -3,7 +3,7 @@
 It integrates eq. 1 or 19 with LSODA, which copes with the stiffness of stick; the velocities among its unknowns are
 relative to the master disc, so that creep keeps its digits. Friction is viscous below a small slip speed ε, and a
 contact sticks while its friction is not full. ε falls with the tolerance, so that the error of both can be estimated.
-Nothing but parameters and results is shared with the two engines of the project.
+Nothing but parameters, results and the cache on disk is shared with the two engines of the project.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import LSODA
 from scipy.optimize import brentq
 
+from reference_model.compiled_cache import known_by_content
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -34,8 +35,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compiled(function: Function) -> Function:
-    """Compile ``function`` at its first call, or take what an earlier process left: all of it is in this file."""
-    return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
+    """Compile ``function`` at its first call, or take what an earlier process left."""
+    dispatcher = numba.njit(cache=True, error_model="numpy")(function)
+    known_by_content(dispatcher)
+    return cast(Function, dispatcher)
 
 
 class Make(NamedTuple):

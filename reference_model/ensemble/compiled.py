@@ -7,11 +7,11 @@ nothing here may be reordered or contracted (``fastmath`` stays off; FMA would m
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+
+from reference_model.compiled_cache import known_by_content
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -35,22 +35,7 @@ def written_out(function: Function) -> Function:
 
 
 def outermost(function: Function) -> Function:
-    """Compile ``function``, which Python calls, at its first call, or take what an earlier process left.
-
-    numba forgets what it left when the file of the function changes, but not when those of its callees do: it is
-    forgotten here when any module of this package has changed.
-    """
+    """Compile ``function``, which Python calls, at its first call, or take what an earlier process left."""
     dispatcher = numba.njit(error_model="numpy", nogil=True, cache=True)(function)
-    _forget_outdated(dispatcher.stats.cache_path)
+    known_by_content(dispatcher)
     return cast(Function, dispatcher)
-
-
-@cache
-def _forget_outdated(folder: str) -> None:
-    newest = max(path.stat().st_mtime_ns for path in Path(__file__).parent.glob("*.py"))
-    for index in Path(folder).glob("*.nbi"):
-        try:
-            if index.stat().st_mtime_ns < newest:
-                index.unlink()
-        except FileNotFoundError:
-            pass  # another process was faster

@@ -33,7 +33,7 @@ def clutch(load=2.0):
         contact_radius=0.1,
         friction_coefficient=0.5,
         normal_load=load,
-        regularisation=1e-3,
+        regularisation=5e-3,
     )
     return mbs, disc
 

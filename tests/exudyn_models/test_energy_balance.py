@@ -139,3 +139,46 @@ def test_what_is_no_balance_is_refused(wrong, message):
     mbs = exu.SystemContainer().AddSystem()
     with pytest.raises(ValueError, match=message):
         add_energy_balance(mbs, **{"gains": {}, "losses": {}} | wrong)
+
+
+@pytest.mark.parametrize("what", ["body", "ground", "joint", "friction", "spring with a function"])
+def test_what_tells_no_potential_energy_is_refused_where_it_is_added(what):
+    mbs = exu.SystemContainer().AddSystem()
+    node, ground = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3), mbs.AddObject(items.ObjectGround())
+    markers = [
+        mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=ground)),
+        mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)),
+    ]
+    springs = {"markerNumbers": markers, "stiffness": [1.0, 1.0, 0.0]}
+    wrong = {
+        "body": lambda: 0,
+        "ground": lambda: ground,
+        "joint": lambda: mbs.AddObject(
+            items.ObjectJointSpherical(markerNumbers=markers, constrainedAxes=[1, 1, 0])
+        ),
+        "friction": lambda: (
+            add_ring_friction(
+                mbs,
+                rotor(mbs, 1.0, 0.0),
+                node,
+                contact_radius=0.1,
+                friction_coefficient=0.3,
+                normal_load=1.0,
+                regularisation=1e-3,
+            ).item
+        ),
+        "spring with a function": lambda: mbs.AddObject(
+            items.CartesianSpringDamper(**springs, springForceUserFunction=lambda *arguments: [0.0, 0.0, 0.0])
+        ),
+    }[what]()
+    right = mbs.AddObject(items.CartesianSpringDamper(**springs))
+    balance = {"gains": {}, "losses": {"none": lambda mbs, t: 0.0}}
+    with pytest.raises(
+        ValueError, match=rf"spring_energy of object {int(wrong)}: this \w+ tells no potential energy"
+    ):
+        add_energy_balance(mbs, **balance, stored=[spring_energy(right), spring_energy(wrong)])
+    with pytest.raises(
+        ValueError, match=r"spring_energy\(99\): it must be the ObjectIndex of an object of this"
+    ):
+        add_energy_balance(mbs, **balance, stored=[spring_energy(99)])
+    add_energy_balance(mbs, **balance, stored=[spring_energy(right)])
