@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Literal, get_args
 
@@ -90,6 +90,8 @@ class Claim:
         "" for a dimensionless number.
     note : str
         How the measurement or its error estimate was made, where that is not obvious.
+    named : mapping
+        Names by which texts quote an element (its flat index), or all of them at once (None), see ``compare.quotes``.
 
     """
 
@@ -104,6 +106,7 @@ class Claim:
     source: str
     unit: str = ""
     note: str = ""
+    named: Mapping[str, int | None] = field(default_factory=dict)
 
     def __init__(
         self,
@@ -119,6 +122,7 @@ class Claim:
         source: str,
         unit: str = "",
         note: str = "",
+        named: Mapping[str, int | None] | None = None,
     ) -> None:
         values = {
             "sentence": sentence,
@@ -132,6 +136,7 @@ class Claim:
             "source": source,
             "unit": unit,
             "note": note,
+            "named": dict(named or {}),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -144,6 +149,9 @@ class Claim:
             )
         if self.predicted.size == 0:
             raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+        for name, place in self.named.items():
+            if place is not None and not 0 <= place < self.predicted.size:
+                raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
         if np.broadcast_shapes(budget.numerical.shape, self.predicted.shape) != self.predicted.shape:
             raise ValueError(
                 f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
@@ -163,7 +171,7 @@ class Claim:
 
     @property
     def verdict(self) -> Verdict:
-        """Agrees, differs (also when a number is missing), or inconclusive, as ``design.md`` defines them."""
+        """Differs beyond the budget or without a number, is inconclusive beyond the resolution, agrees elsewhere."""
         within = self.difference <= self.budget.total  # False for NaN
         if not np.all(np.isfinite(self.measured)) or not np.all(within):
             return Verdict.DIFFERS

@@ -140,6 +140,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "parameters": {name: _parameter_as_json(value) for name, value in claim.parameters.items()},
         "source": claim.source,
         "note": claim.note,
+        "named": dict(claim.named),
     }
 
 
@@ -161,6 +162,7 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
         source=content["source"],
         unit=content["unit"],
         note=content["note"],
+        named=content["named"],
     )
 
 

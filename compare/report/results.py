@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from compare.errata import Evidence
+from compare.quotes import filled
 from compare.report.matrix import Matrix, State
 from compare.runner import Drawing, Run
 from compare.store import claim_as_json, number_as_json
@@ -50,6 +51,7 @@ def _study(run: Run, matrix: Matrix, i: int) -> dict[str, Any]:
     return {
         "name": study.name,
         "title": study.title,
+        "finding": filled(study.finding, group.claims),
         "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",

@@ -194,6 +194,7 @@ def balance_claim(
         note="Largest residual at any time, as a fraction of the energy turned over (heat, and the most that was "
         "stored). Error: change with the engine's tolerance, and with every second sample left out of the "
         "balance's quadrature, and the rounding of the energies.",
+        named={name.replace(",", ""): None},
     )
 
 

@@ -56,8 +56,13 @@ def kind_of_end(simulate: Simulate, start: Start) -> tuple[str, float, float]:
     return "modulated cycle" if high - low > MODULATED * (high + low) else "whirl", low, high
 
 
-def ends_of(simulate: Simulate, name: str, sentence: str, starts: Sequence[Start]) -> tuple[list[str], Claim]:
-    """Return what the motions end as, and the claim that it is what they are said to."""
+def ends_of(
+    simulate: Simulate, name: str, sentence: str, starts: Sequence[Start], equation: str = "(19), (20)"
+) -> tuple[list[str], Claim]:
+    """Return what the motions end as, and the claim that it is what they are said to.
+
+    ``equation`` is that of the motions and of their law of friction.
+    """
     found = [kind_of_end(simulate, start)[0] for start in starts]
     durations = sorted({start.duration for start in starts})
     differing = [
@@ -67,7 +72,7 @@ def ends_of(simulate: Simulate, name: str, sentence: str, starts: Sequence[Start
     ]
     return found, Claim(
         sentence,
-        equation="(19)",
+        equation=equation,
         engine=name,
         predicted=0.0,
         measured=float(len(differing)),
