@@ -22,7 +22,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from compare.quotes import Nature, quote
+from compare.quotes import Nature, parts, quote
 from compare.report.matrix import WORST_FIRST, State
 from compare.store import claim_from_json, write_text
 
@@ -148,6 +148,9 @@ def _chosen(results: Results, conditions: str) -> Iterator[dict[str, Any]]:
     """Yield the verdicts whose fields have the values of ``conditions``, "engine=exudyn, verdict=agrees"."""
     pairs = [part.strip().split("=", 1) for part in conditions.split(",") if part.strip()]
     for verdict in _verdicts(results):
+        for name, _ in pairs:
+            if name not in verdict:
+                raise ValueError(f"{name!r} is no field of a claim, which has {', '.join(verdict)}")
         if all(str(verdict[name]) == value for name, value in pairs):
             yield verdict
 
@@ -188,6 +191,23 @@ def parted(results: Results, root: Path = ROOT) -> list[str]:
     return sentences
 
 
+def unmeasured(results: Results) -> list[str]:
+    """Return a sentence for each quote in the texts of studies that no claim of a whole report measures."""
+    from compare.studies import studies
+
+    found = {study["name"]: study["claims"] for study in results["studies"]} if _is_whole(results) else {}
+    sentences = []
+    for study in studies(found) if found else ():
+        claims = [claim_from_json(claim) for claim in found[study.name]]
+        for text in (study.finding, study.paper, *study.figures.values()):
+            sentences += [
+                f"{study.name}: no claim has {words!r}"
+                for _, words in parts(text)
+                if words is not None and quote(claims, words) is None
+            ]
+    return list(dict.fromkeys(sentences))
+
+
 def unlike(root: Path = ROOT) -> list[str]:
     """Return a sentence for each marked number that is not as it is kept, and for each that is kept in vain."""
     numbers = kept(root)
@@ -208,7 +228,7 @@ def main(arguments: list[str], root: Path = ROOT) -> int:
     results = json.loads(Path(arguments[1]).read_text(encoding="utf-8"))
     if arguments[0] == "write":
         write(results, root)
-    sentences = unlike(root) + parted(results, root)
+    sentences = unlike(root) + parted(results, root) + unmeasured(results)
     for sentence in sentences:
         print(sentence)
     if sentences:

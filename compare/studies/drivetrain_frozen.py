@@ -45,11 +45,12 @@ def theory() -> Findings:
     return Findings((claim_of_reference(centred),), lines_of_reference(car) | maps_of_modulation(centred))
 
 
-MODULATED_FROM = (
-    f"{100.0 * BORDER_SURPLUS:g} % too much load, the whirl is modulated from "
-    f"{{border at {BORDER_TORQUES[-1]:g} N m, 4 digits}} turns a minute (a torque of {BORDER_TORQUES[-1]:g} N m) to "
-    f"{{border at {BORDER_TORQUES[0]:g} N m, 4 digits}} ({BORDER_TORQUES[0]:g} N m)"
+MODULATED_ABOVE = (
+    f"{100.0 * BORDER_SURPLUS:g} % too much load, it is modulated above "
+    f"{{border at {BORDER_TORQUES[-1]:g} N m, 4 digits}} turns a minute at a torque of {BORDER_TORQUES[-1]:g} N "
+    f"m, and above {{border at {BORDER_TORQUES[0]:g} N m, 4 digits}} at {BORDER_TORQUES[0]:g} N m"
 )
+"""Of a whirl within the play."""
 
 STUDY = Study(
     name="drivetrain-frozen",
@@ -59,15 +60,15 @@ STUDY = Study(
     "which it slows down, and a torsional spring, and its support has a stop. While the motion is steady, that is "
     "the paper's disc all the same: what the paper calls self-centring, loss of stability and limit cycle with large "
     "displacements must be found where the reference finds them for the reduced disc. While it is not, the inertia "
-    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: with "
-    f"{MODULATED_FROM} on.",
+    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: within "
+    f"the play, with {MODULATED_ABOVE}.",
     measure=measure,
     theory=theory,
     draw=draw,
     figures={
         "drivetrain-steady": "On a bench that holds the flywheel's speed, 80 N m and 12 rad/s of slip. Left: where "
-        "the disc rests below the onset: with the speed it moves from the shaft's axis along the paper's semicircle "
-        "towards the engine's. Right: radius and frequency of the whirl above the onset, on the stop.",
+        "the disc rests below the onset: as the speed grows it moves from the shaft's axis along the paper's "
+        "semicircle towards the engine's. Right: radius and frequency of the whirl above the onset, on the stop.",
         "drivetrain-map": "Eigenvalues of the whole drivetrain about the whirl of a clutch that is pressed more than "
         "its torque needs, from the reference's law of friction. Red: the modulation grows; blue: it decays; white: "
         "no whirl keeps the clutch from locking up; black line: the whirl reaches the stop. The star marks "
@@ -77,7 +78,7 @@ STUDY = Study(
         "the axis in between.",
     },
     only=("exudyn",),
-    finding="A whirl can keep a clutch slipping whose load is more than its torque needs. Within the play of its "
-    f"pilot bearing, with {MODULATED_FROM} on.",
+    finding="A whirl can keep a clutch slipping whose load is more than its torque needs. Within the play of "
+    f"the pilot bearing, with {MODULATED_ABOVE}.",
     seconds=6.0,
 )

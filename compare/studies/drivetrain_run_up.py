@@ -137,8 +137,7 @@ def lines_claim(engine: str, found: Data, finer: Data) -> Claim:
         f"{natural_frequency(car) / RPM:.0f} and {np.count_nonzero(above)} above {circling[0] / RPM:.0f} turns a "
         f"minute; a parabola through the top. Predicted: 1 − slip/ω, and the whirl at frozen speeds without offset. "
         f"Between the two lines lie {LINES_APART:g} orders or more. Model error: 1/{TURNS} of an order, what a "
-        f"window of so many "
-        "turns resolves. Numerical error: the largest change at a smaller tolerance.",
+        "window of so many turns resolves. Numerical error: the largest change at a smaller tolerance.",
     )
 
 

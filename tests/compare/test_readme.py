@@ -122,6 +122,18 @@ def test_numbers_part_by_more_than_their_nature_allows(root, changed, told):
     assert {sentence.rpartition(": the text has")[0] for sentence in parted(results(**changed), root)} == told
 
 
+def test_a_condition_on_a_field_that_claims_have_not_is_refused(root):
+    with pytest.raises(ValueError, match="'colour' is no field of a claim, which has study, sentence"):
+        readme.number_in(results(), "verdicts: colour=red")
+
+
+def test_a_quote_in_a_study_that_no_claim_has_is_told_by_a_whole_report_only():
+    found = readme.unmeasured(results())
+    assert "basins: no claim has 'share at 1.5 rad/s, %, 3 digits'" in found
+    assert "foreign-engines: no claim has 'late by a box, 2 digits'" in found
+    assert readme.unmeasured(results(whole=False)) == []
+
+
 def test_counts_are_exact():
     count = Number("223", 223, 0.0, "count")
     assert count.parts_from(replace(count, value=224))
@@ -135,10 +147,14 @@ def test_a_mark_without_a_number_shows_an_ellipsis():
 def test_the_command_writes_and_checks(root, capsys):
     path = root / "results.json"
     path.write_text(json.dumps(results()), encoding="utf-8")
+    path.write_text(json.dumps(results(whole=False)), encoding="utf-8")
     assert readme.main(["check", str(path)], root) == 1
+    assert readme.main(["write", str(path)], root) == 1  # a part of a report has no counts
+    (root / "README.md").write_text(TEXT.split("\n", 1)[1], encoding="utf-8")
+    path.write_text(json.dumps(results(whole=False)), encoding="utf-8")
     assert readme.main(["write", str(path)], root) == 0
     assert readme.main(["check", str(path)], root) == 0
-    path.write_text(json.dumps(results(measured=0.06)), encoding="utf-8")
+    path.write_text(json.dumps(results(measured=0.06, whole=False)), encoding="utf-8")
     capsys.readouterr()
     assert readme.main(["check", str(path)], root) == 1
     assert (
