@@ -3,10 +3,16 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: report test lint benchmarks clean
+.PHONY: report readme test lint benchmarks clean
 
+# In the end the numbers of README and docs must be those of the report.
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
+	$(BIN)/python -m compare.readme check report/results.json
+
+# Takes the numbers of README and docs over from the last report.
+readme: $(VENV)/installed
+	$(BIN)/python -m compare.readme write report/results.json
 
 test: $(VENV)/installed
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal

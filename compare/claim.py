@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Literal, get_args
 
@@ -121,6 +121,8 @@ class Claim:
         it is read off the same numbers; "" for none.
     answers : bool
         Whether the numbers count answers of yes or no, see ``compare.answers``.
+    named : mapping
+        Names by which texts quote an element (its flat index), or all of them at once (None), see ``compare.quotes``.
 
     """
 
@@ -138,6 +140,7 @@ class Claim:
     basis: Basis = "independent"
     implied_by: str = ""
     answers: bool = False
+    named: Mapping[str, int | None] = field(default_factory=dict)
 
     def __init__(
         self,
@@ -156,6 +159,7 @@ class Claim:
         basis: Basis | None = None,
         implied_by: str = "",
         answers: bool = False,
+        named: Mapping[str, int | None] | None = None,
     ) -> None:
         values = {
             "sentence": sentence,
@@ -172,6 +176,7 @@ class Claim:
             "basis": _usual_basis(kind, engine) if basis is None else basis,
             "implied_by": implied_by,
             "answers": answers,
+            "named": dict(named or {}),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -188,6 +193,9 @@ class Claim:
             )
         if self.predicted.size == 0:
             raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+        for name, place in self.named.items():
+            if place is not None and not 0 <= place < self.predicted.size:
+                raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
         if np.broadcast_shapes(budget.numerical.shape, self.predicted.shape) != self.predicted.shape:
             raise ValueError(
                 f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
@@ -225,7 +233,7 @@ class Claim:
 
     @property
     def verdict(self) -> Verdict:
-        """Agrees, differs (also when a number is missing), or inconclusive, as ``design.md`` defines them."""
+        """Differs beyond the budget or without a number, is inconclusive beyond the resolution, agrees elsewhere."""
         within = self.difference <= self.budget.total  # False for NaN
         if not np.all(np.isfinite(self.measured)) or not np.all(within):
             return Verdict.DIFFERS

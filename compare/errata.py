@@ -83,7 +83,7 @@ class Erratum:
 def _characteristic_coefficient() -> Evidence:
     matrix_coefficients = np.poly(variational_matrix(CENTRED))
     return Evidence(
-        "coefficient of λ² of det(λI − A), A the matrix of (12), in 1/s, at Fig. 4's parameters with ω = 1.5",
+        "coefficient of λ² of det(λI − A), A the matrix of (12), in 1/s, at Fig. 4's parameters with ω = 1.5 rad/s",
         exact=float(matrix_coefficients[1]),
         printed_value=float(characteristic_coefficients_as_printed(CENTRED)[1]),
         corrected_value=float(characteristic_coefficients(CENTRED)[1]),
@@ -101,7 +101,7 @@ def _force_on_the_circle() -> Evidence:
     # Uniform motion on a circle takes no tangential force; the printed statement says that none is left.
     corrected = pin.friction_force * math.copysign(1.0, pin.disc_speed - k) - pin.damping * k * radius
     return Evidence(
-        "tangential force in N on a pin on the circle (11) at Fig. 4's parameters with ω = 0.8 < k",
+        "tangential force in N on a pin on the circle (11) at Fig. 4's parameters with ω = 0.8 rad/s < k",
         exact=force.imag,
         printed_value=0.0,
         corrected_value=corrected,
@@ -111,7 +111,7 @@ def _force_on_the_circle() -> Evidence:
 def _shift_of_the_whirl() -> Evidence:
     pin = replace(CENTRED, disc_speed=1.2, offset=1e-3)
     return Evidence(
-        "x_s/X0 of the whirl for X0 = 1 mm, at Fig. 4's parameters with ω = 1.2; exact: the periodic orbit",
+        "x_s/X0 of the whirl for X0 = 1 mm, at Fig. 4's parameters with ω = 1.2 rad/s; exact: the periodic orbit",
         exact=float(whirl_orbit(pin).mean[0]) / pin.offset,
         printed_value=whirl_shift(pin)[0] / pin.offset,
         corrected_value=first_order_whirl_shift(pin)[0] / pin.offset,
@@ -195,10 +195,10 @@ ERRATA: tuple[Erratum, ...] = (
         "(22), first line",
         printed="ν̃_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r²",
         correct="ν̄_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r² + (3/2)R²(ω − φ̇)²ν̃_xy²/ν̄_r⁴",
-        explanation="|ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², so that the right side belongs to the "
-        "reciprocal of |ν_r| over its mean square. (23) is the average of the slip velocity times three terms: its "
-        "¾Φ comes from the third, which the printed line leaves out. As printed the moment would not depend on "
-        "the slip of the centre at all.",
+        explanation="|ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², so that the right side is an "
+        "expansion of ν̄_r/|ν_r|, where ν̄_r is the root mean square of |ν_r| over the ring. (23) is the average "
+        "of the slip velocity times three terms: its ¾Φ comes from the third, which the printed line leaves out. "
+        "As printed the moment would not depend on the slip of the centre at all.",
         evidence=_moment_of_the_expansion,
     ),
     Erratum(

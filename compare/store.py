@@ -125,6 +125,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "basis": claim.basis,
         "implied_by": claim.implied_by,
         "answers": claim.answers,
+        "named": dict(claim.named),
     }
 
 
@@ -149,6 +150,7 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
         basis=content["basis"],
         implied_by=content["implied_by"],
         answers=content["answers"],
+        named=content["named"],
     )
 
 

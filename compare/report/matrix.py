@@ -115,6 +115,11 @@ class Group:
     study: Study
     rows: tuple[Row, ...]
 
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """All claims, row by row."""
+        return tuple(claim for row in self.rows for claim in row.claims)
+
     def count(self, column: str) -> Counter[State]:
         """Return how many cells of the column are in each state."""
         return Counter(row.cells[column].state for row in self.rows if column in row.cells)

@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 
 MINUS = "\N{MINUS SIGN}"
+
+MOST_DIGITS = 12
+"""Of a result, however small its error."""
+
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -25,19 +29,19 @@ def with_digits(value: float, digits: int) -> str:
     return text.replace("-", MINUS)
 
 
-def value_text(value: float, uncertainty: float) -> str:
-    """Return a result with its digits down to the first of ``uncertainty``: 4 (2 in the noise) to 12."""
+def value_text(value: float, uncertainty: float, most: int = MOST_DIGITS) -> str:
+    """Return a result with its digits down to the first of ``uncertainty``: 4 (2 in the noise) to ``most``."""
     if not (math.isfinite(value) and math.isfinite(uncertainty)) or value == 0.0:
         return with_digits(value, 4)
     if uncertainty <= 0.0:
-        return trimmed(value)
+        return trimmed(value) if most == MOST_DIGITS else with_digits(value, most)
     digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(uncertainty)) + 1
-    return with_digits(value, min(max(digits, 2 if uncertainty >= abs(value) else 4), 12))
+    return with_digits(value, min(max(digits, 2 if uncertainty >= abs(value) else 4), most))
 
 
-def error_text(value: float) -> str:
+def error_text(value: float, digits: int = 2) -> str:
     """Return an error or a difference: two digits say enough."""
-    return with_digits(value, 2)
+    return with_digits(value, digits)
 
 
 def trimmed(value: float) -> str:

@@ -11,8 +11,9 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from compare import quotes
 from compare.claim import EVIDENCE, THEORY, Claim, Evidence
-from compare.report.matrix import WORST_FIRST, Cell, Matrix, Row, State, state_of
+from compare.report.matrix import WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
 from compare.report.worst import Worst, answers_text, in_short, worst
 from compare.runner import Drawing, Run
@@ -74,8 +75,9 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
             exceptions=_exceptions(matrix),
             measurements=_measurements,
             common=_common,
-            findings=[group.study for group in matrix.groups if group.study.finding and group.agrees],
-            pictures=lambda study: _pictures(run, study),
+            findings=[group for group in matrix.groups if group.agrees and _is_answered(group)],
+            quoting=_quoting,
+            pictures=lambda group: _pictures(run, group),
             drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
             commands=lambda study: _commands(run, study),
             failed=lambda value: isinstance(value, Failure),
@@ -210,7 +212,38 @@ def _parameter(value: Any) -> str:
     return trimmed(float(value)) if isinstance(value, (int, float)) else str(value)
 
 
-def _pictures(run: Run, study: Study) -> list[Picture]:
+def _is_answered(group: Group) -> bool:
+    """Tell whether the study has a finding all of whose numbers were measured."""
+    finding = group.study.finding
+    return bool(finding) and quotes.MISSING not in quotes.filled(finding, group.claims)
+
+
+def _quoting(group: Group, text: str) -> Markup:
+    """Return a text of the group's study with its quotes, each with its error and a link to its claim."""
+    found = Markup()
+    for literal, words in quotes.parts(text):
+        found += literal
+        if words is None:
+            continue
+        quote = quotes.quote(group.claims, words)
+        if quote is None:
+            found += quotes.MISSING
+            continue
+        place = next(i for i, row in enumerate(group.rows, 1) if quote.claim in row.claims)
+        found += Markup('<a class="quote" href="#{}-{}" title="{}">{}</a>').format(
+            group.study.name, place, _origin(quote), quote.text
+        )
+    return found
+
+
+def _origin(quote: quotes.Quote) -> str:
+    """Return who measured a quoted number, and its error."""
+    error = f"± {error_text(quote.error)}, " if quote.nature == "measured" else ""
+    return f"{error}{quote.claim.engine}: {quote.claim.sentence}"
+
+
+def _pictures(run: Run, group: Group) -> list[Picture]:
+    study = group.study
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []

@@ -6,6 +6,7 @@ from typing import Any
 
 from compare.claim import EVIDENCE, Claim
 from compare.errata import Evidence
+from compare.quotes import filled
 from compare.report.matrix import VERDICTS, Cell, Matrix, State
 from compare.report.worst import worst
 from compare.runner import Drawing, Run
@@ -56,6 +57,7 @@ def _study(run: Run, matrix: Matrix, i: int) -> dict[str, Any]:
     return {
         "name": study.name,
         "title": study.title,
+        "finding": filled(study.finding, group.claims),
         "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",

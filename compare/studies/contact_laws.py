@@ -25,8 +25,10 @@ DISCS = {"ring": FIG11, "points6": replace(FIG11, contact_points=6)}
 
 SENTENCES = {
     "ring": "Friction on the continuous ring is the integral (20)",
-    "points6": "Friction on six points is the sum of (21)",
+    "points6": "Friction on six points is the mean of (20) over the points, which slip as (21) says",
 }
+
+EQUATIONS = {"ring": "(20)", "points6": "(21)"}
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """U/W of the motions: not too near to U = W, where friction has no derivative."""
@@ -104,7 +106,7 @@ def measure(engine: Engine, ratios: Sequence[float] = RATIOS) -> Findings:
         claims.append(
             Claim(
                 SENTENCES[name],
-                equation="(20)",
+                equation=EQUATIONS[name],
                 engine=engine.name,
                 predicted=predicted_friction(disc, ratios),
                 measured=measured,

@@ -8,7 +8,14 @@ from compare.engines import Engine
 from compare.studies.drivetrain_bench import passenger_car
 from compare.studies.drivetrain_frozen_pictures import draw
 from compare.studies.drivetrain_map import maps_of_modulation
-from compare.studies.drivetrain_modulated import claim_of_growth, claim_of_linearisation, modulated_whirl
+from compare.studies.drivetrain_modulated import (
+    BORDER_SURPLUS,
+    BORDER_TORQUES,
+    claim_of_border,
+    claim_of_growth,
+    claim_of_linearisation,
+    modulated_whirl,
+)
 from compare.studies.drivetrain_onset import claim_of_linearised_drivetrain, claim_of_reference
 from compare.studies.drivetrain_steady import claims_of_steady_motions, lines_of_reference
 from compare.study import Findings, Study
@@ -24,6 +31,7 @@ def measure(engine: Engine) -> Findings:
         claim_of_linearised_drivetrain(engine.name, centred),
         *steady,
         claim_of_linearisation(engine.name, centred),
+        claim_of_border(engine.name, centred),
         claim_of_growth(engine.name, centred),
         balance,
     )
@@ -37,6 +45,13 @@ def theory() -> Findings:
     return Findings((claim_of_reference(centred),), lines_of_reference(car) | maps_of_modulation(centred))
 
 
+MODULATED_ABOVE = (
+    f"{100.0 * BORDER_SURPLUS:g} % too much load, it is modulated above "
+    f"{{border at {BORDER_TORQUES[-1]:g} N m, 4 digits}} turns a minute at a torque of {BORDER_TORQUES[-1]:g} N "
+    f"m, and above {{border at {BORDER_TORQUES[0]:g} N m, 4 digits}} at {BORDER_TORQUES[0]:g} N m"
+)
+"""Of a whirl within the play."""
+
 STUDY = Study(
     name="drivetrain-frozen",
     title="The clutch of a car at frozen speeds",
@@ -45,26 +60,25 @@ STUDY = Study(
     "which it slows down, and a torsional spring, and its support has a stop. While the motion is steady, that is "
     "the paper's disc all the same: what the paper calls self-centring, loss of stability and limit cycle with large "
     "displacements must be found where the reference finds them for the reduced disc. While it is not, the inertia "
-    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: with 10 % "
-    "too much load its map shows a modulated whirl from 4,100 turns a minute on.",
+    "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: within "
+    f"the play, with {MODULATED_ABOVE}.",
     measure=measure,
     theory=theory,
     draw=draw,
     figures={
         "drivetrain-steady": "On a bench that holds the flywheel's speed, 80 N m and 12 rad/s of slip. Left: where "
-        "the disc rests below the onset: with the speed it moves from the shaft's axis along the paper's semicircle "
-        "towards the engine's. Right: radius and frequency of the whirl above the onset, on the stop.",
+        "the disc rests below the onset: as the speed grows it moves from the shaft's axis along the paper's "
+        "semicircle towards the engine's. Right: radius and frequency of the whirl above the onset, on the stop.",
         "drivetrain-map": "Eigenvalues of the whole drivetrain about the whirl of a clutch that is pressed more than "
         "its torque needs, from the reference's law of friction. Red: the modulation grows; blue: it decays; white: "
-        "no whirl keeps the clutch from locking up; black line: the whirl reaches the stop. The star is the next "
-        "figure.",
+        "no whirl keeps the clutch from locking up; black line: the whirl reaches the stop. The star marks "
+        "the whirl of the next figure.",
         "drivetrain-modulated": "The modulated whirl of the star: it starts 20 % outside of the steady one. Its "
         "swing grows as in linear theory, until it is a cycle that rolls on the stop, falls off it and rests near "
         "the axis in between.",
     },
     only=("exudyn",),
-    finding="A whirl can keep a clutch slipping whose load is more than its torque needs. On its stop the whirl of "
-    "this car's disc is steady; within its play, with 10 % too much load, it is modulated from 4,100 turns a minute "
-    "on.",
+    finding="A whirl can keep a clutch slipping whose load is more than its torque needs. Within the play of "
+    f"the pilot bearing, with {MODULATED_ABOVE}.",
     seconds=6.0,
 )

@@ -312,7 +312,7 @@ STUDY = Study(
         "capacity; power and heat of the facings; distance of the disc's centre from the engine's axis: the nearer "
         "to lock-up, the stronger friction pulls it there. In stick it turns with the flywheel, and ε lets it creep.",
         "drivetrain-launch-stick": "Left: the torque that the clutch holds in stick, and the same from the creep of "
-        "the facings at three ε and extrapolated to ε = 0. Right: what creep changes of speeds and heat at "
+        "the facings at each ε and extrapolated to ε = 0. Right: what creep changes of speeds and heat at "
         "the end of the launch.",
     },
     only=("exudyn",),

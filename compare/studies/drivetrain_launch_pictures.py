@@ -62,7 +62,7 @@ def _launch(found: Data) -> Figure:
 def _stick(found: Data) -> Figure:
     figure, (torques, order) = new_figure(ncols=2, width=10.0, height=3.8)
     torques.plot(found["t held"], found["held"], **curve("theory", "held by Coulomb friction"))
-    for epsilon, creep, marker in zip(found["epsilon"], found["creep"][:3], "x+s", strict=False):
+    for epsilon, creep, marker in zip(found["epsilon"], found["creep"], "x+sd", strict=False):
         label = f"from creep, ε = {epsilon:g} m/s"
         torques.plot(found["stuck"], creep, **points("exudyn", label, marker=marker))
     torques.plot(found["stuck"], found["limit"], **points("exudyn", "extrapolated to ε = 0", marker="o"))

@@ -6,13 +6,18 @@ friction away. Slip and radius of such a whirl swing about each other, and where
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.linalg import matrix_balance
+from scipy.optimize import brentq
 
 from compare.accuracy import COARSENING, ROUNDING, refined
 from compare.claim import Claim, ErrorBudget
-from compare.studies.common import matched, real_and_imaginary
+from compare.studies.common import at_each, eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.studies.drivetrain_bench import (
     EPSILON,
     RPM,
@@ -38,6 +43,10 @@ if TYPE_CHECKING:
 LINEARISED = (
     "Exudyn's linearisation about a whirl has the eigenvalues that the reference's law of friction gives"
 )
+BORDER = (
+    "A whirl in the play is modulated above the speed at which an eigenvalue by the reference's law of friction is "
+    "imaginary"
+)
 GROWTH = "Small deviations from a whirl in the play grow and turn with the eigenvalue of its modulation"
 BALANCE = "Energy is balanced in the modulated whirl that they lead to"
 
@@ -46,6 +55,12 @@ MODULATED = (6000.0, 0.6, 0.1)
 
 WHIRLS = (MODULATED, (3800.0, 1.3, 0.05), (4500.0, 8.0, 0.01))
 """The same: the second whirl is not modulated, the third is on the stop."""
+
+BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
+"""Of load, and torques in N m: from a small whirl to one that all but reaches the stop."""
+
+BETWEEN = (3900.0, 4300.0)
+"""Speeds in turns a minute below and above the border."""
 
 FINER = 24
 """Rings of the reference's annulus, in place of 16, which show their error."""
@@ -123,6 +138,55 @@ def claim_of_linearisation(engine: str, car: Drivetrain) -> Claim:
         note=f"In axes that turn with the whirl, at {IN_WORDS}. Of ten eigenvalues the six that do not belong to "
         "angles, phase and speed, which are free. Friction of the reference enters by hand, with its whole reaction "
         "on the engine. Numerical error: the change with finer rings of the reference's annulus, and rounding.",
+    )
+
+
+def claim_of_border(engine: str, car: Drivetrain) -> Claim:
+    """Return the speeds above which Exudyn's linearisation has the modulation grow."""
+    from exudyn_models.linearisation import REGULARISATION, state_matrix
+
+    def by_reference(whirl: CarWhirl, rings: int = 16) -> FloatArray:
+        return state_matrix_of(car, whirl, rings)
+
+    def by_exudyn(whirl: CarWhirl) -> FloatArray:
+        return state_matrix(build(car, whirl, regularisation=REGULARISATION).mbs)
+
+    def border(torque: float, matrix: Callable[[CarWhirl], FloatArray]) -> tuple[float, float]:
+        """Return the speed in turns a minute, and its error by the rounding of the eigenvalue."""
+
+        def growth(speed: float) -> tuple[float, float]:
+            whirl = whirl_under_surplus(car, speed * RPM, torque, BORDER_SURPLUS)
+            if whirl is None:
+                return math.nan, math.nan
+            balanced, _ = matrix_balance(in_turning_axes(matrix(whirl), whirl.frequency))
+            values, errors = eigenvalues_with_rounding(balanced)
+            slowest = of_modulation(matrix(whirl), whirl.frequency)[0]
+            return slowest.real, float(errors[np.argmin(np.abs(values - slowest))])
+
+        low, high = (growth(speed)[0] for speed in BETWEEN)
+        if not low < 0.0 < high:
+            return math.nan, 0.0
+        speed = float(brentq(lambda speed: growth(speed)[0], *BETWEEN, xtol=1e-9))
+        return speed, 2.0 * growth(speed)[1] * (BETWEEN[1] - BETWEEN[0]) / (high - low) + 1e-9
+
+    predicted, rounding = np.transpose([border(torque, by_reference) for torque in BORDER_TORQUES])
+    finer = np.array([border(torque, partial(by_reference, rings=FINER))[0] for torque in BORDER_TORQUES])
+    measured, rounded = np.transpose([border(torque, by_exudyn) for torque in BORDER_TORQUES])
+    return Claim(
+        BORDER,
+        equation="",
+        engine=engine,
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(np.abs(finer - predicted) + rounding + rounded, resolution=1.0),
+        parameters=parameters_of(car, surplus=BORDER_SURPLUS),
+        source=SOURCE,
+        unit="turns a minute",
+        note=f"For {at_each('torque', BORDER_TORQUES)} N m, with {100.0 * BORDER_SURPLUS:g} % of load too much. "
+        "Measured: the speed at which Exudyn's linearisation about the whirl has an imaginary eigenvalue. "
+        "Numerical error: rounding of both eigenvalue problems, and the change with finer rings of the "
+        "reference's annulus.",
+        named={f"border at {torque:g} N m": i for i, torque in enumerate(BORDER_TORQUES)},
     )
 
 

@@ -88,6 +88,7 @@ def _claim(sentence: str, engine: str, car: Drivetrain, matrix: Callable[..., Fl
         note=f"For torque and slip of {words}. D = μN·∂F/∂U at U = 0, averaged over the facings, is their damping of "
         "small motions, which turns with the flywheel. The zero of the real part of the radial eigenvalue over ω; "
         "numerical error: rounding of that eigenvalue, by its condition, over the slope.",
+        named={f"onset at {torque:g} N m and {slip:g} rad/s": i for i, (torque, slip) in enumerate(CASES)},
     )
 
 

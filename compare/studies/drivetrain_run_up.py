@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.accuracy import COARSENING
+from compare.accuracy import COARSENING, change_as_error
+from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
 from compare.studies.drivetrain_bench import (
     EPSILON,
     RPM,
+    SOURCE,
     Operation,
     balance_claim,
     natural_frequency,
@@ -19,15 +22,20 @@ from compare.studies.drivetrain_bench import (
     passenger_car,
     rotating_damping,
 )
-from compare.studies.drivetrain_run_up_pictures import animations, draw
+from compare.studies.drivetrain_run_up_pictures import TURNS, animations, draw, strongest_line
 from compare.studies.drivetrain_steady import rest_of, whirl_of
 from compare.study import Data, Findings, Study
+from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
     from exudyn_models.drivetrain import DrivetrainMotion
 
 BALANCE = "Energy is balanced in the run-up of the whole drivetrain"
+LINES = (
+    "The strongest line of the run-up's spectrum is the unbalance's below the natural frequency, above the onset "
+    "it is the reference's whirl"
+)
 
 IDLE, TOP = 800.0, 6000.0
 """In turns a minute."""
@@ -39,6 +47,9 @@ SLIP, GAIN = 12.0, 0.05
 """Slip to hold in rad/s, and by which part of itself the load grows with each rad/s too much."""
 
 TOLERANCE = 8e-7
+
+LINES_APART = 0.06
+"""In orders of the engine: what lies between unbalance and whirl at least, above the onset."""
 
 SAMPLE = 5e-4
 """In s: 20 times in a turn at 6000 turns a minute."""
@@ -85,14 +96,57 @@ def measure(engine: Engine, top: float = TOP) -> Findings:
         [motion.energy for motion in motions],
         parameters_of(car, torque=TORQUE, ripple=RIPPLE, slip=SLIP, gain=GAIN),
     )
-    motion = motions[0]
-    data = {
-        "times": motion.times,
-        "engine": np.column_stack((motion.engine_angle, motion.engine_speed)),
-        "disc": motion.disc,
-        "slip": motion.slip,
-    }
-    return Findings((claim,), data)
+    data, finer = (
+        {
+            "times": motion.times,
+            "engine": np.column_stack((motion.engine_angle, motion.engine_speed)),
+            "disc": motion.disc,
+            "slip": motion.slip,
+        }
+        for motion in motions
+    )
+    lines = (
+        ()
+        if motions[0].engine_angle[-1] < 2.0 * math.pi * TURNS
+        else (lines_claim(engine.name, data, finer),)
+    )
+    return Findings((claim, *lines), data)
+
+
+def lines_claim(engine: str, found: Data, finer: Data) -> Claim:
+    """Return the order of the strongest forward line in each window of the spectrum."""
+    car = passenger_car()
+    (speeds, measured), (_, other) = strongest_line(found), strongest_line(finer)
+    circling, _, frequency = whirls_above_onset(car).T
+    below, above = speeds < natural_frequency(car), speeds >= circling[0]
+    unbalance = 1.0 - SLIP / speeds
+    whirl = np.interp(speeds, circling, frequency) / speeds
+    chosen = below | above
+    return Claim(
+        LINES,
+        equation="",
+        engine=engine,
+        predicted=np.where(below, unbalance, whirl)[chosen],
+        measured=measured[chosen],
+        budget=ErrorBudget(
+            float(np.max(change_as_error(measured, other))), model=1.0 / TURNS, resolution=0.5 * LINES_APART
+        ),
+        parameters=parameters_of(car, torque=TORQUE, ripple=RIPPLE, slip=SLIP, gain=GAIN),
+        source=SOURCE,
+        note=f"Orders of the engine in windows of {TURNS} turns, {np.count_nonzero(below)} below "
+        f"{natural_frequency(car) / RPM:.0f} and {np.count_nonzero(above)} above {circling[0] / RPM:.0f} turns a "
+        f"minute; a parabola through the top. Predicted: 1 − slip/ω, and the whirl at frozen speeds without offset. "
+        f"Between the two lines lie {LINES_APART:g} orders or more. Model error: 1/{TURNS} of an order, what a "
+        "window of so many turns resolves. Numerical error: the largest change at a smaller tolerance.",
+    )
+
+
+def whirls_above_onset(car: Drivetrain) -> FloatArray:
+    """Return speed in rad/s, radius in m and frequency in rad/s of the reference's whirl, shape (30, 3)."""
+    torque = transmitted(car)
+    speeds = np.linspace(onset_speed(car, SLIP, torque), TOP * RPM, 31)[1:]
+    circles = [whirl_of(car, Operation(speed, SLIP, torque)) for speed in speeds]
+    return np.array([(s, each.radius, each.frequency) for s, each in zip(speeds, circles, strict=True)])
 
 
 def theory() -> Findings:
@@ -101,9 +155,7 @@ def theory() -> Findings:
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
     slow = np.linspace(IDLE * RPM, onset, 121)[:-1]
-    fast = np.linspace(onset, TOP * RPM, 31)[1:]
     rests = [rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
-    circles = [whirl_of(car, Operation(speed, SLIP, torque)) for speed in fast]
     # Small motions of the unbalanced disc: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist) at its own speed s.
     own = slow - SLIP
     dynamic = car.radial_stiffness - car.disc_mass * own**2
@@ -111,7 +163,7 @@ def theory() -> Findings:
     data: Data = {
         "rest": np.column_stack((slow, [abs(complex(each.x, each.y)) for each in rests])),
         "unbalance": car.disc_mass * car.unbalance * own**2 / np.hypot(dynamic, net),
-        "whirl": np.array([(s, each.radius, each.frequency) for s, each in zip(fast, circles, strict=True)]),
+        "whirl": whirls_above_onset(car),
         "onset": np.array([onset, k]),
     }
     return Findings((), data)

@@ -174,6 +174,19 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
     return np.interp(middles, angle, speed), transform.f, amplitude
 
 
+def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
+    """Return the speed in rad/s in each window and the order of what circles forwards the most, shape (m,) each.
+
+    A disc that all but rests is left out, by half an order; the top lies between the lines, on a parabola through
+    three logarithms.
+    """
+    speed, orders, amplitude = order_spectrum(found)
+    first = int(np.searchsorted(orders, 0.5))
+    top = first + np.argmax(amplitude[first:-1], axis=0)
+    low, middle, high = (np.log(np.take_along_axis(amplitude, (top + i)[None], 0)[0]) for i in (-1, 0, 1))
+    return speed, orders[top] + (orders[1] - orders[0]) * 0.5 * (low - high) / (low - 2.0 * middle + high)
+
+
 def draw_pictures(data: Mapping[str, Data]) -> Figure:
     """Draw flywheel, disc and shaft below the onset, near it and in the whirl."""
     from exudyn_models.drivetrain_picture import draw_drivetrain

@@ -118,6 +118,7 @@ def _claim_slip_trajectory(engine: Engine) -> Claim:
         unit="m, m/s",
         note="All components of the state at 101 times.",
         basis="independent",  # (10) has equations and an integration of its own
+        named={"slip for 100 s": None},
     )
 
 
@@ -246,6 +247,7 @@ def _claim_all_events(engine: Engine, run: Run, name: str) -> Claim:
         unit="s",
         note="Predicted: the reference at tolerance 1e-13. A stick phase too many or too few shows as a "
         "missing number.",
+        named={f"events on the way to the {name}": None},
     )
 
 
@@ -278,6 +280,7 @@ def _claims_critical_velocity(engine: Engine) -> tuple[Claim, Claim]:
         note="Where the second stick phase is as far from the axis as the first. Between slip phases a pin "
         "has one degree of freedom, the radius at which it sticks, so the motions divide at the fixed point of "
         "the map from one stick phase to the next. Predicted: the reference at tolerance 1e-12.",
+        named={"dividing velocity": 0},
     )
     tolerance = 1e-7
     ends = Claim(

@@ -55,7 +55,7 @@ SHOOTING = 1e-9
 ON_THE_WAY = 1e-8
 """Tolerance of the branch that is drawn, and that leads to the cycle; its loads are right to 1e-10 N."""
 
-SOURCE = "Fig. 6: Fig. 4 with ω = 1.2; the loads are our choice, the paper prints no range"
+SOURCE = "Fig. 6: Fig. 4 with ω = 1.2 rad/s; the loads are our choice, the paper prints no range"
 
 EQUILIBRIA = "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0"
 WHIRLS = "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load"
@@ -218,6 +218,7 @@ def last_whirl_claim(engine: Engine) -> Claim:
         note="Not in the paper. Measured: the smallest load on the branch. Predicted: the load at which a second "
         "multiplier of the reference's whirl passes 1 (the load is flat there, so an error δ in where it does "
         "changes the load by δ²).",
+        named={"least load of a whirl": 0},
     )
 
 
@@ -394,7 +395,7 @@ STUDY = Study(
     name="fig06",
     title="Branches under increasing load",
     section="The friction pin",
-    paper="Fig. 6 shows the steady motions at ω = 1.2 over the load: the equilibrium (3) up to μN = C·X0, "
+    paper="Fig. 6 shows the steady motions at ω = 1.2 rad/s over the load: the equilibrium (3) up to μN = C·X0, "
     "sticking above it within the radius (9), and the whirl; sticking and whirl exist for the same parameters. "
     "The paper does not say where the whirl ends: it meets an unstable whirl in a fold. That one goes on to "
     "higher loads as a stick–slip orbit, and turns there into a small stable stick–slip cycle, a fourth motion "

@@ -303,8 +303,9 @@ STUDY = Study(
     figures={
         "fig08-spin": (
             "Fig. 8 redrawn. Left: spin over the load. Middle: how far the approximation (26), six points, and each "
-            "engine's ring are from the exact equilibrium on the continuous ring. As printed (26) crosses the ring's "
-            "spin near 0.054 N, by chance: its places are wrong there. Right: all equilibria lie on the semicircle."
+            "engine's ring are from the exact equilibrium on the continuous ring. Where the line of (26) as printed "
+            "crosses the ring's spin, it does so by chance: its places are wrong there. Right: all equilibria "
+            "lie on the semicircle."
         ),
         "fig08-offset": (
             "What the missing X0 decides. Left: spin over the load for several X0 (continuous ring; dashed: "

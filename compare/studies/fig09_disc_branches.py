@@ -653,14 +653,14 @@ STUDY = Study(
     name="fig09",
     title="Steady motions of the disc over the load, and their spin (Figs. 9, 10)",
     section="The friction disc",
-    paper="At ω = 1.5 and Ω = 1.25 a disc whirls, sticks, or rests self-centred, like the pin. Fig. 9 compares the "
-    "steady states by (23) with simulations on six points over the load, Fig. 10 their spin, with that of sticking "
-    "dashed. The conclusions have the self-centred equilibrium stable, with a basin that shrinks. The whirl follows "
-    "from three balances: the radial one gives the frequency k, the tangential one the radius μN·F/(βk), the "
-    "torsional one the spin. For a disc the equilibrium is not stable at all loads: friction on a ring grows with "
-    "the slip along it, which feeds a circular motion where ω > k, and above a load far below C·X0 nothing but the "
-    "whirl is left until sticking begins. The inner, unstable whirl bounds the basin of the equilibrium and shrinks "
-    "onto it at that load.",
+    paper="At ω = 1.5 and Ω = 1.25 rad/s a disc whirls, sticks, or rests self-centred, like the pin. Fig. 9 compares "
+    "the steady states by (23) with simulations on six points over the load, Fig. 10 their spin, with that of "
+    "sticking dashed. The conclusions have the self-centred equilibrium stable, with a basin that shrinks. The "
+    "whirl follows from three balances: the radial one gives the frequency k, the tangential one the radius "
+    "μN·F/(βk), the torsional one the spin. For a disc the equilibrium is not stable at all loads: friction on a "
+    "ring grows with the slip along it, which feeds a circular motion where ω > k, and above a load far below "
+    "C·X0 nothing but the whirl is left until sticking begins. The inner, unstable whirl bounds the basin of the "
+    "equilibrium and shrinks onto it at that load.",
     measure=measure,
     draw=draw,
     theory=theory,

@@ -180,7 +180,7 @@ def fold_claim() -> Claim:
     measured = [whirl_at(CENTRED, _marginal_ratio(law), law).load for law in laws]
     return Claim(
         FOLD,
-        equation="(23)",
+        equation="(20), (23)",
         engine="theory",
         predicted=[smallest_load_with_whirl(CENTRED, law) for law in laws],
         measured=measured,
@@ -247,6 +247,7 @@ def merging_claim(found: Sequence[Orbit]) -> Claim:
         f"{math.sqrt(square[-1]):.2g} m), at zero. Model error: the change with one orbit less. So the basin of the "
         "equilibrium shrinks to nothing there.",
         basis="reference",
+        named={"last stable load": 0},
     )
 
 

@@ -61,6 +61,7 @@ def trajectory_claim(engine: Engine, words: str, disc: DiscOnDisc) -> Claim:
         source=f"{SOURCE}: 0 here; start {SLIDING_START} is an assumption",
         unit="m, rad, m/s, rad/s",
         note=f"All components of the state at {len(SLIDING)} times.",
+        named={f"slip for 100 s on {words}": None},
     )
 
 
@@ -122,10 +123,11 @@ def measure_cycle(engine: Engine) -> Findings:
             note=f"The last modulation within {UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
             "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and "
             "the change from the modulation before, of both.",
+            named=named,
         )
-        for sentence, part, resolution, unit in (
-            (MODULATION, slice(0, 2), 1e-3, "s, rad"),
-            (EXTREMES, slice(2, 6), 1e-6, "m, rad/s"),
+        for sentence, part, resolution, unit, named in (
+            (MODULATION, slice(0, 2), 1e-3, "s, rad", {"period of the modulation": 0, "turn in it": 1}),
+            (EXTREMES, slice(2, 6), 1e-6, "m, rad/s", {}),
         )
     )
     return Findings(claims, {"the continuous ring": run(1e-9).states})

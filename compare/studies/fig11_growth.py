@@ -224,9 +224,13 @@ def growth_claims(engine: Engine, words: str, disc: DiscOnDisc) -> tuple[Claim, 
             unit="1/s",
             note=f"{NOTE} Predicted: {linearised}.",
             basis="reference",
+            named={f"{name} of growth on {words}": 0},
         )
-        for i, (sentence, predicted, share) in enumerate(
-            ((RATE, whirl.eigenvalue.real, 1e-2), (FREQUENCY, whirl.eigenvalue.imag, 5e-3))
+        for i, (sentence, name, predicted, share) in enumerate(
+            (
+                (RATE, "rate", whirl.eigenvalue.real, 1e-2),
+                (FREQUENCY, "frequency", whirl.eigenvalue.imag, 5e-3),
+            )
         )
     )
     return rate, frequency

@@ -8,6 +8,7 @@ import numpy as np
 
 from compare.claim import Claim
 from compare.engines import Engine
+from compare.paper import FIG8
 from compare.studies.fig11_cycle import (
     TIMES,
     UNTIL,
@@ -26,7 +27,7 @@ from compare.studies.fig11_growth import (
     steady_whirl,
 )
 from compare.studies.fig11_motion import DISCS, RING, SIX, START, integrated
-from compare.studies.fig11_offset import OFFSETS, measure_offsets, theory_of_offsets
+from compare.studies.fig11_offset import BOTH_STABLE, OFFSETS, measure_offsets, theory_of_offsets
 from compare.studies.fig11_pictures import draw
 from compare.study import Data, Findings, Study
 from reference_model import simulate
@@ -76,26 +77,26 @@ STUDY = Study(
     name="fig11",
     title="The modulated cycle",
     section="The friction disc",
-    finding=(
-        "Fig. 11's modulated cycle exists only for offsets X0 from zero to about 7.3 mm. There the "
-        "whirl is unstable: a pair of its eigenvalues, in which radius and spin swing together, grows at 0.0104 1/s. "
-        "With the 0.1 m of the other figures the disc comes to rest in space."
-    ),
+    finding="Fig. 11's whirl is unstable, and its modulated cycle takes over, only for offsets X0 from zero to "
+    "{critical offset, mm, 3 digits} mm. Without an offset a deviation in which radius and spin swing together "
+    "grows at {rate of growth on the continuous ring, 3 digits} 1/s. "
+    f"With the {FIG8.offset:g} m of the other figures the disc comes to rest in space.",
     paper="Where the large whirl of the disc is unstable, radius and spin swell and shrink slowly, as Fig. 11 shows "
-    "for one set of parameters. The paper leaves out the offset X0 and the initial conditions, and the "
-    "analysis of stability, which would go beyond the limits of the article.\n\n"
-    "Without offset the whirl is a fixed point in axes that turn with it. On the continuous ring a pair of "
-    "its eigenvalues has a positive real part, 0.0104 1/s; on the paper's six points the rate is 43 % larger. "
-    "By (23) the pair is stable: the simplified equations would not have shown Fig. 11. What the disc tends "
-    "to is periodic but for a turn about the axis, with a modulation of 229.4 s, or 36.6 turns, a little "
+    "for one set of parameters. The paper leaves out the offset X0 and the initial conditions, and the analysis of "
+    "stability, which would go beyond the limits of the article.\n\n"
+    "Without offset the whirl is a fixed point in axes that turn with it. On the continuous ring a pair of its "
+    "eigenvalues has a positive real part, {rate of growth on the continuous ring, 3 digits} 1/s; on the paper's six "
+    "points it is {rate of growth on six points, 3 digits} 1/s. By (23) the pair is stable: the simplified equations "
+    "would not have shown Fig. 11. What the disc tends to is periodic but for a turn about the axis, with a "
+    "modulation of {period of the modulation, 4 digits} s, or {turn in it, turns, 3 digits} turns, a little "
     "longer on six points. There single points come to rest for a moment, whenever slip and rim speed become "
     "equal and one of them is at the right place, and the disc turns about them.\n\n"
-    "An offset quenches the modulation. Below X0 = 0.00726 m, a third of μN/C, the whirl is unstable. There "
-    "the modulation does not shrink to nothing but ends by a jump, a little above: at 0.0073 m steady whirl "
-    "and modulated motion are both stable. Beyond, the whirl is steady, shrinks, and ends in a fold at 0.01993 m, "
-    "while the self-centred equilibrium is stable from 0.01988 m on. So Fig. 11 needs an offset of at most about "
-    "7.3 mm, such as zero; with the 0.1 m of the other figures the disc comes to rest in space. It can not stick for "
-    "ever at any offset, because μN·R is smaller than b|ω − Ω|.",
+    "An offset quenches the modulation. Below X0 = {critical offset, 3 digits} m, a third of μN/C, the whirl is "
+    "unstable. There the modulation does not shrink to nothing but ends by a jump, a little above: at "
+    f"{BOTH_STABLE:g} m steady whirl and modulated motion are both stable. Beyond, the whirl is steady, shrinks, and "
+    "ends in a fold, about where the self-centred equilibrium becomes stable. So Fig. 11 needs an offset of at most "
+    f"about {BOTH_STABLE:g} m, such as zero; with the {FIG8.offset:g} m of the other figures the disc comes to "
+    "rest in space. It can not stick for ever at any offset, because μN·R is smaller than b|ω − Ω|.",
     measure=measure,
     theory=theory,
     draw=draw,
@@ -104,13 +105,13 @@ STUDY = Study(
         "first engine. Below: the spin alone; marks: other engines. Purple: single points rest, and the disc "
         "turns about them. From the same start the disc settles on a steady whirl by (23).",
         "fig11-section": "Left: lines of the modulated cycle on the continuous ring, which is periodic in axes "
-        "that turn with the carrier, and the spectrum of the disc on six points. Right: radius and spin once a "
-        "turn; the points lie on a closed curve, those of six points near one.",
+        "that turn with its mean speed about the axis (the carrier), and the spectrum of the disc on six points. "
+        "Right: radius and spin once a turn; the points lie on a closed curve, those of six points near one.",
         "fig11-growth": "Growth out of the whirl, X0 = 0: share of the unstable pair of modes in the deviation, "
         "beside the exponential of its eigenvalue.",
         "fig11-offset": "Least and greatest radius and spin in the end, over the offset, on the continuous ring. "
-        "Lines: the periodic whirl by shooting and the self-centred equilibrium, dotted where unstable; the "
-        "whirl passes through the axis at X0 = 0.0166 m. Dashed: the critical offsets.",
+        "Lines: the periodic whirl by shooting and the self-centred equilibrium, dotted where unstable; where "
+        "the least radius of the whirl is zero it passes through the axis. Dashed: the critical offsets.",
     },
     seconds=8.0,
 )

@@ -158,6 +158,7 @@ def critical_claim(engine: Engine) -> Claim:
         "method makes of that X0 with multipliers from the variational equations, integrated with the analytic "
         "Jacobian. Error: the change at a smaller tolerance, that by a straight line for the interpolation, and how "
         "much the linearised return map changes a shift in time.",
+        named={"critical offset": 0},
     )
 
 

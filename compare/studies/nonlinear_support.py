@@ -386,7 +386,7 @@ def limit_claim(engine: Engine) -> Claim:
         note="Not in the paper, which says that nonlinear radial forces usually limit the amplitude. The pin sticks "
         "where its circle turns with the disc but for what friction holds, which is of the order of μN. Measured: "
         f"the parabola through the radii for {at_each('μN', GROWING_LOADS)} N at 0; error: its change by the "
-        f"straight line through the last two. {_laws().capitalize()}.",
+        f"straight line through the last two. With {_laws()}.",
     )
 
 
@@ -408,7 +408,7 @@ def disc_claim(engine: Engine) -> Claim:
     budget = np.nan_to_num(float(np.max(error)), nan=np.inf) + sharpness(DISC, whirl) * CONVERGED
     return Claim(
         DISC_WHIRL,
-        equation="(24)",
+        equation="(19), (20)",
         engine=engine.name,
         predicted=[whirl.radius, whirl.frequency, whirl.spin],
         measured=measured,

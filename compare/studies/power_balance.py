@@ -200,6 +200,7 @@ def balance_claim(
         "stored). Error: change with the engine's tolerance, and with every second sample left out of the "
         "balance's quadrature, and the rounding of the energies.",
         basis="reference",
+        named={name.replace(",", ""): None},
     )
 
 

@@ -229,9 +229,9 @@ STUDY = Study(
     draw=draw,
     theory=theory,
     figures={
-        "simulated-map": f"What {SIDE} × {SIDE} discs end in that start beside the axis, and the curves of the "
-        "stability map, which are not drawn from them. Cross: Fig. 11. Where a curve is crossed and the ends do not "
-        "change, two of them exist side by side."
+        "simulated-map": f"Ends of {SIDE} × {SIDE} discs that start beside the axis, and the curves of the stability "
+        "map, which are not drawn from them. Cross: Fig. 11. Where a curve is crossed and the ends do not "
+        "change, two kinds of motion exist side by side."
     },
     section="The friction disc",
     only=("theory",),

@@ -116,8 +116,8 @@ def side_claims_of(
         rows.setdefault(f"sides/{name}", []).append((first, second, rate.real))
     as_mapped = np.real(measured) * np.sign(np.real(predicted))
     note = (
-        f"{len(discs)} discs, {ASIDE:.0%} from the curves to either side. Start on the whirl and a little off it "
-        "along the pair's plane, both ways."
+        f"{len(discs)} discs, {100.0 * ASIDE:g} % from the curves to either side. Start on the whirl and a little "
+        "off it along the pair's plane, both ways."
     )
     common: dict[str, Any] = {
         "engine": engine.name,
@@ -128,7 +128,7 @@ def side_claims_of(
     return {plane: np.array(found) for plane, found in rows.items()}, (
         Claim(
             SIDES,
-            equation="(19)",
+            equation="(19), (20)",
             **holds(as_mapped, errors),
             note=f"Whether each did so, of {note}",
             implied_by=RATES,
@@ -136,7 +136,7 @@ def side_claims_of(
         ),
         Claim(
             RATES,
-            equation="(19)",
+            equation="(19), (20)",
             predicted=real_and_imaginary(predicted),
             measured=real_and_imaginary(measured),
             budget=ErrorBudget(np.repeat(errors, 2).reshape(-1, 2), resolution=1e-4 * K),
@@ -234,14 +234,28 @@ def long_motions(simulate: Simulate, loads: Sequence[float]) -> FloatArray:
     )
 
 
+def border(name: str, unit: str, digits: int = 3) -> str:
+    """Return the quote of a border in one parameter, "lower friction_force", and how far that is from Fig. 11."""
+    here = getattr(DISC, name.split()[1])
+    return f"{{{name}, {digits} digits}} {unit} ({{{name}, % from {here!r}, 2 digits}} %)"
+
+
+def borders(parameter: str, unit: str, digits: int = 3) -> str:
+    """Return the quotes of both borders in one parameter."""
+    return " and ".join(border(f"{side} {parameter}", unit, digits) for side in ("lower", "upper"))
+
+
+LOADS_OF_CYCLE = borders("friction_force", "N")
+
 STUDY = Study(
     name="stability-map",
     title="Where the disc rotates, whirls, sticks, or whirls with a modulated amplitude",
     section="The friction disc",
     finding=(
-        "Over the load the cycle exists between 0.0216 N (−4 %) and 0.0250 N (+11 %), where centre and rim of the "
-        "disc slip nearly equally fast. It needs the torsion: a pin's whirl is stable wherever it exists. The "
-        "simplified equations (23) would not have found it: by them the whirl of Fig. 11 is stable."
+        f"Over the load the whirl of Fig. 11 is unstable between {LOADS_OF_CYCLE}, and a modulated cycle takes its "
+        "place, where centre and rim of the disc slip nearly equally fast. It needs the torsion: a pin's whirl "
+        "is stable wherever it exists. The simplified equations (23) would not have found it: by them the whirl "
+        "of Fig. 11 is stable."
     ),
     paper=(
         "Section 4 ends with the modulated cycle of Fig. 11, and says that its region of existence can be found by a "
@@ -253,12 +267,14 @@ STUDY = Study(
         "disc whirls, first on a small circle; at a higher load the whirl becomes unstable and its amplitude "
         "swells and shrinks; at a still higher load it is steady again, on a large circle; and from μN·R = b|ω − Ω| "
         "on the disc may stick as well.\n\n"
-        "The disc of Fig. 11 is near to the borders: at μN = 0.0216 N (−4 %) and 0.0250 N (+11 %), at a shaft "
-        "damping of 0.0160 (+7 %) and 0.0120 N m s/rad (−20 %), at a damping of the springs of 0.56 (+12 %) and "
-        "0.42 N s/m (−16 %), and at a shaft speed of 1.239 (−0.9 %) and 1.275 rad/s (+2.0 %). The surest remedy "
-        "is one that leads below the onset, because then there is no whirl at all: 16 % more shaft damping, 10 % "
-        "more slip speed ω − Ω, 34 % more damping of the springs, or 9 % less load. Less inertia ends the "
-        "modulation too, but from 0.52 kg m² (−48 %) on only, and leaves the whirl; below some 0.13 kg m² no "
+        f"The disc of Fig. 11 is near to the borders: at μN = {LOADS_OF_CYCLE}, at a shaft damping of "
+        f"{borders('shaft_damping', 'N m s/rad')}, at a damping of the springs of {borders('damping', 'N s/m')}, and "
+        f"at a shaft speed of {borders('shaft_speed', 'rad/s', 4)}. The surest remedy is one that leads below "
+        "the onset, because then there is no whirl at all: from {shaft damping at the onset, % from 1, 3 digits} "
+        "% of shaft damping on, {slip speed at the onset, % from 1, 3 digits} % of slip speed ω − Ω, "
+        "{damping of the springs at the onset, % from 1, 3 digits} % of damping of the springs, or "
+        "{load at the onset, % from 1, 3 digits} % of load. Less inertia ends the modulation too, but from "
+        f"{border('lower polar_inertia', 'kg m²', 2)} on only, and leaves the whirl; below some 0.13 kg m² no "
         "shaft damping gives a modulation. The other way out, to a higher load or less slip speed, ends in a "
         "whirl that is steady but larger, 36 mm in place of 20 mm.\n\n"
         "On the continuous ring every border of the whirl is hard: the cycle is there with its full amplitude as "

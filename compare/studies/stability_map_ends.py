@@ -59,8 +59,13 @@ def kind_of_end(
     return "modulated cycle" if high - low > MODULATED * (high + low) else "whirl", low, high
 
 
-def ends_of(simulate: Simulate, name: str, sentence: str, starts: Sequence[Start]) -> tuple[list[str], Claim]:
-    """Return what the motions end as, and the claim that it is what they are said to."""
+def ends_of(
+    simulate: Simulate, name: str, sentence: str, starts: Sequence[Start], equation: str = "(19), (20)"
+) -> tuple[list[str], Claim]:
+    """Return what the motions end as, and the claim that it is what they are said to.
+
+    ``equation`` is that of the motions and of their law of friction.
+    """
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:
@@ -77,7 +82,7 @@ def ends_of(simulate: Simulate, name: str, sentence: str, starts: Sequence[Start
     ]
     return found, Claim(
         sentence,
-        equation="(19)",
+        equation=equation,
         engine=name,
         **answers,
         parameters=parameters_of(FIG11),

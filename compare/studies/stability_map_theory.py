@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +36,9 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 DISC = FIG11
 K = DISC.natural_frequency
 SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are ours"
+
+BOTH_LAWS = "(19), (20), (23)"
+"""Equations of what is claimed of the ring and of (23)."""
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(DISC.contact_radius),
@@ -77,6 +80,7 @@ BORDER = "Beside the Hopf curves no other eigenvalue of the whirl grows: they ar
 FOLDS = "At every point of the fold curves an eigenvalue of the whirl is zero"
 TRACED = "The traced curves cross the line of Fig. 11 where a search along it finds the boundary"
 ONSET = "The centred rotation loses its stability at the closed form of the onset"
+REMEDIES = "The disc of Fig. 11 has no whirl where one parameter takes it below the closed form of the onset"
 BY_WHIRLS = "Along the line of Fig. 11 whirls gain and lose their stability where the map says"
 HARD = "On the continuous ring the whirl always loses its stability with a jump: the cycle at the border is unstable"
 FIG11_RING = "At the parameters of Fig. 11 the whirl on the continuous ring is unstable"
@@ -112,6 +116,7 @@ def theory() -> Findings:
             *marginal_claims(traced),
             traced_claim(traced),
             onset_claim(),
+            remedies_claim(),
             by_whirls_claim(),
             hard_claim,
             *fig11_claims(),
@@ -123,7 +128,7 @@ def theory() -> Findings:
 
 
 def state_at(disc: DiscOnDisc, alpha: float, law: IsotropicContact) -> FloatArray:
-    """Return the state of the whirl at the angle α of (24), shape (6,)."""
+    """Return the state of the whirl with tan α = R|ω − φ̇|/U, shape (6,)."""
     _, radius, spin = whirl_at(disc, alpha, law)
     return np.array([radius, 0.0, 0.0, 0.0, K * radius, spin])
 
@@ -178,7 +183,7 @@ def marginal_claims(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -
     return (
         Claim(
             MARGINAL,
-            equation="(19)",
+            equation=BOTH_LAWS,
             predicted=np.zeros(len(real)),
             measured=real,
             budget=ErrorBudget(errors, resolution=1e-10),
@@ -188,14 +193,14 @@ def marginal_claims(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -
         ),
         Claim(
             BORDER,
-            equation="(19)",
+            equation=BOTH_LAWS,
             **holds(-np.array(others), roundings),
             note=f"Whether the real parts of all other eigenvalues are negative, at {len(real)} points.",
             **common,
         ),
         Claim(
             FOLDS,
-            equation="(19)",
+            equation=BOTH_LAWS,
             predicted=np.zeros(len(zero)),
             measured=zero,
             budget=ErrorBudget(zero_errors, resolution=1e-8),
@@ -220,7 +225,7 @@ def traced_claim(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> C
         errors.extend(np.abs(fine - coarse))
     return Claim(
         TRACED,
-        equation="(19)",
+        equation=BOTH_LAWS,
         engine="theory",
         predicted=predicted,
         measured=measured,
@@ -265,7 +270,7 @@ def onset_claim() -> Claim:
             errors.append(16.0 * np.finfo(float).eps * (K / abs(slope) + load))
     return Claim(
         ONSET,
-        equation="(19)",
+        equation=BOTH_LAWS,
         engine="theory",
         predicted=predicted,
         measured=measured,
@@ -275,6 +280,50 @@ def onset_claim() -> Claim:
         unit="N",
         note=f"By the root of the largest real part over the load, for {at_each('ω', ONSET_SPEEDS)} rad/s, on the "
         "ring and with (23), which have the same onset. Error: rounding of the eigenvalues.",
+    )
+
+
+def growth_of_rotation(disc: DiscOnDisc) -> float:
+    """Return the largest real part in 1/s of the eigenvalues of the centred rotation on the ring."""
+    return equilibrium_eigenvalues(disc, rotation(disc), LAWS["ring"])[0].real
+
+
+def remedies_claim() -> Claim:
+    """Return which share of each parameter makes the centred rotation stable, beside the closed form of the onset."""
+    slip_speed = DISC.disc_speed - DISC.shaft_speed
+    ways: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
+        "load": (lambda share: at(friction_force=share * DISC.friction_force), 0.8),
+        "shaft damping": (lambda share: at(shaft_damping=share * DISC.shaft_damping), 1.5),
+        "damping of the springs": (lambda share: at(damping=share * DISC.damping), 1.6),
+        "slip speed": (lambda share: at(shaft_speed=DISC.disc_speed - share * slip_speed), 1.3),
+    }
+    predicted: list[float] = []
+    measured: list[float] = []
+    errors: list[float] = []
+    for disc_of, end in ways.values():
+
+        def excess(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
+            return onset_load(disc_of(share)) / disc_of(share).friction_force - 1.0
+
+        def growth(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
+            return growth_of_rotation(disc_of(share))
+
+        predicted.append(brentq(excess, 1.0, end, xtol=1e-15))
+        measured.append(brentq(growth, 1.0, end, xtol=1e-15))
+        slope = (growth(end) - growth(1.0)) / (end - 1.0)
+        errors.append(16.0 * np.finfo(float).eps * (K / abs(slope) + 1.0))
+    return Claim(
+        REMEDIES,
+        equation="(19), (20)",
+        engine="theory",
+        predicted=predicted,
+        measured=measured,
+        budget=ErrorBudget(errors, resolution=1e-9),
+        parameters=parameters_of(DISC),
+        source="Fig. 11 with X0 = 0; one parameter at a time",
+        note=f"Over their values of Fig. 11: {', '.join(ways)}, where the last is ω − Ω and ω stays as it is. By the "
+        "root of the largest real part. Error: rounding of the eigenvalues.",
+        named={f"{name} at the onset": i for i, name in enumerate(ways)},
     )
 
 
@@ -295,6 +344,7 @@ def rotation(disc: DiscOnDisc) -> FloatArray:
 def by_whirls_claim() -> Claim:
     """Return where the largest real part of the whirls' eigenvalues changes its sign along each parameter."""
     predicted, measured, errors, sentences = [], [], [], []
+    named: dict[str, int | None] = {}
     for law in LAWS:
         for plane in PLANES.values():
             for i, name in enumerate(plane.names):
@@ -305,10 +355,12 @@ def by_whirls_claim() -> Claim:
                     predicted.append(value)
                     measured.append(found)
                     errors.append(error)
+                    if law == "ring":
+                        named[f"{'lower' if value < here else 'upper'} {name}"] = len(measured) - 1
                     sentences.append(f"{law}: {name} {value:.4g} ({100.0 * (value / here - 1.0):+.1f} %)")
     return Claim(
         BY_WHIRLS,
-        equation="(19)",
+        equation=BOTH_LAWS,
         engine="theory",
         predicted=predicted,
         measured=measured,
@@ -318,6 +370,7 @@ def by_whirls_claim() -> Claim:
         note="The borders next to the point of Fig. 11, to either side, and how far away they are: "
         + "; ".join(dict.fromkeys(sentences))
         + ".",
+        named=named,
     )
 
 
@@ -363,7 +416,7 @@ def hardness(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> tuple
                 on_ring += growth[np.isfinite(growth)].tolist()
     return data, Claim(
         HARD,
-        equation="(19)",
+        equation="(19), (20)",
         engine="theory",
         **holds(on_ring),
         parameters=parameters_of(DISC),
@@ -376,14 +429,17 @@ def hardness(traced: dict[tuple[str, str, Kind], tuple[Boundary, ...]]) -> tuple
 def fig11_claims() -> tuple[Claim, Claim]:
     """Return on which side of the imaginary axis the whirl of Fig. 11 is, by the ring and by (23)."""
     claims = []
-    for sentence, law, sign in ((FIG11_RING, "ring", 1.0), (FIG11_THREE, "(23)", -1.0)):
+    for sentence, law, equation, sign in (
+        (FIG11_RING, "ring", "(19), (20)", 1.0),
+        (FIG11_THREE, "(23)", "(19), (23)", -1.0),
+    ):
         (whirl,) = whirls(DISC, LAWS[law])
         values, error = critical_eigenvalues(DISC, whirl.state, LAWS[law])
         near = nearest(crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed, LAWS[law]), np.inf)
         claims.append(
             Claim(
                 sentence,
-                equation="(19), (23)",
+                equation=equation,
                 engine="theory",
                 **holds(sign * values[0].real, error),
                 parameters=parameters_of(DISC),
@@ -437,7 +493,7 @@ def collapse_claim() -> Claim:
             Start(disc, tuple((largest.state * factors).tolist()), "rotation", SLOWLY_SETTLED)
             for factors in BESIDE_LARGEST
         ]
-    _, claim = ends_of(functools.partial(simulate, contact=law), "theory", COLLAPSE, starts)
+    _, claim = ends_of(functools.partial(simulate, contact=law), "theory", COLLAPSE, starts, "(19), (23)")
     return claim
 
 

@@ -17,7 +17,7 @@ class EndState(IntEnum):
 
     ``SELF_CENTRED``: an equilibrium that slips (section 2). ``STUCK``: turning with the master disc for ever.
     ``WHIRL``: on a circle about the axis or, with an offset, on a closed orbit without stick. ``MODULATED``: a whirl
-    whose radius swings slowly (section 5; discs only). ``STICK_SLIP``: it sticks and slips again and again.
+    whose radius swings slowly (section 4; discs only). ``STICK_SLIP``: it sticks and slips again and again.
     ``UNDECIDED``: none for certain.
     """
 

@@ -14,6 +14,7 @@ from compare.claim import Claim, ErrorBudget
 from compare.cli import status
 from compare.engines import EVERY_KIND, Engine
 from compare.errata import Erratum, Evidence
+from compare.quotes import parts
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.page import summary
 from compare.report.write import write_report
@@ -262,13 +263,27 @@ def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tm
     assert ("<li>Straight on." in (tmp_path / "index.html").read_text(encoding="utf-8")) == shown
 
 
-def test_numbers_of_a_finding_stand_in_the_text_of_its_study():
+GIVEN = {
+    "basins": ["0.3 m", "0.5 m", "0.4 m"],
+    "fig11": ["0.1 m"],
+    "drivetrain-frozen": ["10 %", "1.4 N", "0.2 N"],
+}
+"""What a finding says of parameters, which no claim measures."""
+
+
+def test_numbers_of_a_finding_are_quoted_from_claims():
     found = [study for study in STUDIES if study.finding]
     assert {study.name for study in found} >= {"fig11", "stability-map"}
     for study in found:
-        numbers = re.findall(r"[\d.]+\d (?:%|N|mm|m|1/s)(?!\w)", study.finding)
-        assert numbers
-        assert all(number in study.paper for number in numbers)
+        words = "".join(literal for literal, _ in parts(study.finding))
+        assert re.findall(r"[\d.]*\d (?:%|N|mm|m|s|1/s)(?!\w)", words) == GIVEN.get(study.name, [])
+        assert any(quoted for _, quoted in parts(study.finding))
+
+
+def test_a_caption_and_a_paragraph_have_no_brace_but_of_a_quote():
+    for study in STUDIES:
+        for text in (study.finding, study.paper, *study.figures.values()):
+            assert all(quoted != "" for _, quoted in parts(text))
 
 
 def test_studies_of_a_section_stand_together():

@@ -5,6 +5,7 @@ import pytest
 from studies_under_test import altered, for_every_sound_engine, sentences, verdicts
 
 from compare.claim import Verdict
+from compare.paper import FIG5
 from compare.report.style import paper_style, saved
 from compare.studies import basins
 from compare.studies.basins import (
@@ -13,18 +14,21 @@ from compare.studies.basins import (
     DIVIDES,
     PARTS,
     RECOMPUTES,
+    RETURNS,
     SHRINKS,
     STUDY,
     enclosed,
     measure,
     smooth,
 )
-from reference_model.ensemble import Ensemble
+from reference_model.ensemble import EndState, Ensemble
+from reference_model.systems import PinOnDisc
 
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """A hundredth of the starts, and a boundary from as few points as can be."""
+    """A hundredth of the starts, at one speed, and a boundary from as few points as can be."""
+    monkeypatch.setattr(basins, "WHERE", {FIG5: basins.WHERE[FIG5]})
     monkeypatch.setattr(basins, "CELLS", 6)
     monkeypatch.setattr(basins, "SIDE", 100)
     monkeypatch.setattr(basins, "STARTS", 400)
@@ -34,11 +38,28 @@ def coarse(monkeypatch):
 
 @for_every_sound_engine
 def test_sound_engines_come_back_on_the_saddle_and_part_beside_the_boundary(engine):
-    assert verdicts(measure(engine)) == {CLOSES: Verdict.AGREES, PARTS: Verdict.AGREES}
+    assert verdicts(measure(engine)) == dict.fromkeys((CLOSES, RETURNS, PARTS), Verdict.AGREES)
 
 
 def test_an_engine_with_too_much_friction_neither_closes_nor_parts():
-    assert sentences(measure(altered(friction_force=1.05)), Verdict.DIFFERS) == {CLOSES, PARTS}
+    assert sentences(measure(altered(friction_force=1.05)), Verdict.DIFFERS) == {CLOSES, RETURNS, PARTS}
+
+
+def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier():
+    claim = basins.returns_claim(altered(damping=1.0 + 1e-5))
+    assert claim.verdict is Verdict.DIFFERS
+    assert np.all((claim.difference > claim.budget.total)[[0, 2]])
+
+
+def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(coarse):
+    """Of starts that come to the equilibrium in the quarter of the rectangle that is nearest to its middle."""
+    x, vx = np.meshgrid(np.linspace(-1.0, 1.0, 401), np.linspace(-1.0, 1.0, 401))
+    ends = np.where((abs(x) <= 0.5) & (abs(vx) <= 0.5), EndState.SELF_CENTRED, EndState.WHIRL).astype(
+        np.uint8
+    )
+    claim = basins.area_claim({FIG5: ends})
+    assert claim.verdict is Verdict.DIFFERS
+    assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
 
 
 def test_theory_agrees_and_is_drawn(coarse):
@@ -56,8 +77,8 @@ def test_ends_of_wrong_starts_are_found_out(coarse, monkeypatch):
     """Of an ensemble that takes 2 mm too much for x0."""
     right = basins.ensemble_of
 
-    def shifted(starts: np.ndarray, **parameters: np.ndarray) -> Ensemble:
-        return right(np.add(starts, (0.002, 0.0, 0.0, 0.0)), **parameters)
+    def shifted(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+        return right(np.add(starts, (0.002, 0.0, 0.0, 0.0)), *pin, **parameters)
 
     monkeypatch.setattr(basins, "ensemble_of", shifted)
     monkeypatch.setattr(basins, "SIDE", 400)
@@ -67,8 +88,8 @@ def test_ends_of_wrong_starts_are_found_out(coarse, monkeypatch):
 def test_a_basin_that_grows_with_the_speed_is_found_out(coarse, monkeypatch):
     right = basins.ensemble_of
 
-    def slower(starts: np.ndarray, **parameters: np.ndarray) -> Ensemble:
-        return right(starts, **{name: 4.1 - values for name, values in parameters.items()})
+    def slower(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+        return right(starts, *pin, **{name: 4.1 - values for name, values in parameters.items()})
 
     monkeypatch.setattr(basins, "ensemble_of", slower)
     assert SHRINKS in sentences(basins.theory(), Verdict.DIFFERS)
@@ -77,8 +98,8 @@ def test_a_basin_that_grows_with_the_speed_is_found_out(coarse, monkeypatch):
 def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(coarse, monkeypatch):
     right = basins.ensemble_of
 
-    def swapped(starts: np.ndarray, **parameters: np.ndarray) -> Ensemble:
-        found = right(starts, **parameters)
+    def swapped(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+        found = right(starts, *pin, **parameters)
         return replace(found, end=np.where(found.end == 1, 2, 1).astype(np.uint8))
 
     monkeypatch.setattr(basins, "ensemble_of", swapped)

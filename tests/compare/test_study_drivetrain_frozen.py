@@ -43,7 +43,7 @@ def test_every_statement_holds_and_the_figures_show_it(few, theory):
     findings = drivetrain_frozen.measure(engines(["exudyn"])[0])
     assert set(verdicts(findings).values()) == {Verdict.AGREES}
     assert set(verdicts(theory).values()) == {Verdict.AGREES}
-    assert len(findings.claims) == 8
+    assert len(findings.claims) == 9
     figures = drivetrain_frozen.STUDY.draw({"exudyn": findings.data, "theory": theory.data})
     assert set(figures) == set(drivetrain_frozen.STUDY.figures)
     assert drivetrain_frozen.STUDY.draw({}) == {}
@@ -98,6 +98,24 @@ def test_a_reaction_without_the_arm_of_the_force_is_found_out_in_the_linearisati
 
     monkeypatch.setattr(exudyn_models.linearisation, "state_matrix", without_arm)
     assert drivetrain_modulated.claim_of_linearisation("exudyn", CAR).verdict is Verdict.DIFFERS
+
+
+def test_another_friction_is_found_out_in_the_border_of_the_modulation(monkeypatch):
+    build = drivetrain_modulated.build
+    other = replace(CAR, inner_radius=CAR.inner_radius * (1.0 + 1e-6))
+    monkeypatch.setattr(
+        drivetrain_modulated, "build", lambda car, whirl, **options: build(other, whirl, **options)
+    )
+    claim = drivetrain_modulated.claim_of_border("exudyn", CAR)
+    assert claim.verdict is Verdict.DIFFERS
+    assert np.all(claim.difference > 10.0 * claim.budget.total)
+
+
+def test_where_no_speed_divides_growth_from_decay_there_is_no_border(monkeypatch):
+    monkeypatch.setattr(drivetrain_modulated, "BETWEEN", (4300.0, 4500.0))
+    claim = drivetrain_modulated.claim_of_border("exudyn", CAR)
+    assert np.all(np.isnan(claim.measured))
+    assert claim.verdict is Verdict.DIFFERS
 
 
 def test_another_inertia_of_the_engine_is_found_out_in_the_growth(monkeypatch):

@@ -83,6 +83,47 @@ def test_the_reference_predicts_self_centring_below_the_onset_and_a_whirl_above(
     assert speed[np.argmax(data["unbalance"])] == pytest.approx(data["onset"][1] + study.SLIP, rel=0.02)
 
 
+def as_predicted(off=0.0):
+    """Return data of a run-up on the lines of the claim, but for ``off`` orders, as it turns faster."""
+    data = run_up_with({1.0: 1e-4})
+    car = passenger_car()
+    times, (angle, speed) = data["times"], data["engine"].T
+    circling, _, frequency = study.whirls_above_onset(car).T
+    below = speed < 0.5 * (circling[0] + pictures.natural_frequency(car))
+    own = np.where(below, speed - study.SLIP, np.interp(speed, circling, frequency)) + off * speed
+    phase = np.concatenate(([0.0], np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(times))))
+    z = 3e-4 * np.exp(1j * phase) + 1e-4
+    return data | {"disc": np.column_stack((z.real, z.imag, angle))}
+
+
+def test_a_disc_on_the_lines_is_found_on_them():
+    claim = study.lines_claim("exudyn", as_predicted(), as_predicted())
+    assert claim.verdict is Verdict.AGREES
+    assert np.max(claim.difference) < 0.5 / pictures.TURNS
+
+
+@pytest.mark.parametrize(
+    ("wrong", "windows"),
+    [
+        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # it follows its unbalance all the way
+        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # it whirls from the beginning
+        (as_predicted(off=1.5 / pictures.TURNS), "above"),
+    ],
+)
+def test_a_disc_beside_its_line_is_found_out(wrong, windows):
+    claim = study.lines_claim("exudyn", wrong, wrong)
+    assert claim.verdict is Verdict.DIFFERS
+    speeds, _ = pictures.strongest_line(wrong)
+    ends = pictures.natural_frequency(passenger_car()), study.whirls_above_onset(passenger_car())[0, 0]
+    chosen = speeds[(speeds < ends[0]) | (speeds >= ends[1])]
+    off = claim.difference > claim.budget.total
+    assert np.all(off[chosen >= ends[1]] if windows == "above" else off[chosen < 0.8 * ends[0]])
+
+
+def test_a_run_up_shorter_than_a_window_claims_nothing_of_the_spectrum(findings):
+    assert study.LINES not in verdicts(findings)
+
+
 def test_figures_and_animation_are_drawn_of_what_is_there(findings, monkeypatch):
     monkeypatch.setattr(pictures, "FRAMES", 1)
     drawn = {"exudyn": run_up_with({0.9: 5e-4, 0.0: 2e-4}), "theory": study.theory().data}

@@ -101,6 +101,17 @@ def test_our_engines_agree_in_every_case():
     assert all(set(found[name, ""].values()) == {Verdict.AGREES} for name in OURS)
 
 
+def test_a_cone_in_place_of_the_box_lets_go_in_time_and_is_found_out(monkeypatch):
+    def cone(slip, epsilon):
+        return -slip / max(abs(slip), epsilon)
+
+    monkeypatch.setattr(foreign_engines, "box", cone)
+    claim = foreign_engines._claim_of_release()
+    assert claim.verdict is Verdict.DIFFERS
+    late, _ = claim.measured
+    assert abs(late) < claim.budget.total[0]  # the integration finds the root of (7) for Coulomb's own law
+
+
 @pytest.mark.parametrize("case", [case for case in CASES if case != "stuck"])
 def test_another_law_would_show_ten_times_over_the_resolution(case):
     errors = [found.runs[case][-1, ERROR] for found in recordings() if found.name in BY_AXIS]

@@ -287,7 +287,7 @@ def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
         discs.multipliers, key=lambda multiplier: min(abs(multiplier - other) for other in pins.multipliers),
         reverse=True,
     )  # fmt: skip
-    # The torsional one: small relative spin is damped by μN·R²/(2U) (paper-notes' rotating damping, U for W).
+    # The torsional one: small relative spin is damped by μN·R²/(2U) (as for a ring, with U in place of W).
     assert 0.0 < extra.real < 1.0
     assert sorted(others, key=abs) == pytest.approx(sorted(pins.multipliers, key=abs), abs=1e-6)
 

@@ -1,0 +1,104 @@
+"""What strangers read cites equations, figures and sections that the paper has, and documents that are there."""
+
+import ast
+import functools
+import re
+from pathlib import Path
+
+import pytest
+
+from compare.studies import STUDIES
+
+ROOT = Path(__file__).parents[2]
+EQUATIONS, FIGURES, SECTIONS = 26, 11, 5
+"""How many the paper has."""
+
+PACKAGES = ("compare", "reference_model", "exudyn_models")
+SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+@functools.cache
+def nodes_of(path):
+    """Return all nodes of a module's syntax."""
+    return tuple(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
+def cited(pattern, text):
+    """Return the numbers that ``pattern`` finds, whose group is a list like "2, 3", "14 to 16" or "11–16"."""
+    return [int(number) for found in re.finditer(pattern, text) for number in re.findall(r"\d+", found[1])]
+
+
+LIST = r"(\d+(?:(?:, | and | to |–)\d+)*)(?![\d.]*\d)"
+
+
+def wrong(text):
+    """Return what ``text`` cites and the paper has not."""
+    return [
+        f"{kind} {number}"
+        for kind, pattern, most in (
+            ("section", rf"\b[Ss]ections? {LIST}", SECTIONS),
+            ("figure", rf"\bFigs?\. {LIST}", FIGURES),
+            ("equation", rf"\b[Ee]qs?\. {LIST}", EQUATIONS),
+        )
+        for number in cited(pattern, text)
+        if not 1 <= number <= most
+    ]
+
+
+@pytest.mark.parametrize("text", ["section 6", "Figs. 9 and 12", "eq. 27", "Section 0"])
+def test_what_the_paper_has_not_is_noticed(text):
+    assert len(wrong(text)) == 1
+
+
+def test_cited_sections_figures_and_equations_are_in_the_paper():
+    found = [(path, wrong(path.read_text(encoding="utf-8"))) for path in (*SOURCES, *PAGES)]
+    assert not [each for each in found if each[1]]
+
+
+def equations_of_claims():
+    """Yield the file and the text of every equation that is written down for a claim."""
+    for path in SOURCES:
+        for node in nodes_of(path):
+            if isinstance(node, ast.keyword) and node.arg == "equation":
+                for each in ast.walk(node.value):
+                    if isinstance(each, ast.Constant) and isinstance(each.value, str) and "(" in each.value:
+                        yield path.name, each.value
+
+
+def test_equations_of_claims_are_numbers_that_the_paper_has():
+    found = list(equations_of_claims())
+    assert len(found) > 60
+    for _, equation in found:
+        assert re.fullmatch(r"\(\d+\)(?:(?:, |–)\(\d+\))*(?:, [a-z ]+)?", equation), equation
+        assert all(1 <= int(number) <= EQUATIONS for number in re.findall(r"\d+", equation)), equation
+
+
+def test_parentheses_that_stand_for_an_equation_do_so_in_every_text_of_a_study():
+    for study in STUDIES:
+        for text in (study.title, study.paper, study.finding, *study.figures.values()):
+            assert all(1 <= number <= EQUATIONS for number in map(int, re.findall(r"\((\d+)\)", text))), text
+
+
+def test_no_unit_is_changed_by_the_case_of_a_sentence():
+    """``str.capitalize`` makes "0.5 n/m³" of "0.5 N/m³"."""
+    for path in SOURCES:
+        for node in nodes_of(path):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                assert node.func.attr not in ("capitalize", "swapcase") or node.args, path
+
+
+def test_a_percentage_stands_off_its_sign():
+    """As any unit does; Python's own format writes "1%"."""
+    for path in (*SOURCES, *PAGES):
+        text = path.read_text(encoding="utf-8")
+        assert not re.findall(r":[.\d]*%\}", text), path
+        if path in PAGES:
+            assert not re.findall(r"\d%(?!\w)", text), path
+
+
+def test_no_text_names_a_document_that_is_not_there():
+    names = {path.name for path in ROOT.rglob("*.md") if ".venv" not in path.parts}
+    for path in (*SOURCES, *PAGES, *sorted((ROOT / "tests").rglob("*.py"))):
+        for name in re.findall(r"[\w./-]+\.md\b", path.read_text(encoding="utf-8")):
+            assert Path(name).name in names or path == Path(__file__), f"{path.name}: {name}"
