@@ -5,7 +5,8 @@ first test of a study that runs measures all of it, in a process of its own that
 where the claim differs or the engine has no answer. What the engine never promised is "not attempted", and what
 its errors leave open "inconclusive": neither is a pass.
 
-Without ``compare`` among its arguments pytest does not notice this plugin: its options do not even exist.
+Without ``--pyargs compare``, or a file of this package, pytest does not notice this plugin: its options do not even
+exist.
 """
 
 from __future__ import annotations
@@ -33,9 +34,10 @@ PROPERTY = "friction-discs"
 
 
 # Options of these names may well be another's: they are there only for a run that asks for this package.
-def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> None:
+def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser) -> None:
     """Add the options to a run of ``compare``."""
-    if not any("compare" in argument for argument in args):
+    known = early_config.known_args_namespace
+    if not any(_is_own(argument, known.pyargs) for argument in known.file_or_dir):
         return
     group = parser.getgroup(PROPERTY, "friction-discs: judge an engine with pytest --pyargs compare")
     group.addoption(
@@ -61,6 +63,14 @@ def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Non
         metavar="SECONDS",
         help="time after which a study of an engine is given up (default: 120)",
     )
+
+
+def _is_own(argument: str, by_module: bool) -> bool:
+    """Return whether an argument is this package or in it: by its name after ``--pyargs``, else by its path."""
+    place = argument.partition("::")[0]
+    if by_module and place.partition(".")[0] == __name__.partition(".")[0]:
+        return True
+    return Path(place).resolve().is_relative_to(STUDIES.parent)
 
 
 def _engines(config: pytest.Config) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from processes import FAKE, REAL, environment
+from processes import FAKE, PATIENCE, REAL, environment
 
 Process = subprocess.CompletedProcess[str]
 
@@ -23,7 +23,7 @@ def command() -> Callable[..., Process]:
             cwd=cwd,
             capture_output=True,
             encoding="utf-8",
-            timeout=60,
+            timeout=PATIENCE,
         )
 
     return call

@@ -199,11 +199,11 @@ def measure_unending(engine):
     if engine.name == GOOD.name:
         return measure_agreement(engine)
     Path(os.environ["RUNNING"]).touch()
-    time.sleep(60.0)
+    time.sleep(3600.0)
     return Findings()
 
 
-UNENDING = Study("unending", "A study that takes too long", "A minute.", measure_unending, draw_nothing)
+UNENDING = Study("unending", "A study that takes too long", "An hour.", measure_unending, draw_nothing)
 
 
 PIN, POINTS, RING = (

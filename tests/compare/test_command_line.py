@@ -11,7 +11,7 @@ from dataclasses import asdict, replace
 import fake_studies
 import numpy as np
 import pytest
-from processes import FAKE, REAL, environment
+from processes import FAKE, PATIENCE, REAL, environment
 
 from compare import cli
 from compare.engines import EVERY_KIND
@@ -240,7 +240,7 @@ def test_a_reader_that_stops_early_is_no_error(tmp_path):
     process.stdout.readline()
     process.stdout.close()
     assert process.stderr.read() == b""
-    assert process.wait(timeout=30) == 0
+    assert process.wait(timeout=PATIENCE) == 0
     process.stderr.close()
 
 
@@ -448,5 +448,5 @@ def test_on_a_terminal_there_is_a_progress_bar(tmp_path):
     except OSError:  # how the end of a pseudo-terminal reads on Linux
         pass
     os.close(parent)
-    assert process.wait(timeout=30) == 0
+    assert process.wait(timeout=PATIENCE) == 0
     assert b"2/2" in shown

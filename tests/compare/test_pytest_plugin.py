@@ -7,7 +7,7 @@ import sys
 import xml.etree.ElementTree as ET
 
 import pytest
-from processes import ROOT
+from processes import PATIENCE, ROOT
 
 from compare.claim import THEORY
 from compare.claim_list import sentences
@@ -58,7 +58,7 @@ def run(folder, *arguments):
         env=environment,
         capture_output=True,
         encoding="utf-8",
-        timeout=120,
+        timeout=PATIENCE,
     )
     cases = {}
     if (folder / "out.xml").exists():
@@ -191,22 +191,43 @@ def test_what_cannot_be_judged_is_refused_at_once(options, sentence, tmp_path):
     assert sentence in output
 
 
-def test_without_an_engine_there_are_no_tests_and_the_header_says_so(tmp_path):
-    status, output, _ = run(tmp_path, "--pyargs", "compare")
+@pytest.mark.parametrize(
+    "named",
+    [
+        ("--pyargs", "compare"),
+        ("--pyargs", "compare.studies.trajectories"),
+        (str(ROOT / "compare" / "studies" / "trajectories.py"),),
+    ],
+    ids=["package", "module", "file"],
+)
+def test_without_an_engine_there_are_no_tests_and_the_header_says_so(named, tmp_path):
+    status, output, _ = run(tmp_path, *named)
     assert status == pytest.ExitCode.NO_TESTS_COLLECTED
     assert "name one with --engine MODULE:FUNCTION" in output
 
 
-def test_the_tests_of_others_do_not_notice_the_plugin(tmp_path):
+@pytest.mark.parametrize(
+    ("file", "named"),
+    [
+        ("test_of_others.py", ()),
+        ("test_compare.py", ("test_compare.py",)),
+        ("tests/test_compare.py", ("tests/test_compare.py::test", "-k", "test or compare")),
+        ("compare/test_engines.py", ("compare",)),
+        ("comparelib/test_it.py", ("--pyargs", "comparelib.test_it")),
+    ],
+)
+def test_the_tests_of_others_do_not_notice_the_plugin(file, named, tmp_path):
     (tmp_path / "conftest.py").write_text(
         "def pytest_addoption(parser):\n    parser.addoption('--engine')\n    parser.addoption('--level')\n"
     )
-    (tmp_path / "test_of_others.py").write_text(
+    (tmp_path / file).parent.mkdir(exist_ok=True)
+    (tmp_path / file).write_text(
         "import sys\n\ndef test(pytestconfig):\n"
         "    assert pytestconfig.getoption('engine') == 'diesel'\n"
         "    assert pytestconfig.pluginmanager.has_plugin('friction_discs')\n"
         "    assert not {'reference_model', 'compare.engines'} & set(sys.modules)\n"
     )
-    status, output, _ = run(tmp_path, "--engine", "diesel", "-p", "no:hypothesispytest")
+    options = ("--engine", "diesel", "-p", "no:hypothesispytest", "-o", "pythonpath=.")
+    status, output, _ = run(tmp_path, *named, *options)
     assert status == 0, output
     assert "1 passed" in output

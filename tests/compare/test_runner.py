@@ -8,7 +8,7 @@ import time
 import fake_studies as fake
 import numpy as np
 import pytest
-from processes import FAKE, environment
+from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
 
 from compare.errata import Erratum, Evidence
 from compare.runner import Drawing, run
@@ -149,13 +149,11 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
         stderr=subprocess.PIPE,
         encoding="utf-8",
         start_new_session=True,
+        preexec_fn=interruptible,
     )
-    finished = output / "data" / "unending--good.json"
-    deadline = time.monotonic() + 30.0
-    while not (running.exists() and finished.exists()) and time.monotonic() < deadline:
-        time.sleep(0.02)
+    wait_for(process, running, output / "data" / "unending--good.json")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=PATIENCE)
 
     assert process.returncode == 130
     missing = "unending also-good, unending failing"
@@ -167,7 +165,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
     assert states == {"good": "finished", "also-good": "missing", "failing": "missing"}
     page = (output / "index.html").read_text(encoding="utf-8")
     assert "missing: unending with also-good, unending with failing." in page
-    assert ends(process.pid)
+    wait_until(lambda: ended(process.pid))
 
 
 @pytest.mark.skipif(os.name == "nt", reason="groups of processes are a POSIX thing")
@@ -180,21 +178,16 @@ def test_no_process_outlives_a_killed_one(tmp_path):
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )
-    deadline = time.monotonic() + 30.0
-    while not running.exists() and time.monotonic() < deadline:
-        time.sleep(0.02)
+    wait_for(process, running)
     process.kill()
     process.wait()
-    assert ends(process.pid)
+    wait_until(lambda: ended(process.pid))
 
 
-def ends(group):
-    """Whether every process of the group ends within some seconds; an ended one may wait to be collected."""
-    deadline = time.monotonic() + 10.0
-    while time.monotonic() < deadline:
-        try:
-            os.killpg(group, 0)
-        except ProcessLookupError:
-            return True
-        time.sleep(0.05)
+def ended(group):
+    """Whether every process of the group has ended; an ended one may wait to be collected."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return True
     return False

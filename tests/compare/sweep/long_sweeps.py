@@ -2,25 +2,30 @@
 
 import resource
 import subprocess
-import time
+import sys
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from processes import REAL, environment
+from processes import PATIENCE, REAL, environment
 
 from compare import cli
 
 LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
+SIGNALLING = Path(__file__).with_name("signalling_sweep.py")
 CHUNKS = ["--chunk", "20"]
 """Many small chunks, so that there is time to interfere."""
 
 
-def long_sweep(folder, *more, limit=None):
-    """Start the command; ``limit`` is the largest file in bytes that it may write."""
+def long_sweep(folder, *more, limit=None, signalled=None):
+    """Start the command; ``limit`` is the largest file in bytes that it may write.
+
+    ``signalled`` are name of a signal, process (0 for itself) and number of the chunk that is half written then.
+    """
     restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    command = REAL if signalled is None else [sys.executable, str(SIGNALLING), *map(str, signalled)]
     return subprocess.Popen(
-        [*REAL, *LONG, *CHUNKS, "--output", str(folder), *more],
+        [*command, *LONG, *CHUNKS, "--output", str(folder), *more],
         env=environment(),
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -35,16 +40,8 @@ def marks(folder: Path) -> set[str]:
     return {path.name for path in written.iterdir() if path.name.isdigit()} if written.exists() else set()
 
 
-def wait_for_marks(folder, least, process):
-    deadline = time.monotonic() + 120.0
-    while len(marks(folder)) < least:
-        assert process.poll() is None, process.stderr.read()
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
-
-
 def finished_by(process):
-    out, err = process.communicate(timeout=200)
+    out, err = process.communicate(timeout=PATIENCE)
     return process.returncode, out, err
 
 

@@ -4,17 +4,14 @@ import signal
 from shutil import copytree
 
 import pytest
-from long_sweeps import assert_same, content, finished_by, long_sweep, marks, resumed, wait_for_marks
+from long_sweeps import assert_same, content, finished_by, long_sweep, marks, resumed
 
 
 @pytest.fixture(scope="module")
 def interrupted(undisturbed, tmp_path_factory):
     """The folder of a sweep that was interrupted from the keyboard, its exit status and what it said."""
     folder = tmp_path_factory.mktemp("interrupted")
-    process = long_sweep(folder)
-    wait_for_marks(folder, 10, process)
-    process.send_signal(signal.SIGINT)
-    return folder, finished_by(process)
+    return folder, finished_by(long_sweep(folder, signalled=("SIGINT", 0, 11)))
 
 
 @pytest.fixture
@@ -31,11 +28,10 @@ def test_an_interrupt_from_the_keyboard_is_told(interrupted):
 def test_killed_again_and_again_a_sweep_comes_to_the_same_results(undisturbed, unfinished):
     written = times(unfinished)
     for _ in range(2):
-        process = long_sweep(unfinished, "--resume")
-        wait_for_marks(unfinished, len(written) + 10, process)
-        process.kill()
+        process = long_sweep(unfinished, "--resume", signalled=("SIGKILL", 0, 11))
         assert finished_by(process)[0] == -signal.SIGKILL
         now = times(unfinished)
+        assert len(now) == len(written) + 10
         assert {mark: now[mark] for mark in written} == written  # nothing was written once more
         written = now
     assert resumed(unfinished) == 0
