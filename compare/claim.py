@@ -32,7 +32,7 @@ EVIDENCE: dict[Evidence, str] = {
     "independent": "beside a formula, a conservation law, an order of convergence, or a code that shares nothing",
     "self-check": "an engine against itself: at another tolerance, or with the same law of friction on both sides",
     "algebra": "formulas of the theory against each other; no engine takes part",
-    "implied": "it follows from another verdict, which agrees and is independent",
+    "implied": "it follows from another verdict that agrees, to which it adds nothing",
 }
 """Kinds of evidence, from the one that counts to those that do not add to it, in words."""
 

@@ -101,16 +101,15 @@ def environment() -> Environment:
 def summary(matrix: Matrix) -> str:
     """Return the totals in words, what is independent evidence first, and the gaps.
 
-    "41 agree on independent evidence; 7 self-checks, 3 of algebra and 5 implied agree besides; 1 differs, ...".
+    "41 agree on independent evidence, besides 7 by self-check, 3 of algebra and 5 implied; 1 differs, ...".
     """
     agree = {evidence: matrix.of_evidence(evidence)[State.AGREES] for evidence in EVIDENCE}
     besides = [f"{agree[evidence]} {name}" for evidence, name in BESIDES.items() if agree[evidence]]
-    parts = [f"{_agree(agree['independent'])} on independent evidence"]
+    words = f"{_agree(agree['independent'])} on independent evidence"
     if besides:
         listed = " and ".join([", ".join(besides[:-1]), besides[-1]] if len(besides) > 1 else besides)
-        total = sum(agree[evidence] for evidence in BESIDES)
-        parts.append(f"{listed} agree{'s' * (total == 1)} besides")
-    return "; ".join([*parts, _others_in_words(matrix.totals)])
+        words += f", besides {listed}"
+    return f"{words}; {_others_in_words(matrix.totals)}"
 
 
 BESIDES: dict[Evidence, str] = {"self-check": "by self-check", "algebra": "of algebra", "implied": "implied"}

@@ -72,9 +72,7 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     assert process.returncode == 1
     assert process.stderr == ""  # no progress bar but on a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
-    first = (
-        "4 agree on independent evidence; 1 of algebra agrees besides; 1 differs, 1 inconclusive, 4 failed"
-    )
+    first = "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed"
     assert process.stdout.endswith(f"{first} ({folder / 'index.html'})\n")
 
 
@@ -94,13 +92,13 @@ def test_a_report_without_differences_ends_with_status_0(command, tmp_path):
             "verdicts",
             "straight",
             1,
-            "2 agree on independent evidence; 1 of algebra agrees besides; 1 differs, 1 inconclusive",
+            "2 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive",
         ),
         (
             "verdicts",
             "failing",
             1,
-            "0 agree on independent evidence; 1 of algebra agrees besides; 0 differ, 0 inconclusive, 1 failed",
+            "0 agree on independent evidence, besides 1 of algebra; 0 differ, 0 inconclusive, 1 failed",
         ),
         ("inconclusive", "straight", 0, "0 agree on independent evidence; 0 differ, 1 inconclusive"),
     ],
