@@ -8,6 +8,7 @@ import json
 import math
 import os
 import re
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -98,6 +99,8 @@ def stamp(
         if source is not None:
             digest.update(Path(source).read_bytes())
     versions = " ".join(f"{name}-{version_of(name)}" for name in libraries)
+    if "exudyn" in libraries:
+        versions += f" exudyn-user-settings-{exudyn_user_settings()}"
     return f"{version_of('friction-discs')} {digest.hexdigest()[:16]} {versions}"
 
 
@@ -107,6 +110,12 @@ def version_of(distribution: str) -> str:
         return version(distribution)
     except PackageNotFoundError:
         return "none"
+
+
+def exudyn_user_settings() -> str:
+    """Return "off", or "on" where Exudyn was imported before a study and has found a user's own settings."""
+    found = sys.modules.get("exudyn.misc.overrideSettings")
+    return "on" if found is not None and found.Applied() else "off"
 
 
 @cache
