@@ -248,7 +248,7 @@ def judge(
     \b
     Examples:
       friction-discs judge
-      friction-discs judge moment-wrong-sign --study trajectories --study power-balance
+      friction-discs judge moment-of-wrong-sign --study trajectories --study power-balance
     """
     from compare.faults import RIGHT
 

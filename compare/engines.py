@@ -31,6 +31,10 @@ from reference_model.support import Support
 from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
 
+# A user's ~/.exudyn/config.json would change what is measured. Exudyn reads it when it is imported: after this, since
+# every study imports this module, and in all processes that are started from here.
+os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
+
 KINDS = {"pin": "a pin", "points": "a disc on single points", "ring": "a disc on a continuous ring"}
 """The kinds of systems that an engine may promise, and what they are in words."""
 
@@ -301,7 +305,9 @@ def imported(name: str, place: str) -> Engine:
     """
     module_name, _, function_name = place.partition(":")
     if os.getcwd() not in sys.path:  # a console script does not look into the current folder
-        sys.path.insert(0, os.getcwd())
+        sys.path.append(
+            os.getcwd()
+        )  # last, or a file of the user's would take the place of a library's module
     try:
         simulate = getattr(importlib.import_module(module_name), function_name)
     except Exception as error:  # whatever a module may do when it is imported

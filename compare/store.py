@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import re
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -80,6 +81,8 @@ def stamp(*fingerprints: str, code: Sequence[str] = PACKAGES, libraries: Sequenc
     """Return what findings depend on: packages or modules ``code``, libraries, and what else has a fingerprint."""
     digest = hashlib.sha256("".join([_digest(ROOT, tuple(code)), *fingerprints]).encode())
     versions = " ".join(f"{name}-{version_of(name)}" for name in libraries)
+    if "exudyn" in libraries:
+        versions += f" exudyn-user-settings-{exudyn_user_settings()}"
     return f"{version_of('friction-discs')} {digest.hexdigest()[:16]} {versions}"
 
 
@@ -89,6 +92,12 @@ def version_of(distribution: str) -> str:
         return version(distribution)
     except PackageNotFoundError:
         return "none"
+
+
+def exudyn_user_settings() -> str:
+    """Return "off", or "on" where Exudyn was imported before a study and has found a user's own settings."""
+    found = sys.modules.get("exudyn.misc.overrideSettings")
+    return "on" if found is not None and found.Applied() else "off"
 
 
 @cache

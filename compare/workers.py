@@ -9,6 +9,8 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
+import tempfile
 import threading
 import time
 import traceback
@@ -25,6 +27,13 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
 """The cores are busy with one process each: threads of the linear algebra would only get in their way."""
+
+SAFE_PATH = {"PYTHONSAFEPATH": "1"}
+"""Until it has been told this process's path, a new one would look into the current folder first."""
+
+
+STANDARD_ERROR = 2
+"""Its file descriptor."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +149,9 @@ class _Worker:
         self.started = 0.0
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
-        with interrupts_ignored(), _environment(ONE_THREAD):  # Ctrl-C is this process's to handle
+        self._errors = _Errors()
+        # Ctrl-C is this process's to handle
+        with interrupts_ignored(), _environment(ONE_THREAD | SAFE_PATH), self._errors.written():
             self._process.start()
         other_end.close()
 
@@ -153,19 +164,68 @@ class _Worker:
         key, self.key = self.key, None
         try:
             value, seconds = pickle.loads(self.connection.recv_bytes())
+            self._errors.hand_on()
         except (EOFError, OSError):
             self.dead = True
             self._process.join()
             code = self._process.exitcode or 0
             cause = signal.Signals(-code).name if code < 0 else f"exit status {code}"
-            value, seconds = Failure(f"its process came to a sudden end ({cause})"), 0.0
+            said = self._errors.hand_on().strip().splitlines()
+            self._errors.close()
+            reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
+            value, seconds = Failure(reason), 0.0
         return Done(key, value, seconds)
 
     def end(self) -> None:
         self.dead = True
         self._process.kill()  # compiled code may not listen to less
         self._process.join()
+        self._errors.close()
         self.connection.close()
+
+
+class _Errors:
+    """What a process writes to its standard error: it may be all that tells why it ended, before it even began."""
+
+    def __init__(self) -> None:
+        self._file = tempfile.TemporaryFile()  # noqa: SIM115
+        self._handed_on = 0
+
+    @contextmanager
+    def written(self) -> Iterator[None]:
+        """Let a process that starts inside write its errors here; on Windows it writes where this one does."""
+        try:
+            own = os.dup(STANDARD_ERROR)
+        except OSError:  # closed by the caller
+            own = -1
+        if own < 0 or not hasattr(os, "pread"):
+            yield
+            return
+        os.dup2(self._file.fileno(), STANDARD_ERROR)
+        try:
+            yield
+        finally:
+            os.dup2(own, STANDARD_ERROR)
+            os.close(own)
+
+    def close(self) -> None:
+        """Hand on what is left, and let go of the file."""
+        self.hand_on()
+        self._file.close()
+
+    def hand_on(self) -> str:
+        """Write what is new to the standard error of this process, and return it."""
+        size = os.fstat(self._file.fileno()).st_size
+        if size == self._handed_on:
+            return ""
+        # Both processes share one place in the file, where the other one writes.
+        new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
+        self._handed_on += len(new)
+        text = new.decode(errors="replace")
+        if text and sys.stderr is not None:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+        return text
 
 
 def _serve(connection: Connection) -> None:

@@ -6,7 +6,7 @@ import os
 import platform
 from datetime import datetime, timezone
 
-from compare.store import LIBRARIES, version_of
+from compare.store import LIBRARIES, exudyn_user_settings, version_of
 
 
 def platform_stamp() -> dict[str, str]:
@@ -15,6 +15,7 @@ def platform_stamp() -> dict[str, str]:
         "friction-discs": version_of("friction-discs"),
         "Python": platform.python_version(),
         **{name: version_of(name) for name in LIBRARIES},
+        "user settings of Exudyn": exudyn_user_settings(),
         "system": f"{platform.system()} {platform.machine()}",
         "cores": str(os.cpu_count()),
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
