@@ -13,33 +13,37 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+try:
+    import typer
 
-from compare.command_input import (
-    BAD_INPUT,
-    FINE,
-    INTERRUPTED,
-    MOST_JOBS,
-    MOST_SAMPLES,
-    SOMETHING_DIFFERS,
-    BadInputError,
-    Command,
-    EngineFailedError,
-    InterruptedByUserError,
-    Settings,
-    Tolerance,
-    changed,
-    check_folder,
-    close_output,
-    cores,
-    count,
-    positive,
-    printing,
-    refused,
-    say,
-)
-from compare.sweep.cli import sweep
-from compare.text_files import check_writable, replacing
+    from compare.command_input import (
+        BAD_INPUT,
+        FINE,
+        INTERRUPTED,
+        MOST_JOBS,
+        MOST_SAMPLES,
+        SOMETHING_DIFFERS,
+        BadInputError,
+        Command,
+        EngineFailedError,
+        InterruptedByUserError,
+        Settings,
+        Tolerance,
+        changed,
+        check_folder,
+        close_output,
+        cores,
+        count,
+        positive,
+        printing,
+        refused,
+        say,
+    )
+    from compare.sweep.cli import sweep
+    from compare.text_files import check_writable, replacing
+except KeyboardInterrupt:  # which may come before there is anything that could take it
+    print("Interrupted.", file=sys.stderr)
+    sys.exit(130)
 
 if TYPE_CHECKING:
     from compare.faults import Fault
@@ -49,6 +53,9 @@ if TYPE_CHECKING:
     from compare.study import Study
     from compare.workers import Failure
     from reference_model.systems import System
+
+MOST_LISTED = 10
+"""Measurements that a sentence names."""
 
 app = typer.Typer(
     name="friction-discs",
@@ -81,6 +88,8 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
         return say(" ".join(message.split()), BAD_INPUT)
     except EngineFailedError as error:
         return say(str(error), SOMETHING_DIFFERS)
+    except MemoryError:
+        return say("there is not enough memory", SOMETHING_DIFFERS)
     except SystemExit as end:
         if not isinstance(end.__context__, BrokenPipeError):  # which typer ends with status 1
             raise
@@ -207,7 +216,7 @@ def report(
     with printing():
         _print_summary(result, matrix, output / "index.html")
     if result.interrupted:
-        missing = ", ".join(f"{study} {column}" for study, column in result.missing) or "figures"
+        missing = _listed([f"{study} {column}" for study, column in result.missing]) or "figures"
         return say(
             f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
         )
@@ -505,12 +514,17 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 if cell.state is State.NOT_SIMULATED:
                     if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
                         print(f"{group.study.name} {column} not simulated: {cell.reason}")
-                elif cell.state is not State.AGREES:
+                elif cell.state not in (State.AGREES, State.MISSING):  # what is missing is said at the end
                     reason = f": {cell.reason}" if cell.reason else ""
                     print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
     for what, failure in _failures(result).items():
         print(f"{what}: {failure.reason}")
     print(f"{summary(matrix)} ({index})")
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    return ", ".join(names[:MOST_LISTED]) + more
 
 
 def _tell_unknown(unknown: Mapping[str, str]) -> None:

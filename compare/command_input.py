@@ -111,6 +111,8 @@ def changed(system: System, settings: Sequence[str]) -> System:
         if not equals:
             raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
         name = known("parameter", name.strip(), names)
+        if name in changes:
+            raise ValueError(f"--set {name}: it is there more than once")
         ring = name == "contact_points" and value.strip().lower() == "none"
         changes[name] = None if ring else value
     return replace(system, **changes)

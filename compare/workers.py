@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import errno
 import multiprocessing
 import os
 import pickle
@@ -34,6 +35,10 @@ SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 
 STANDARD_ERROR = 2
 """Its file descriptor."""
+
+
+NO_MEMORY = ("failed to map segment", "annot allocate memory")
+"""How the loader of shared libraries says it."""
 
 
 @dataclass(frozen=True)
@@ -272,10 +277,23 @@ def failure(error: Exception) -> Failure:
     # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
+    if lacks_memory(error):
+        reason = f"there is not enough memory ({reason})"
     frames = traceback.extract_tb(error.__traceback__)
     # file names only: a report says nothing about the machine that it was made on
     where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)
     return Failure(reason, tuple(line for line in where if not line.startswith("workers.py:")))
+
+
+def lacks_memory(error: BaseException | None) -> bool:
+    """Return whether an exception, or one behind it, says so: a library that can't be loaded for that reason too."""
+    while error is not None:
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            return True
+        if any(words in str(error) for words in NO_MEMORY):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 @contextmanager

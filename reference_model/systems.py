@@ -15,6 +15,13 @@ MOST_POINTS = 1000
 """Of a contact: an engine's work grows with their number, and a continuous ring is closer to more of them."""
 
 
+LEAST, MOST = 1e-50, 1e50
+"""Of the size of a parameter that is not 0, in its SI unit: products of several stay floating-point numbers."""
+
+MOST_RATIO = 1e25
+"""Of a rate in 1/s, or of m·R²/J: powers of it in series stay floating-point numbers, and no step would follow it."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
     """A mass on springs and dampers, pressed on a disc that turns at constant speed: what pin and disc share."""
@@ -35,6 +42,8 @@ class _SupportedMass:
         "stiffness": "N/m",
         "damping": "N s/m",
         "friction_force": "N",
+        "disc_speed": "rad/s",
+        "offset": "m",
         "hardening": "N/m³",
         "stop_gap": "m",
         "stop_stiffness": "N/m",
@@ -59,6 +68,27 @@ class _SupportedMass:
             if value < 0.0 or (value == 0.0 and name in self._positive):
                 allowed = "> 0" if name in self._positive else ">= 0"
                 raise ValueError(f"{name} = {value:g} {self._units[name]}: it must be {allowed}")
+        for name, unit in self._units.items():
+            value = getattr(self, name)
+            if value != 0.0 and not LEAST <= abs(value) <= MOST:
+                allowed = "" if name in self._positive else "0 or "
+                raise ValueError(
+                    f"{name} = {value:g} {unit}: its size must be {allowed}between {LEAST:g} and {MOST:g}"
+                )
+        for name, (formula, ratio) in self._ratios().items():
+            if ratio > MOST_RATIO:
+                raise ValueError(
+                    f"{name} = {getattr(self, name):g} {self._units[name]}: {formula} = {ratio:g} "
+                    f"must be at most {MOST_RATIO:g}"
+                )
+
+    def _ratios(self) -> dict[str, tuple[str, float]]:
+        """Return by parameter what may not be too large of it beside others: its formula and value, in SI units."""
+        return {
+            "stiffness": ("√(stiffness/mass)", self.natural_frequency),
+            "stop_stiffness": ("√(stop_stiffness/mass)", math.sqrt(self.stop_stiffness / self.mass)),
+            "damping": ("damping/mass", self.damping / self.mass),
+        }
 
     @property
     def natural_frequency(self) -> float:
@@ -101,7 +131,7 @@ class PinOnDisc(_SupportedMass):
     Raises
     ------
     ValueError
-        If a value is not a finite number or is outside of its range.
+        If a value is not a finite number or is outside of its range, or so large or small that it would overflow.
 
     """
 
@@ -150,7 +180,7 @@ class DiscOnDisc(_SupportedMass):
     Raises
     ------
     ValueError
-        If a value is not a finite number or is outside of its range.
+        If a value is not a finite number or is outside of its range, or so large or small that it would overflow.
 
     """
 
@@ -165,6 +195,7 @@ class DiscOnDisc(_SupportedMass):
         "polar_inertia": "kg m²",
         "contact_radius": "m",
         "shaft_damping": "N m s/rad",
+        "shaft_speed": "rad/s",
     }
     _positive: ClassVar[tuple[str, ...]] = (*_SupportedMass._positive, "polar_inertia", "contact_radius")
     _not_negative: ClassVar[tuple[str, ...]] = (*_SupportedMass._not_negative, "shaft_damping")
@@ -184,6 +215,15 @@ class DiscOnDisc(_SupportedMass):
                     "None for the continuous ring; a single point is a PinOnDisc"
                 )
             object.__setattr__(self, "contact_points", int(points))
+
+    def _ratios(self) -> dict[str, tuple[str, float]]:
+        return super()._ratios() | {
+            "contact_radius": (
+                "mass·contact_radius²/polar_inertia",
+                self.mass * self.contact_radius**2 / self.polar_inertia,
+            ),
+            "shaft_damping": ("shaft_damping/polar_inertia", self.shaft_damping / self.polar_inertia),
+        }
 
 
 System: TypeAlias = PinOnDisc | DiscOnDisc

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -44,6 +45,8 @@ class Axis:
             raise ValueError(
                 f"{self.name} from {self.low:g} to {self.high:g}: the range must begin below its end"
             )
+        if not math.isfinite(self.high - self.low):
+            raise ValueError(f"{self.name} from {self.low:g} to {self.high:g}: the range must be finite")
         if not 2 <= self.points <= MOST_POINTS:
             raise ValueError(f"{self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
 

@@ -29,6 +29,7 @@ from compare.command_input import (
 )
 
 if TYPE_CHECKING:
+    from compare.sweep.axes import Axis
     from compare.sweep.executors import Executor
     from compare.sweep.plan import Plan
     from compare.sweep.run import Progress
@@ -40,6 +41,8 @@ STORE = "sweep.zarr"
 
 CHUNK = 32768
 """Trajectories in a chunk, unless another number is asked for."""
+
+COARSE = "65"
 
 MOST_CHUNK, MOST_SAMPLES, MOST_POINTS = 10_000_000, 2**27, 100_000_000
 
@@ -136,8 +139,12 @@ def sweep_basin(
     y: YAxis = "",
     coarse: Annotated[
         str,
-        typer.Option(metavar="N", help="Least points along each axis before the boundary is refined."),
-    ] = "65",
+        typer.Option(
+            metavar="N",
+            help="Least points along each axis before the boundary is refined.",
+            show_default=COARSE,
+        ),
+    ] = "",
     random: Annotated[
         str | None,
         typer.Option(metavar="N", help="Take N random starts in place of the grid.", show_default=False),
@@ -173,11 +180,15 @@ def sweep_basin(
         names = components(common["system"])
         axes = _axes("component", names, (x, y), PLANES[system])
         state = _start(system, start, names)
+        _check_given_once({"--start": _names_of(start)}, "--x or --y", [axis.name for axis in axes])
+        _check_states(common["system"], state, list(names), axes)
         plan: Plan
         if random is None:
-            points = count("coarse", coarse, 2, MOST_SAMPLES)
+            points = count("coarse", coarse or COARSE, 2, MOST_SAMPLES)
             plan = Basin(**common, start=state, x=axes[0], y=axes[1], coarse=points)
         else:
+            if coarse:
+                raise ValueError("--coarse is of a grid: leave it out with --random")
             samples = count("random", random, 1, MOST_SAMPLES)
             ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
             plan = RandomBasin(**common, start=state, x=ranges[0], y=ranges[1], samples=samples)
@@ -216,6 +227,8 @@ def sweep_map(
     with refused():
         common = _common(system, settings, until, tolerance, seed)
         axes = _axes("parameter", parameters(common["system"]), (x, y), MAPS[system])
+        given = {"--set": [setting.partition("=")[0].strip() for setting in settings or []]}
+        _check_given_once(given, "--x or --y", [axis.name for axis in axes])
         for axis in axes:
             for end in (axis.low, axis.high):
                 changed(common["system"], [f"{axis.name}={end!r}"])
@@ -273,7 +286,13 @@ def sweep_uncertainty(
     with refused():
         common = _common(system, settings, until, tolerance, seed)
         varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or [])
-        _check_varied([uncertain.name for uncertain in varied])
+        names = [uncertain.name for uncertain in varied]
+        _check_varied(names)
+        given = {
+            "--set": [setting.partition("=")[0].strip() for setting in settings or []],
+            "--start": _names_of(start),
+        }
+        _check_given_once(given, "--vary", names)
         number = count("samples", samples, LEAST_SAMPLES, MOST_SAMPLES)
         if number & (number - 1):
             nearest = 1 << number.bit_length()
@@ -359,8 +378,33 @@ def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...
         if not equals:
             raise ValueError(f"--start {text!r}: write it as NAME=VALUE,NAME=VALUE")
         name = known("component", name.strip(), names)
+        if _names_of(text).count(name) > 1:
+            raise ValueError(f"--start {text!r}: {name} is there more than once")
         state[name] = finite_number(name, value)
     return tuple(state.values())
+
+
+def _names_of(text: str) -> list[str]:
+    """Return the names in "NAME=VALUE,..."."""
+    return [part.partition("=")[0].strip() for part in text.split(",")]
+
+
+def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequence[str]) -> None:
+    """Raise ``ValueError`` if an option gives a value to what has its values from elsewhere."""
+    for option, of_option in given.items():
+        for name in of_option:
+            if name in names:
+                raise ValueError(f"{option} {name}: it has its values from {by}, leave one of them out")
+
+
+def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
+    """Raise ``ValueError`` if a start in a plane can't be one."""
+    from reference_model.systems import checked_state
+
+    for axis in axes:
+        for end in (axis.low, axis.high):
+            at_end = [end if name == axis.name else value for name, value in zip(names, state, strict=True)]
+            checked_state(system, at_end)
 
 
 def _check_varied(names: Sequence[str]) -> None:
@@ -376,6 +420,7 @@ def _sweep(plan: Plan, chunk: str | None, scheduler: str | None, folder: Path, r
     from compare.sweep.executors import ClusterError
     from compare.sweep.run import OtherCodeError, run
     from compare.sweep.store import SweepStore
+    from compare.workers import lacks_memory
 
     path = folder / STORE
     with refused():
@@ -389,8 +434,12 @@ def _sweep(plan: Plan, chunk: str | None, scheduler: str | None, folder: Path, r
             run(store, executor, progress)
     except (ClusterError, OtherCodeError) as error:
         return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
-    except OSError as error:
-        reason = error.strerror or str(error)
+    except (OSError, MemoryError) as error:
+        if lacks_memory(error):
+            return say(
+                "there is not enough memory. The same command with --resume goes on.", SOMETHING_DIFFERS
+            )
+        reason = error.strerror or str(error)  # type: ignore[union-attr]
         return say(
             f"can't write to {str(path)!r}: {reason}. What is written stays valid; "
             "the same command with --resume goes on.",
