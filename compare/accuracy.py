@@ -17,11 +17,11 @@ COARSENING = 8.0
 SAFETY = 8.0
 """Estimate of an error over the change to the result at the smaller tolerance.
 
-With errors in proportion to the tolerance that is 7 times the error. It covers the error unless that of the other
-result is by chance as large, to within an eighth: also where errors fall slowly or irregularly with the tolerance, as
-tolerance^(1/10), or from one of a few steps to the next. The change to a result at a *larger* tolerance would be 7
-times the error too; but it falls short wherever the other result is less than twice as far off in place of 8 times,
-which is so in one number of twenty of the reference, and in one of fifty of Exudyn.
+With errors in proportion to the tolerance that is 8·(1 − 1/8) = 7 times the error, by construction. It covers the
+error unless that of the other result is by chance as large, to within an eighth: also where errors fall slowly or
+irregularly with the tolerance, as tolerance^(1/10), or from one of a few steps to the next. The change to a result at
+a *larger* tolerance would be 7 times the error too; but it falls short wherever the other result is less than twice
+as far off in place of 8 times, which is so in one number of twenty of the reference, and in one of fifty of Exudyn.
 """
 
 ROUNDING = 64.0 * np.finfo(float).eps
@@ -31,10 +31,11 @@ ROUNDING = 64.0 * np.finfo(float).eps
 def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> tuple[FloatArray, FloatArray]:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
-    The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than
-    rounding. No engine takes notice of ever smaller tolerances: where that changes nothing at all, the change against
-    the next larger tolerance that does counts in its place. How often the estimate covers the true error, and how far
-    it lies above, the study "error-estimates" measures.
+    The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than the
+    largest change in its row (along the last axis): one of several numbers may change by next to nothing by chance,
+    but not all. Nor is it less than rounding. No engine takes notice of ever smaller tolerances: where that changes
+    nothing at all, the change against the next larger tolerance that does counts in its place. How often the estimate
+    covers the true error, and how far it lies above, the study "error-estimates" measures.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
@@ -46,7 +47,10 @@ def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> 
 
 def change_as_error(found: FloatArray, other: FloatArray) -> FloatArray:
     """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape."""
-    return np.asarray(SAFETY * np.abs(other - found) + ROUNDING * np.max(np.abs(found), initial=0.0))
+    change = np.abs(other - found)
+    numbers = np.where(np.isfinite(change), change, 0.0)
+    largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if change.ndim > 0 else change
+    return np.asarray(np.maximum(SAFETY * change, largest) + ROUNDING * np.max(np.abs(found), initial=0.0))
 
 
 def observed_exponent(

@@ -15,6 +15,12 @@ from compare.engines import Engine
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
+KNOWN = 4.0 * np.finfo(float).eps
+"""To this fraction of its largest number an exact motion is known: a sine, a root and a product are rounded as much.
+
+A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -98,9 +104,8 @@ class Calibration:
 
     @property
     def ratios(self) -> FloatArray:
-        """Estimates over true errors, shape (n,): infinite at a true error of 0, and 0 without a number."""
-        with np.errstate(divide="ignore"):
-            ratios = self.estimates / self.errors
+        """Estimates over true errors, those at least ``KNOWN``, shape (n,); 0 without a number."""
+        ratios = self.estimates / np.maximum(self.errors, KNOWN)
         return np.where(np.isnan(ratios), 0.0, ratios)
 
     @property

@@ -169,12 +169,19 @@ def stick(random: Generator) -> Problem:
         _state(place, turning * place),
         np.array([0.0, 0.5 * delay, 1.3 * delay]),
         _on_the_way_and_release,
-        np.append(_state(turned, turning * turned), delay),
+        np.append(_state(turned, 1j * turned) / abs(place), delay * pin.disc_speed),
     )
 
 
 def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
-    return np.append(trajectory.states[1], trajectory.stick_times[1:2])
+    """Return place, velocity and time of release in units of the radius and the disc's speed: all are about one.
+
+    In metres and seconds places would be small beside the time, and so rounding of the largest number far above
+    theirs.
+    """
+    omega, start = trajectory.system.disc_speed, trajectory.states[0]
+    state = trajectory.states[1] / math.hypot(start[0], start[1]) / (1.0, 1.0, omega, omega)
+    return np.append(state, omega * trajectory.stick_times[1:2])
 
 
 def whirl(random: Generator) -> Problem:

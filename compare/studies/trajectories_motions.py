@@ -120,7 +120,7 @@ SEED = 8
 SPEEDS = ((0.1, 0.3), (0.4, 3.0), (4.1, 6.0))
 """|ω| in rad/s: slow, as about the natural frequency, and fast. The other studies go from 0.15 to 5."""
 
-UNTIL = 5.0
+UNTIL = 3.0
 """In s."""
 
 LEAST_SLIP = 0.15
@@ -129,7 +129,7 @@ LEAST_SLIP = 0.15
 MOST_TURN = 2.0
 """Of a disc on points in rad in a ``PANEL``: its forces turn as fast."""
 
-STICKS_FOR = (0.2, 3.0)
+STICKS_FOR = (0.2, 2.0)
 """Time in s for which a pin sticks at the start."""
 
 MOST_PHASES = 6

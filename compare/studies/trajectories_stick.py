@@ -50,12 +50,13 @@ def stick_claims(engine: Engine, name: str, motion: Motion, run: Run) -> tuple[C
             parameters=parameters_of(pin),
             source=motion.source,
             unit="s",
-            note="Times of all stick phases, beside those of the reference."
+            note=f"Times of all stick phases longer than {RESOLUTION:g} s, beside those of the reference."
             if trajectory
             else "End of each stick phase, less what (7) says for the place in the middle of it.",
         )
 
-    phases = claim(PHASES, True, exact.stick_times, lambda found: stick_times(found, exact))
+    times = stick_times(exact)
+    phases = claim(PHASES, True, times, lambda found: _as_many(stick_times(found), times))
     if not middles:
         return (phases,)
     zeros = np.zeros(len(middles))
@@ -72,10 +73,18 @@ def samples_in_stick(run: Trajectory) -> list[int]:
     return found
 
 
-def stick_times(run: Trajectory, exact: Trajectory) -> FloatArray:
-    """Return beginnings and ends in s of stick phases; no numbers where there are not as many as in ``exact``."""
-    found = run.stick_times
-    return found if found.shape == exact.stick_times.shape else np.full(exact.stick_times.shape, math.nan)
+def stick_times(run: Trajectory) -> FloatArray:
+    """Return beginnings and ends in s of stick phases in their order, but for those shorter than ``RESOLUTION``.
+
+    An engine may take a moment to make up its mind: that it sticks once more for 1e-7 s changes no motion.
+    """
+    lasting = [phase for phase in run.stick_phases if phase.end - phase.start > RESOLUTION]
+    return np.array([time for phase in lasting for time in (phase.start, phase.end)])
+
+
+def _as_many(found: FloatArray, as_in: FloatArray) -> FloatArray:
+    """Return ``found``, or no numbers where there are not as many as in ``as_in``."""
+    return found if found.shape == as_in.shape else np.full(as_in.shape, math.nan)
 
 
 def late(run: Trajectory, pin: PinOnDisc, samples: list[int]) -> FloatArray:

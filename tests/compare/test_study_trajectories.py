@@ -28,7 +28,7 @@ from compare.studies.trajectories_motions import (
     drawn_motions,
     times_of,
 )
-from compare.studies.trajectories_stick import samples_in_stick
+from compare.studies.trajectories_stick import samples_in_stick, stick_times
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc
 
@@ -72,6 +72,21 @@ def test_the_whole_range_has_slow_and_fast_discs_in_both_senses_and_all_that_a_m
     assert centre_is_faster == {True, False}
     for motion in drawn["pins that stick"]:
         assert samples_in_stick(by_reference(motion))
+
+
+def test_a_moment_of_stick_is_no_phase_but_one_of_a_millisecond_is():
+    (motion, *_) = drawn_motions()["pins that stick"]
+    run = by_reference(motion)
+    stick, slip = run.phases[:2]
+    for moment, phases in ((1e-7, 1), (1e-3, 2)):
+        again = slip.start + 0.1
+        split = (
+            stick,
+            replace(slip, end=again),
+            replace(stick, start=again, end=again + moment),
+            replace(slip, start=again + moment),
+        )
+        assert stick_times(replace(run, phases=split)).shape == (2 * phases,)
 
 
 CONFINED = {
