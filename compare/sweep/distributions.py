@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 import re
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -121,9 +121,11 @@ class Uncertain:
         """Raise ``ValueError`` if ``system`` can't have all the values that the distribution allows."""
         if self.name not in parameters(system):
             return
-        largest = sys.float_info.max
+        largest = float(np.max(np.abs(self.values(np.array([0.0, 1.0 - LEAST_UNIFORM * 2.0])))))
         for end in self.distribution.support():
-            changes: dict[str, Any] = {self.name: min(max(float(end), -largest), largest)}
+            # the sign of what has no end counts, and the largest size that is drawn
+            value = float(end) if math.isfinite(end) else math.copysign(largest, end)
+            changes: dict[str, Any] = {self.name: value}
             try:
                 replace(system, **changes)
             except ValueError as error:
