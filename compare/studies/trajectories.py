@@ -330,7 +330,7 @@ STUDY = Study(
         "trajectories": "Difference of each motion from the reference's at tolerance 1e-13, the largest of all "
         "components of the state; the engines at tolerance 1e-10."
     },
-    seconds=3.0,
+    seconds=6.0,
     quick=True,
     contact=True,
 )
