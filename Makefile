@@ -5,12 +5,10 @@ BIN := $(VENV)/bin
 
 .PHONY: report readme test lint benchmarks clean
 
-# In the end the numbers of README and docs must be those of the report.
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
-	$(BIN)/python -m compare.readme check report/results.json
 
-# Takes the numbers of README and docs over from the last report.
+# Takes the numbers of README and docs over from the last report; .ci/run fails where the two part.
 readme: $(VENV)/installed
 	$(BIN)/python -m compare.readme write report/results.json
 
