@@ -16,7 +16,7 @@ MOST_POINTS = 1000
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Of the size of a parameter that is not 0, in its SI unit: products of several stay floating-point numbers."""
+"""Of the size of a parameter, the least of one that must be > 0: products of several stay floating-point numbers."""
 
 MOST_RATIO = 1e25
 """Of a rate in 1/s, or of m·R²/J: powers of it in series stay floating-point numbers, and no step would follow it."""
@@ -70,11 +70,9 @@ class _SupportedMass:
                 raise ValueError(f"{name} = {value:g} {self._units[name]}: it must be {allowed}")
         for name, unit in self._units.items():
             value = getattr(self, name)
-            if value != 0.0 and not LEAST <= abs(value) <= MOST:
-                allowed = "" if name in self._positive else "0 or "
-                raise ValueError(
-                    f"{name} = {value:g} {unit}: its size must be {allowed}between {LEAST:g} and {MOST:g}"
-                )
+            if abs(value) > MOST or (name in self._positive and value < LEAST):
+                allowed = f"between {LEAST:g} and" if name in self._positive else "at most"
+                raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
         for name, (formula, ratio) in self._ratios().items():
             if ratio > MOST_RATIO:
                 raise ValueError(

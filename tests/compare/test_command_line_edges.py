@@ -14,20 +14,20 @@ from compare.workers import failure, lacks_memory
 
 PIN, DISC = ("simulate", "pin"), ("simulate", "disc")
 BASIN, MAP = ("sweep", "basin", "pin"), ("sweep", "map", "pin")
-SIZE = "its size must be {}between 1e-50 and 1e+50"
+SIZE, MOST = "its size must be between 1e-50 and 1e+50", "its size must be at most 1e+50"
 
 REFUSED = [
-    ((*PIN, "--set", "mass=1e-320"), f"mass = 9.99989e-321 kg: {SIZE.format('')}"),
-    ((*PIN, "--set", "damping=1e300"), f"damping = 1e+300 N s/m: {SIZE.format('0 or ')}"),
-    ((*PIN, "--set", "offset=-1e300"), f"offset = -1e+300 m: {SIZE.format('0 or ')}"),
+    ((*PIN, "--set", "mass=1e-320"), f"mass = 9.99989e-321 kg: {SIZE}"),
+    ((*PIN, "--set", "damping=1e300"), f"damping = 1e+300 N s/m: {MOST}"),
+    ((*PIN, "--set", "offset=-1e300"), f"offset = -1e+300 m: {MOST}"),
     ((*PIN, "--set", "mass=1e-40"), "damping = 0.1 N s/m: damping/mass = 1e+39 must be at most 1e+25"),
-    ((*DISC, "--set", "contact_radius=1e200"), f"contact_radius = 1e+200 m: {SIZE.format('')}"),
+    ((*DISC, "--set", "contact_radius=1e200"), f"contact_radius = 1e+200 m: {SIZE}"),
     (
         (*DISC, "--set", "polar_inertia=1e-40"),
         "contact_radius = 0.12 m: mass·contact_radius²/polar_inertia = 1.44e+38 must be at most 1e+25",
     ),
     ((*BASIN, "--x", "x=-1e308:1e308:10"), "x from -1e+308 to 1e+308: the range must be finite"),
-    ((*MAP, "--x", "mass=1:1e300:10"), f"mass = 1e+300 kg: {SIZE.format('')}"),
+    ((*MAP, "--x", "mass=1:1e300:10"), f"mass = 1e+300 kg: {SIZE}"),
     ((*PIN, "--until", "5", "--until", "6"), "--until is there 2 times: give it once"),
     ((*PIN, "--start", *"0123", "--start", *"4567"), "--start is there 2 times: give it once"),
     ((*PIN, "--engine", "reference", "--engine", "exudyn"), "--engine is there 2 times: give it once"),
