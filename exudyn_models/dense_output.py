@@ -3,9 +3,37 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_models.solving import Steps
 from reference_model.systems import FloatArray
+
+
+def creep_at(steps: Steps, time: float) -> FloatArray:
+    """Return the state of a body that creeps at ``time`` (s), shape (2d,).
+
+    Its velocities are cubics between those of the steps, with their accelerations: in a short step the creep is so
+    little that the rounding of positions must not touch them.
+    """
+    positions, _ = np.split(states_at(steps, np.array([time]))[0], 2)
+    return np.hstack((positions, _velocities(steps)(time)))
+
+
+def creep_until(steps: Steps, time: float) -> Steps:
+    """Return ``steps`` of a body that creeps up to ``time`` (s), which lies after the first of them."""
+    before = int(np.searchsorted(steps.times, time))  # the steps that are kept as they are
+    return Steps(
+        np.append(steps.times[:before], time),
+        np.vstack((steps.states[:before], creep_at(steps, time))),
+        np.vstack((steps.accelerations[:before], _velocities(steps)(time, 1))),
+        steps.evaluations,
+    )
+
+
+def _velocities(steps: Steps) -> CubicHermiteSpline:
+    return CubicHermiteSpline(
+        steps.times, steps.states[:, steps.accelerations.shape[1] :], steps.accelerations
+    )
 
 
 def states_at(steps: Steps, times: FloatArray) -> FloatArray:

@@ -20,19 +20,20 @@ def build_disc_on_disc(
     *,
     regularisation: float,
     friction: AddFriction = add_ring_friction,
+    axes_speed: float = 0.0,
 ) -> Model:
     """Build the disc, starting in ``initial_state`` (x, y in m, angle in rad, vx, vy in m/s, spin in rad/s).
 
     A rigid body on springs and dampers to a support at (X0, 0), a torsional damper to the shaft, a master disc that
     turns about (0, 0) with ω, and ring friction between the two discs. Without friction or shaft damping there is no
-    such connector.
+    such connector. All of it is seen from axes that turn with ``axes_speed`` (rad/s).
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
-    master = add_master(mbs, disc.disc_speed)
-    body = add_supported_body(mbs, disc, initial_state, disc.polar_inertia)
+    master = add_master(mbs, disc.disc_speed - axes_speed)
+    body = add_supported_body(mbs, disc, initial_state, disc.polar_inertia, axes_speed)
     if disc.shaft_damping > 0.0:
-        add_shaft(mbs, body, disc)
+        add_shaft(mbs, body, disc, axes_speed)
     if disc.friction_force > 0.0:
         friction(
             mbs,
@@ -47,10 +48,10 @@ def build_disc_on_disc(
     return assembled(container, mbs, body, disc)
 
 
-def add_shaft(mbs: Any, node: Any, disc: DiscOnDisc) -> None:
+def add_shaft(mbs: Any, node: Any, disc: DiscOnDisc, axes_speed: float = 0.0) -> None:
     """Add the torsional damper of ``disc`` between its node and a shaft that turns at Ω, moment b(Ω − φ̇).
 
-    The shaft is the ground's coordinate, and Ω the damper's velocity offset.
+    The shaft is the ground's coordinate, and Ω the damper's velocity offset, less the speed of the axes.
     """
     ground = mbs.AddNode(items.NodePointGround())
     mbs.AddObject(
@@ -60,6 +61,6 @@ def add_shaft(mbs: Any, node: Any, disc: DiscOnDisc) -> None:
                 mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2)),
             ],
             damping=disc.shaft_damping,
-            velocityOffset=disc.shaft_speed,
+            velocityOffset=disc.shaft_speed - axes_speed,
         )
     )

@@ -15,8 +15,14 @@ def build(
     *,
     regularisation: float,
     friction: AddFriction = add_ring_friction,
+    axes_speed: float = 0.0,
 ) -> Model:
-    """Build ``system``, starting in ``initial_state``, with what ``friction`` adds between the discs."""
-    if isinstance(system, DiscOnDisc):
-        return build_disc_on_disc(system, initial_state, regularisation=regularisation, friction=friction)
-    return build_pin_on_disc(system, initial_state, regularisation=regularisation, friction=friction)
+    """Build ``system``, starting in ``initial_state``, with what ``friction`` adds between the discs.
+
+    In axes that turn with ``axes_speed`` (rad/s) it is the same model, in which the ground turns the other way, as
+    ``supported_body`` adds it. ``initial_state`` is one in these axes.
+    """
+    build_it = build_disc_on_disc if isinstance(system, DiscOnDisc) else build_pin_on_disc
+    return build_it(  # type: ignore[operator]
+        system, initial_state, regularisation=regularisation, friction=friction, axes_speed=axes_speed
+    )

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_models.creep import WHOLE, creep_ratios, creeping
 from exudyn_models.friction_laws import CONTINUOUS, point_regularisation
+from exudyn_models.nondimensional import Units
 from exudyn_models.ring_friction import checked_contact, checked_kind
 from exudyn_models.scales import support_energy
 from exudyn_models.simulate import simulate
@@ -59,7 +60,8 @@ def simulate_with_native_contact(
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
-    reach = _reach(system, state, float(grid[-1] - grid[0]))
+    # Friction is added in the units of the motion.
+    reach = _reach(system, state, float(grid[-1] - grid[0])) / Units.of(system, state).length
     friction = Friction(partial(_add_friction, reach=reach), _creeping)
     trajectory = simulate(system, state, grid, tolerance=tolerance, friction=friction)
     solution = replace(trajectory.solution, method=f"{trajectory.solution.method}, built-in contact")

@@ -33,9 +33,7 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
     like that. Sticking *ends* where the load reaches what friction can hold, and a pivot where the slip speed of the
     point reaches its δ. All these times have errors of first order in ε.
     """
-    ratios = creep_ratios(system, steps.states, regularisation)
-    below = ratios < 1.0
-    creeping = np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
+    ratios, creeping = _creeping_parts(system, steps, regularisation)
     load = load_ratios(system, steps.states, steps.accelerations, regularisation)
     settling = settling_time(system, regularisation)
     released = 0
@@ -76,6 +74,39 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
             found.append(Phase(_kind(creeping[i]), start, end, states_at(steps, np.array([start]))[0]))
         part_before = creeping[i]
     return tuple(found)
+
+
+NEIGHBOURS = 100
+"""Steps at both ends of a run with nothing new that are kept: the time of rest lies a few of them after its start."""
+
+
+def essential(system: System, steps: Steps, regularisation: float) -> NDArray[np.bool_]:
+    """Return which of ``steps`` are to be kept so that ``phases`` finds the same without the others, shape (n,).
+
+    Of each run in which the same part creeps, or nothing: its ends, where its slip is largest, where the load is
+    last one that friction holds, and where it is held most clearly.
+    """
+    ratios, creeping = _creeping_parts(system, steps, regularisation)
+    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
+    whole = ratios[:, WHOLE]
+    grip = np.where(whole > 0.0, whole + np.abs(load - whole), np.inf)
+    kept = np.zeros(len(creeping), dtype=bool)
+    for first, beyond in _runs(creeping):
+        kept[first : first + NEIGHBOURS] = kept[max(first, beyond - NEIGHBOURS) : beyond] = True
+        kept[first + int(np.argmax(whole[first:beyond]))] = True
+        kept[first + int(np.argmin(grip[first:beyond]))] = True
+        held = np.flatnonzero(load[first:beyond] < 1.0)
+        kept[first + held[-1:]] = kept[np.minimum(first + held[-1:] + 1, len(kept) - 1)] = True
+    return kept
+
+
+def _creeping_parts(
+    system: System, steps: Steps, regularisation: float
+) -> tuple[FloatArray, NDArray[np.int_]]:
+    """Return the creep ratios at all steps and what creeps there, a column of them or ``NOTHING``."""
+    ratios = creep_ratios(system, steps.states, regularisation)
+    below = ratios < 1.0
+    return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
 
 
 def _kind(part: int) -> Literal["slip", "pivot", "stick"]:

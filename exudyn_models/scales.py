@@ -17,15 +17,19 @@ def time_scale(system: System, state: FloatArray, span: float) -> float:
     that the energy at the start allows; friction may make it grow further, until the whirl turns with ω. A stop
     counts as if it were touched.
     """
-    # C·d²/2 + C₃·d⁴/4 = E has the solution C₃·d² = √(C² + 4·C₃·E) − C.
-    hardening = math.sqrt(system.stiffness**2 + 4.0 * system.hardening * support_energy(system, state))
-    hardening -= system.stiffness
-    stiffest = system.stiffness + 3.0 * hardening + system.stop_stiffness
+    stiffest = hardened_stiffness(system, state) + system.stop_stiffness
     rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]
     if isinstance(system, DiscOnDisc):
         rates += [abs(system.shaft_speed), abs(state[5]), system.shaft_damping / system.polar_inertia]
     rate = max(rates)
     return min(1.0 / rate, span) if rate > 0.0 else span
+
+
+def hardened_stiffness(system: System, state: FloatArray) -> float:
+    """Return the largest stiffness in N/m that the springs reach by the energy at the start."""
+    # C·d²/2 + C₃·d⁴/4 = E has the solution C₃·d² = √(C² + 4·C₃·E) − C.
+    root = math.sqrt(system.stiffness**2 + 4.0 * system.hardening * support_energy(system, state))
+    return system.stiffness + 3.0 * (root - system.stiffness)
 
 
 def support_energy(system: System, state: FloatArray) -> float:
@@ -84,18 +88,23 @@ RELAXATIONS = 40.0
 """What comes to rest settles to its creep like exp(−t/relaxation time); after 40 times that nothing is left of it."""
 
 
-def settling_time(system: System, epsilon: float, step: float = 0.0) -> float:
-    """Return the time in s after which slip below ε has settled to its creep but for motions that take > ``step``.
+def settling_time(system: System, epsilon: float) -> float:
+    """Return the time in s after which slip below ε has settled to its creep but for slow relaxations."""
+    return RELAXATIONS * relaxation_times(system, epsilon)[0]
+
+
+def relaxation_times(system: System, epsilon: float) -> tuple[float, float]:
+    """Return the times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
 
     The viscous part of the law resists slip of a pin with μN/ε per m/s; that of a disc and of its rim on a continuous
     ring with half of that or more, and on one of n points that rests alone with the n-th part. The inertia of the
-    rim, J/R², may be far larger than the mass: a rim slower than ``step`` is a motion that the steps resolve.
+    rim, J/R², may be far larger than the mass. Without friction both are infinite.
     """
     if system.friction_force == 0.0:
-        return math.inf
+        return math.inf, math.inf
     inertias, share = [system.mass], 1
     if isinstance(system, DiscOnDisc):
         inertias.append(system.polar_inertia / system.contact_radius**2)
         share = system.contact_points or 2
     times = sorted(share * inertia * epsilon / system.friction_force for inertia in inertias)
-    return RELAXATIONS * max([times[0], *(time for time in times if time <= step)])
+    return times[0], times[-1]

@@ -7,6 +7,7 @@ from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface
+import numpy as np
 
 from exudyn_models.radial_support import add_radial_support
 from reference_model.systems import FloatArray, System
@@ -52,10 +53,13 @@ def add_master(mbs: Any, speed: float) -> Any:
     return node
 
 
-def add_supported_body(mbs: Any, system: System, initial_state: FloatArray, polar_inertia: float) -> Any:
+def add_supported_body(
+    mbs: Any, system: System, initial_state: FloatArray, polar_inertia: float, axes_speed: float = 0.0
+) -> Any:
     """Add a planar body on springs and dampers to a support at (X0, 0); return its ``NodeIndex``.
 
-    ``initial_state`` is a state of ``system``; the body of a pin starts at the angle 0 without spin.
+    ``initial_state`` is a state of ``system``; the body of a pin starts at the angle 0 without spin. In axes that
+    turn with ``axes_speed`` (rad/s) the ground with its support is a body that turns the other way.
     """
     position, velocity = initial_state.reshape(2, -1).tolist()
     turn = [0.0] * (3 - len(position))
@@ -69,7 +73,7 @@ def add_supported_body(mbs: Any, system: System, initial_state: FloatArray, pola
     mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=polar_inertia))
     add_radial_support(
         mbs,
-        None,
+        None if axes_speed == 0.0 else add_master(mbs, -axes_speed),
         node,
         stiffness=system.stiffness,
         damping=system.damping,
@@ -78,7 +82,22 @@ def add_supported_body(mbs: Any, system: System, initial_state: FloatArray, pola
         stop_stiffness=system.stop_stiffness,
         offset=(system.offset, 0.0),
     )
+    if axes_speed != 0.0:
+        _add_inertia_forces(mbs, node, system.mass, axes_speed)
     return node
+
+
+def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
+    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r on a body, in axes that turn with ``speed``."""
+    coriolis = 2.0 * mass * speed
+    mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=[node],
+            massMatrix=np.zeros((3, 3)),
+            stiffnessMatrix=np.diag([-mass * speed**2, -mass * speed**2, 0.0]),
+            dampingMatrix=np.array([[0.0, -coriolis, 0.0], [coriolis, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+        )
+    )
 
 
 def assembled(container: Any, mbs: Any, node: Any, system: System) -> Model:

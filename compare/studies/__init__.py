@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from compare.engines import known
 from compare.studies.basins import STUDY as BASINS
+from compare.studies.clutch_scale import STUDY as CLUTCH_SCALE
 from compare.studies.connector import STUDY as CONNECTOR
 from compare.studies.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.drivetrain_frozen import STUDY as DRIVETRAIN_FROZEN
@@ -56,6 +57,7 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_MOMENTUM,
     TRAJECTORIES,
     POWER_BALANCE,
+    CLUTCH_SCALE,
     CONNECTOR,
     ENGINE_CONVERGENCE,
     ERROR_ESTIMATES,

@@ -310,7 +310,7 @@ def test_the_solution_names_the_contact_and_its_regularisation():
     solution = simulate_with_native_contact(FIG5, SLIPPING_PIN, [0.0, 1.0], tolerance=1e-8).solution
     assert solution.method == "Exudyn DOPRI5, generalised-α while sticking, built-in contact"
     assert solution.tolerance == 1e-8
-    assert solution.regularisation == pytest.approx(1e-6)
+    assert solution.regularisation == pytest.approx(1e-6 * FIG5.disc_speed * SLIPPING_PIN[0])
 
 
 @pytest.mark.parametrize(
