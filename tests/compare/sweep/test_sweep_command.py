@@ -225,7 +225,7 @@ def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys):
         ),
         (["map", "disc", "--x", "disc_speed=1.3:1.6:2", "--y", "friction_force=0.01:0.02:2"], "map"),
         (
-            ["uncertainty", "pin", "--vary", "vx=uniform(0, 0.01)", "--samples", "256", "--until", "5"],
+            ["uncertainty", "pin", "--vary", "vx=uniform(0, 0.01)", "--samples", "256"],
             "uncertainty",
         ),
     ],
