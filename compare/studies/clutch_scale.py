@@ -12,11 +12,11 @@ import numpy as np
 from compare.accuracy import refined
 from compare.claim import Claim, ErrorBudget
 from compare.engines import Engine
-from compare.paper import FIG4, FIG5, FIG5_STARTS, FIG8
+from compare.paper import FIG4, FIG5, FIG8
 from compare.report.style import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.clutch_scale_units import CLUTCH
 from compare.studies.common import at_each, parameters_of, remaining_transient
-from compare.studies.fig11_motion import RING, SIX, START, integrated
+from compare.studies.fig11_motion import RING, SIX, integrated
 from compare.study import Data, Findings, Study
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.pin_formulas import equilibrium_position
@@ -26,7 +26,7 @@ from reference_model.systems import FloatArray, System
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TO_REST = FIG5_STARTS["equilibrium"][:2] + (0.0275, 0.0)
+TO_REST = (0.1, 0.0, 0.0275, 0.0)
 """Near to the start that divides the motions: the pin sticks nine times before it comes to rest in space."""
 
 UNTIL, SAMPLES = 240.0, 481
@@ -37,6 +37,9 @@ WHIRLING = replace(FIG4, disc_speed=1.2)
 
 REST_OF_DISC = 40.0
 """Time of the paper's scale, in s, for which the disc of Fig. 8 is left where (19) and (20) let it spin."""
+
+CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
+"""x, y, angle, vx, vy, spin at the paper's scale of a disc that spirals towards the cycle of Fig. 11, and slides."""
 
 CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Time of the paper's scale, in s, of the motion of Fig. 11, and how often its state is asked for."""
@@ -132,8 +135,8 @@ def rests_claim(engine: Engine) -> Claim:
         budget=ErrorBudget(_largest(error[-1] + left), resolution=1e-3),
         parameters=parameters_of(scaled(FIG5)),
         source=SOURCE.format("Fig. 5"),
-        note=f"x/X0 and y/X0 after {CLUTCH.time * UNTIL:g} s, after nine stick phases. Error: the change at a smaller "
-        "tolerance, and what is left of the slowest transient.",
+        note=f"x/X0 and y/X0 after {CLUTCH.time * UNTIL:g} s, after nine stick phases. Error: the change at a "
+        "smaller tolerance, and what is left of the slowest transient.",
     )
 
 
@@ -158,8 +161,8 @@ def sticks_claim(engine: Engine) -> Claim:
         parameters=parameters_of(scaled(FIG5)),
         source=SOURCE.format("Fig. 5"),
         unit="s",
-        note="Times of the clutch over 5 ms, which make them those of Fig. 5. Predicted: the reference at the paper's "
-        "scale. A stick phase too many or too few shows as a missing number.",
+        note="Times of the clutch over 5 ms, which make them those of Fig. 5. Predicted: the reference at the "
+        "paper's scale. A stick phase too many or too few shows as a missing number.",
     )
 
 
@@ -213,8 +216,8 @@ def whirls_claim(engine: Engine) -> Claim:
         budget=ErrorBudget(_largest(error) + 1e-9, resolution=1e-5),
         parameters=parameters_of(scaled(WHIRLING)),
         source=SOURCE.format("Fig. 6, μN = 0.12 N"),
-        note="x, y over X0 and vx, vy over ω·X0. Predicted: the periodic orbit that the reference finds by shooting at "
-        "the paper's scale to 1e-9 of X0, which is part of the error.",
+        note="x, y over X0 and vx, vy over ω·X0. Predicted: the periodic orbit that the reference finds by shooting "
+        "at the paper's scale to 1e-9 of X0, which is part of the error.",
     )
 
 
@@ -244,9 +247,10 @@ def cycle_claim(engine: Engine, name: str, disc: System) -> Claim:
     """Compare the motion of Fig. 11 with (19) as plain equations at the paper's scale."""
     times = np.linspace(0.0, CYCLE_UNTIL, CYCLE_SAMPLES)
     predicted, rougher = (
-        integrated(disc, START, CYCLE_UNTIL, CYCLE_SAMPLES, tolerance)[1:] for tolerance in (1e-12, 1e-10)
+        integrated(disc, CYCLE_START, CYCLE_UNTIL, CYCLE_SAMPLES, tolerance)[1:]
+        for tolerance in (1e-13, 1e-11)
     )
-    states, error = refined(lambda tolerance: states_of(engine, disc, START, times, tolerance))
+    states, error = refined(lambda tolerance: states_of(engine, disc, CYCLE_START, times, tolerance))
     return Claim(
         CYCLES.format(name),
         equation="(19), (20)",
@@ -258,8 +262,8 @@ def cycle_claim(engine: Engine, name: str, disc: System) -> Claim:
         parameters=parameters_of(scaled(disc)),
         source=SOURCE.format("Fig. 11"),
         unit="m, rad, m/s, rad/s",
-        note="All components of the state at 12 times, in the units of the paper's scale. Predicted: SciPy on (19) as "
-        "it is printed, at the paper's scale.",
+        note="All components of the state at 12 times, in the units of the paper's scale. Predicted: SciPy on (19) "
+        "as it is printed, at the paper's scale.",
     )
 
 
@@ -332,16 +336,16 @@ STUDY = Study(
     title="The paper's motions at the size of a clutch",
     section="The engines",
     paper="The paper's pins and discs are a metre in size and turn once in four seconds. The numbers that decide are "
-    "without dimension, so that the same motions happen in a clutch: an offset of 0.1 mm, 300 rad/s, half a kilogram. "
-    "That takes engines whose tolerances, and whose speed below which friction is smoothed, follow the motion: one "
-    "that takes them in metres and metres per second gives other motions there without a warning.",
+    "without dimension, so that the same motions happen in a clutch: an offset of 0.1 mm, 300 rad/s, half a "
+    "kilogram. That takes engines whose tolerances, and whose speed below which friction is smoothed, follow the "
+    "motion: one that takes them in metres and metres per second gives other motions there without a warning.",
     measure=measure,
     theory=theory,
     draw=draw,
     figures={
-        "clutch-scale": "Left: a pin with an offset of 100 µm comes to rest at 300 rad/s; the line is Fig. 5's motion "
-        "by the reference with all lengths times 1e-3, the marks are the engines. Right: how far the engines are from "
-        "that line; while the pin sticks (shaded) the smoothed friction of Exudyn lets it creep.",
+        "clutch-scale": "Left: a pin with an offset of 100 µm comes to rest at 300 rad/s; the line is Fig. 5's "
+        "motion by the reference with all lengths times 1e-3, the marks are the engines. Right: how far the engines "
+        "are from that line; while the pin sticks (shaded) the smoothed friction of Exudyn lets it creep.",
     },
     seconds=6.0,
 )
