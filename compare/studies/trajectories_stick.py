@@ -19,8 +19,8 @@ from reference_model.trajectory import Trajectory
 Run = Callable[[float], Trajectory]
 """Gives the trajectory at ``times_of(motion)`` that an engine finds at a tolerance."""
 
-RESOLUTION = 1e-4
-"""In s. A law that only approximates stick lets go the later the wider it is, at 1e-9 by some 1e-5 s."""
+RESOLUTION = 5e-4
+"""In s, so that a millisecond is seen. A law that only approximates stick lets go late, at 1e-9 by some 1e-5 s."""
 
 PHASES = "It sticks and lets go when the reference does: {}"
 RELEASE = "What sticks half way through a stick phase is let go when (7) says so: {}"
