@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from exudyn_models.disc_on_disc import build_disc_on_disc
 from exudyn_models.pin_on_disc import build_pin_on_disc
 from exudyn_models.ring_friction import AddFriction, add_ring_friction
@@ -22,7 +24,11 @@ def build(
     In axes that turn with ``axes_speed`` (rad/s) it is the same model, in which the ground turns the other way, as
     ``supported_body`` adds it. ``initial_state`` is one in these axes.
     """
-    build_it = build_disc_on_disc if isinstance(system, DiscOnDisc) else build_pin_on_disc
-    return build_it(  # type: ignore[operator]
-        system, initial_state, regularisation=regularisation, friction=friction, axes_speed=axes_speed
-    )
+    options: dict[str, Any] = {
+        "regularisation": regularisation,
+        "friction": friction,
+        "axes_speed": axes_speed,
+    }
+    if isinstance(system, DiscOnDisc):
+        return build_disc_on_disc(system, initial_state, **options)
+    return build_pin_on_disc(system, initial_state, **options)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class Units:
     def of_system(self, system: System) -> System:
         """Return ``system`` in these units."""
         stiffness, damping = self.time**2 / self.mass, self.time / self.mass
-        changes = {
+        changes: dict[str, Any] = {
             "mass": system.mass / self.mass,
             "stiffness": stiffness * system.stiffness,
             "damping": damping * system.damping,

@@ -227,7 +227,7 @@ class _Turns:
             return self.friction.creeping(seen, creep_at(run, time).tolist(), self.epsilon) == part
 
         places = _suspects(seen, run, self.epsilon) if part == WHOLE else run.times[-1:]
-        first = next((time for time in places.tolist() if not goes_on(time)), None)
+        first: float | None = next((time for time in places.tolist() if not goes_on(time)), None)
         if first is None or first == run.times[0]:
             return first
         left = float(run.times[np.searchsorted(run.times, first) - 1])

@@ -22,7 +22,7 @@ class Axes:
 
     def start(self, state: FloatArray) -> FloatArray:
         """Return in these axes a state (shape (4,) or (6,)) at the time ``since``."""
-        return self._added(np.zeros(1), state[None, :], -self.speed)[0]
+        return np.asarray(self._added(np.zeros(1), state[None, :], -self.speed)[0])
 
     def fixed_states(self, times: FloatArray, states: FloatArray) -> FloatArray:
         """Return in fixed axes the ``states`` (shape (n, 4 or 6)) in these at ``times`` (shape (n,))."""

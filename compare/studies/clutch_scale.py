@@ -130,7 +130,7 @@ def rests_claim(engine: Engine) -> Claim:
         RESTS,
         equation="(3)",
         engine=engine.name,
-        predicted=np.array(equilibrium_position(scaled(FIG5))) / scaled(FIG5).offset,
+        predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
         measured=places[-1],
         budget=ErrorBudget(_largest(error[-1] + left), resolution=1e-3),
         parameters=parameters_of(scaled(FIG5)),
@@ -324,7 +324,8 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
             apart = np.hypot(*(found - exact["states"])[:, :2].T) / FIG5.offset
             history.semilogy(times[1::4], np.maximum(apart[1::4], 1e-16), **points(engine, linestyle=":"))
     plane.set(xlabel=axis("x", "µm"), ylabel=axis("y", "µm"), aspect="equal")
-    plane.legend(loc="lower left")
+    if plane.lines:
+        plane.legend(loc="lower left")
     history.set(xlabel=axis("t", "ms"), ylabel="distance from the motion at the paper's scale over X0")
     if history.lines:
         history.legend(loc="upper right")

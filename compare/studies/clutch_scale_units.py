@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +22,7 @@ class Scale:
     def system(self, system: System) -> System:
         """Return ``system`` with its lengths, times and masses changed: the same by all dimensionless numbers."""
         length, time, mass = self.length, self.time, self.mass
-        changes = {
+        changes: dict[str, Any] = {
             "mass": mass * system.mass,
             "stiffness": mass / time**2 * system.stiffness,
             "damping": mass / time * system.damping,
