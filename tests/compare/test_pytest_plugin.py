@@ -144,12 +144,16 @@ def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path):
         assert "no result: not finished within 1 s" in text
 
 
+def of_pins_that_slide(claim):
+    return claim.split(": ")[1].startswith(("a pin", "pins")) and "stick" not in claim
+
+
 def test_an_engine_is_judged_on_what_it_promises_on_several_cores_too(tmp_path):
     status, output, cases = judge(tmp_path, "trajectories", "mine:sliding", options=("-n", "2"))
     assert status == 0
     assert set(cases) == set(CLAIMS["trajectories"])
     for claim, (tag, _) in cases.items():
-        promised = claim.split(": ")[1].startswith("a pin") and "sticks" not in claim
+        promised = of_pins_that_slide(claim)
         assert tag == ("passed" if promised else "skipped"), claim
     assert "not attempted: mine:sliding does not simulate a disc on a continuous ring" in output
     skipped = sum(tag == "skipped" for tag, _ in cases.values())
@@ -171,7 +175,7 @@ def test_the_example_fails_where_it_ignores_its_error_is_open_where_it_is_rough_
     _, output, cases = judge(tmp_path, "trajectories", *verdicts)
     attempted = 0
     for claim in CLAIMS["trajectories"]:
-        if claim.split(": ")[1].startswith("a pin") and "sticks" not in claim:
+        if of_pins_that_slide(claim):
             attempted += 1
             assert {name: cases[f"{claim} [{name}]"][0] for name in verdicts} == verdicts, claim
     assert f" {attempted} inconclusive in " in output
