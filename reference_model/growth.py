@@ -14,22 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.special import roots_jacobi
 
-from reference_model.slip import Coordinates, Leave, Outcome, slide_slowly
+from reference_model.collocation import INTEGRAL, NODES, POINTS, TO_SERIES, newton_matrix
+from reference_model.coordinates import Coordinates, Leave, Outcome
+from reference_model.slip import slide_slowly
 from reference_model.stepping import Run
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
-
-NODES = 8
-_POINTS = np.append(roots_jacobi(NODES - 1, 1.0, 0.0)[0], 1.0)
-"""Radau's nodes in −1..1, the last at 1."""
-
-_TO_SERIES = np.linalg.inv(legendre.legvander(_POINTS, NODES - 1))
-"""Makes Legendre coefficients of values at the nodes."""
-
-_INTEGRAL = 0.5 * legendre.legval(_POINTS, legendre.legint(_TO_SERIES, lbnd=-1)).T
-"""Makes integrals from 0 to the nodes, of 0..1, of values at them."""
 
 FIRST_STEP = 0.01
 """In units of time. It is made smaller until the motion is resolved."""
@@ -107,7 +98,7 @@ def begin_slip(
     start, step, expected = begun(np.zeros(1))[0], FIRST_STEP, begun
     while t < run.end:
         run.count_step(t)
-        piece = _collocate(run, motion, start, step, expected(step * 0.5 * (_POINTS + 1.0)))
+        piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:
@@ -154,7 +145,7 @@ class _Piece:
     @property
     def error(self) -> float:
         """What the last terms of the series contribute."""
-        return self.step * float(np.max(np.abs(_TO_SERIES[-2:] @ self.rates)))
+        return self.step * float(np.max(np.abs(TO_SERIES[-2:] @ self.rates)))
 
     def change_of_step(self, tolerance: float) -> float:
         """Return the factor by which the step may change for an error of ``tolerance``."""
@@ -162,7 +153,7 @@ class _Piece:
 
     def at(self, delays: FloatArray) -> FloatArray:
         """Return the unknowns at ``delays`` (n,) after the start, shape (n, unknowns)."""
-        integral = legendre.legint(_TO_SERIES @ self.rates, lbnd=-1)
+        integral = legendre.legint(TO_SERIES @ self.rates, lbnd=-1)
         growth = legendre.legval(2.0 * delays / self.step - 1.0, integral)
         return np.asarray(self.start + 0.5 * self.step * growth.T)
 
@@ -187,16 +178,15 @@ def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
     """Solve for the unknowns at the nodes by Newton's method, from ``values``; None if it does not converge."""
-    size, others = len(start), len(start) - motion.slip
+    others = len(start) - motion.slip
     for _ in range(MOST_ITERATIONS):
         rates = _rates(run, motion, values)
         if not np.all(np.isfinite(rates)):
             return None
         jacobians = np.array([_jacobian(run, motion, *node) for node in zip(values, rates, strict=True)])
-        coupling = np.einsum("ij,jkl->ikjl", _INTEGRAL, jacobians).reshape(NODES * size, NODES * size)
-        residual = values - start - step * (_INTEGRAL @ rates)
+        residual = values - start - step * (INTEGRAL @ rates)
         try:
-            change = np.linalg.solve(np.eye(NODES * size) - step * coupling, residual.ravel())
+            change = np.linalg.solve(newton_matrix(jacobians, step), residual.ravel())
         except np.linalg.LinAlgError:
             return None
         change = change.reshape(values.shape)

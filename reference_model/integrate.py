@@ -2,6 +2,9 @@
 
 - While slip is fast it is integrated as it is, and in slip-polar coordinates near to rest (:mod:`slip`). A disc has
   three components of slip, two of its centre and one of its rim.
+- Where an explicit method would be limited by stability, by strong damping or by slip that is small for long, an
+  implicit one takes over (:mod:`stiff`). Slip that decays for ever is slip to the end: what is left of it is followed
+  in closed form (:mod:`phases`).
 - Stuck, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`sticking`; for
   points on a ring :mod:`limit_surface`).
 - Slip of a pin begins by the series of ``sticking.slip_from_rest``, that of a disc by collocation (:mod:`growth`).
@@ -38,7 +41,9 @@ from reference_model.systems import (
 from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
 from reference_model.units import Units
 
-METHOD = "DOP853 in slip phases with slip-polar coordinates near rest; closed-form stick phases"
+METHOD = (
+    "DOP853 in slip phases with slip-polar coordinates near rest, Radau where stiff; closed-form stick phases"
+)
 
 
 def simulate(

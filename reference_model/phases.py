@@ -2,29 +2,84 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from reference_model.contact import IsotropicContact, Ring
+from reference_model.coordinates import Coordinates, never, stop_edges
 from reference_model.disc import DiscMotion
-from reference_model.growth import begin_slip
+from reference_model.growth import LEAST_SLIP, begin_slip
 from reference_model.pin import SlipMotion
-from reference_model.slip import Coordinates, never, slide, slide_slowly, stop_edges
+from reference_model.slip import slide, slide_slowly
 from reference_model.stepping import Edge, Run
 from reference_model.sticking import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
 from reference_model.systems import FloatArray
+
+CREEP = 1e-6
+"""Way, and slip speed, in their units, below which slip that decays for ever is followed in closed form."""
+
+ERROR = 0.01
+"""Error of the way by that, as a share of the local tolerance."""
+
+
+@dataclass(frozen=True)
+class Creep:
+    """Slip that decays for ever, s = A·exp(−λt) + B·exp(−Λt) with λ < Λ and A > 0, in scaled units.
+
+    Parameters
+    ----------
+    slow, fast : (float, float)
+        (A, λ) and (B, Λ).
+
+    """
+
+    slow: tuple[float, float]
+    fast: tuple[float, float]
+
+    @classmethod
+    def of(cls, slip: float, excess: float, damping: float, fall: float) -> Creep | None:
+        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s.
+
+        None if it does not decay, or ends in rest.
+        """
+        discriminant = damping**2 - 4.0 * fall
+        if not (fall > 0.0 and damping > 0.0 and discriminant > 0.0):
+            return None
+        apart = math.sqrt(discriminant)
+        fast = 0.5 * (damping + apart)
+        slow = fall / fast
+        share = (excess - slow * slip) / apart
+        return cls((share, slow), (slip - share, fast)) if share > 0.0 else None
+
+    @property
+    def way_left(self) -> float:
+        """The way to the end."""
+        return sum(size / rate for size, rate in (self.slow, self.fast))
+
+    def slip(self, delays: FloatArray) -> FloatArray:
+        """Return the slip speed after ``delays`` (n,)."""
+        return np.asarray(sum(size * np.exp(-rate * delays) for size, rate in (self.slow, self.fast)))
+
+    def way(self, delays: FloatArray) -> FloatArray:
+        """Return the way made in ``delays`` (n,)."""
+        return np.asarray(
+            sum(size / rate * -np.expm1(-rate * delays) for size, rate in (self.slow, self.fast))
+        )
 
 
 class Body(ABC):
     """A body that slips over the master disc or sticks to it; its unknowns are scaled and relative to that disc."""
 
-    def __init__(self, run: Run, coordinates: Coordinates, friction: float) -> None:
-        """Take up a body whose slip is written in ``coordinates``."""
+    def __init__(self, run: Run, coordinates: Coordinates, centre: SlipMotion) -> None:
+        """Take up a body whose slip is written in ``coordinates`` and whose centre moves by ``centre``."""
         self.run = run
         self.coordinates = coordinates
-        self.sticky = friction > 0.0
+        self.sticky = centre.friction > 0.0
+        self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
     def go(self, y: list[float]) -> None:
         """Run from the unknowns ``y`` at t = 0 to the last time."""
@@ -42,7 +97,8 @@ class Body(ABC):
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """Follow the motion through one description of it; return when and where that ends."""
         if not self.sticky or self.coordinates.speed(y) > 0.0:
-            return self.slip(t, y)
+            creep = self.creeping(y)
+            return self.slip(t, y) if creep is None else self.creep(t, y, creep)
         held = self.holds_for(y)
         if held > 0.0:
             return self.stick(t, y, held)
@@ -56,7 +112,51 @@ class Body(ABC):
 
     def leave(self, y: list[float]) -> bool:
         """Tell whether slip is to be described in another way from ``y`` on."""
-        return False
+        return self.creeping(y) is not None
+
+    def creeping(self, y: list[float]) -> Creep | None:
+        """Return how slip decays if it does so for ever and little way is left, else None.
+
+        The excess e of the pull over friction falls by c times the way, and slip grows like e − b·s. If nothing but
+        the body turns, b and c are constant but for terms of second order in the way: s'' + b·s' + c·s = 0.
+        """
+        d, s = self.coordinates.slip, self.coordinates.speed(y)
+        if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
+            return None
+        rates = self.coordinates.rates(y)
+        growth = sum(a * b for a, b in zip(y[-d:], rates[-d:], strict=True)) / s
+        excess = self._excess(y)
+        if not growth < 0.0 < excess:
+            return None
+        fall = (excess - self._excess(self._moved(y, CREEP / s))) / CREEP
+        creep = Creep.of(s, excess, damping=(excess - growth) / s, fall=fall)
+        if creep is None or not creep.way_left < CREEP:
+            return None
+        # Friction has to hold the body where slip ends: no more of the excess may be left.
+        left = abs(self._excess(self._moved(y, creep.way_left / s)) / excess)
+        return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
+
+    def _moved(self, y: list[float], time: float) -> list[float]:
+        """Return the unknowns after moving with a slip that stays the same, on a master disc that rests."""
+        return list(self.crept(y, np.zeros(1), np.ones(1), np.array([time]))[:, 0].tolist())
+
+    def _excess(self, y: Sequence[float]) -> float:
+        """Return the rate at which next to no slip would grow along that of ``y``."""
+        d, s = self.coordinates.slip, self.coordinates.speed(y)
+        n = [part / s for part in y[-d:]]
+        rates = self.coordinates.rates([*y[:-d], *[LEAST_SLIP * part for part in n]])
+        return sum(a * b for a, b in zip(n, rates[-d:], strict=True))
+
+    def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
+        """Follow slip that decays for ever to the end; it is slip all the time."""
+        run, s = self.run, self.coordinates.speed(y)
+
+        def sample(times: FloatArray) -> FloatArray:
+            delays = times - t
+            return self.crept(y, delays, creep.slip(delays) / s, creep.way(delays) / s)
+
+        run.record(run.end, sample)
+        return run.end, sample(np.array([run.end]))[:, 0].tolist()
 
     def stick(self, t: float, y: list[float], held: float) -> tuple[float, list[float]]:
         """Turn with the master disc for ``held``, until friction lets go, or to the end."""
@@ -76,6 +176,14 @@ class Body(ABC):
     @abstractmethod
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
         """Return the unknowns of a stuck body after ``delays`` (n,), shape (unknowns, n)."""
+
+    @abstractmethod
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """Return the unknowns after ``delays`` (n,), shape (unknowns, n).
+
+        Slip, its direction fixed on the master disc, is meanwhile ``slip`` times that of ``y`` and has made ``way``
+        times that of ``y`` as a way.
+        """
 
     @abstractmethod
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
@@ -99,7 +207,7 @@ class PinBody(Body):
 
         slow = run.thresholds.slow_slip * g
         edges = stop_edges(motion.support)
-        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), g)
+        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), motion)
 
     def holds_for(self, y: Sequence[float]) -> float:
         """As :meth:`Body.holds_for`: by eq. 6 and 7."""
@@ -111,6 +219,14 @@ class PinBody(Body):
         z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, none, none))
+
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """As :meth:`Body.crept`."""
+        turn = np.exp(1j * self.motion.disc_speed * delays)
+        w = complex(y[2], y[3])
+        z = (complex(y[0], y[1]) + way * w) * turn
+        w = slip * w * turn
+        return np.array((z.real, z.imag, w.real, w.imag))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """As :meth:`Body.let_go`; on a linear support by the series, as far as it holds or until slip ends again."""
@@ -148,7 +264,7 @@ class DiscBody(Body):
         slow = run.thresholds.slow_slip * motion.centre.friction
         edges += stop_edges(motion.centre.support)
         coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
-        super().__init__(run, coordinates, motion.centre.friction)
+        super().__init__(run, coordinates, motion.centre)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
         """As :meth:`Body.turned`."""
@@ -156,6 +272,15 @@ class DiscBody(Body):
         z = complex(y[0], y[1]) * np.exp(1j * turn)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, y[2] + turn, none, none, none))
+
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """As :meth:`Body.crept`."""
+        turn = self.motion.centre.disc_speed * delays
+        u = complex(y[3], y[4])
+        z = (complex(y[0], y[1]) + way * u) * np.exp(1j * turn)
+        angle = y[2] + turn + way * y[5] / self.motion.gyration
+        u = slip * u * np.exp(1j * turn)
+        return np.array((z.real, z.imag, angle, u.real, u.imag, slip * y[5]))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """As :meth:`Body.let_go`."""

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from reference_model.contact import PointsOnRing
+from reference_model.coordinates import Coordinates, stop_edges
 from reference_model.disc import DiscMotion
-from reference_model.slip import Coordinates, stop_edges
 from reference_model.stepping import Thresholds
 from reference_model.systems import FloatArray
 

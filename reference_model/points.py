@@ -18,12 +18,13 @@ import numpy as np
 from scipy.optimize import brentq, minimize, minimize_scalar
 
 from reference_model.contact import PointsOnRing
+from reference_model.coordinates import come_to_rest, never
 from reference_model.disc import DiscMotion
 from reference_model.growth import LEAST_SLIP
 from reference_model.limit_surface import ComplexArray, PointsLimit
 from reference_model.phases import DiscBody
 from reference_model.pivot import OnePoint
-from reference_model.slip import come_to_rest, never, slide, slide_slowly
+from reference_model.slip import slide, slide_slowly
 from reference_model.stepping import Run
 from reference_model.sticking import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
@@ -60,7 +61,7 @@ class PointsBody(DiscBody):
         if self.pivot is not None:
             return self._turn_about(self.pivot, t, y)
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
-        if slow is None:
+        if slow is None or self.creeping(y) is not None:
             return super().advance(t, y)
         if self.coordinates.speed(y) < self.run.thresholds.common_rest:
             return self._rest(t, y)
@@ -86,7 +87,7 @@ class PointsBody(DiscBody):
 
     def leave(self, y: list[float]) -> bool:
         """As :meth:`Body.leave`: when a single point becomes slow."""
-        return self.sticky and self._slow_point(y) is not None
+        return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
 
     def _slow_point(self, y: Sequence[float]) -> int | None:
         """Return the point that slips slowly and ever more so, or rests."""

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, NoReturn
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput
+from scipy.integrate import DOP853, DenseOutput, OdeSolution
 from scipy.optimize import brentq, minimize_scalar
 
+from reference_model.collocation import Radau, Scales
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -26,6 +27,29 @@ MOST_STEPS = 5_000_000
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 """A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
+
+
+STABLE = 3.0
+"""Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
+
+PATIENCE = 15
+"""Steps that stability limits before an implicit method is tried; twice as many each time that it does not pay."""
+
+
+LAST_TERM = 1e-3
+"""Error of DOP853's interpolant as a share of its last term, as measured."""
+
+AS_GOOD = 20.0
+"""Error of the interpolant, in local tolerances, up to which it is within the tolerance that was asked for."""
+
+INTERPOLANT_ORDER = 7
+
+SPOILT = 1.5
+"""Stiffness of a step from which what decays fast may spoil the interpolant, whatever its last term is."""
+
+
+class StepError(SimulationError):
+    """An integrator could not take a step."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +112,7 @@ class Run:
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
     steps: int = 0
+    patience: int = PATIENCE
     _recorded: int = 0
     _looked_back: float = 0.0
 
@@ -101,14 +126,14 @@ class Run:
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
 
-    def step(self, solver: DOP853, since: float) -> None:
-        """Take one step, or raise ``SimulationError`` with the time up to which all was well."""
+    def step(self, solver: DOP853 | Radau, since: float) -> None:
+        """Take one step, or raise ``StepError`` with the time up to which all was well."""
         evaluations = solver.nfev
         message = solver.step()
         self.evaluations += solver.nfev - evaluations
         self.count_step(since)
         if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
-            raise SimulationError(
+            raise StepError(
                 f"the integrator gave up after t = {self.seconds(since):g} s: "
                 f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
             )
@@ -158,9 +183,15 @@ class Edge(NamedTuple):
     value: Callable[[list[float]], float]
     trend: Callable[[list[float], list[float]], float] | None = None
 
+    def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> Edge:
+        """Return the edge for unknowns that ``unknowns`` turns into these; x and y are the first of both."""
+        return Edge(lambda other: self.value(unknowns(other)), self.trend)
+
 
 class Stepper:
-    """SciPy's eighth-order Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
+    """Steps of a Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
+
+    SciPy's explicit one of eighth order, or collocation, which is implicit.
 
     An error estimate tells little of a step across such an edge, but it can be trusted on either side. So a step that
     has crossed one is taken back and made to end there.
@@ -179,6 +210,8 @@ class Stepper:
         Of each unknown; the absolute tolerance is that of the run.
     edges : sequence of Edge
         The edges.
+    implicit : (Scales, float) or None
+        For an implicit method, the scales of the unknowns and the first step to try.
 
     """
 
@@ -190,13 +223,19 @@ class Stepper:
         span: tuple[float, float],
         relative_tolerance: FloatArray,
         edges: Sequence[Edge] = (),
+        implicit: tuple[Scales, float] | None = None,
     ) -> None:
         self._run, self._rates, self._edges = run, rates, edges
+        self._scales = None if implicit is None else implicit[0]
+        first_step = None if implicit is None else implicit[1]
+        self._dense: DenseOutput | OdeSolution | None = None
+        self._solver: DOP853 | Radau
+        self._limited = 0  # steps that stability may have limited, less others
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
         self._landed: tuple[Edge, float] | None = None  # an edge, and the sign beyond
         self._usual_step = math.inf
-        self._start(span[0], np.array(y), self._end)
+        self._start(span[0], np.array(y), self._end, first_step)
 
     @property
     def t(self) -> float:
@@ -213,20 +252,79 @@ class Stepper:
         """Their rates there."""
         return np.asarray(self._solver.f)
 
-    def dense_output(self) -> DenseOutput:
-        """Return the interpolant of the last step."""
-        evaluations = self._solver.nfev
-        dense = self._solver.dense_output()
-        self._run.evaluations += self._solver.nfev - evaluations
-        return dense
+    @property
+    def settled(self) -> bool:
+        """Whether the implicit method has found the length of its steps."""
+        return isinstance(self._solver, Radau) and self._solver.settled
+
+    @property
+    def stiff(self) -> bool:
+        """Whether stability has limited the explicit method for long."""
+        return self._limited >= self._run.patience
+
+    @property
+    def stiffness(self) -> float:
+        """The length of the last step times the largest rate of decay.
+
+        Of the explicit method by its last two stages, both at the end of the step (Hairer and Wanner, IV.2).
+        """
+        solver = self._solver
+        if isinstance(solver, Radau):
+            return solver.stiffness
+        h = solver.t - solver.t_old
+        stage = solver.y_old + h * (solver.A[-1, :-1] @ solver.K[: len(solver.A) - 1])
+        apart = float(np.linalg.norm(solver.y - stage))
+        return h * float(np.linalg.norm(solver.f - solver.K[-2])) / apart if apart > 0.0 else 0.0
+
+    def dense_output(self) -> DenseOutput | OdeSolution:
+        """Return the interpolant of the last step, as accurate as its end."""
+        if self._dense is None:
+            solver = self._solver
+            self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)
+        return self._dense
+
+    def _interpolant(self, solver: DOP853) -> DenseOutput | OdeSolution:
+        evaluations = solver.nfev
+        dense = solver.dense_output()
+        self._run.evaluations += solver.nfev - evaluations
+        tolerated = self._run.local_tolerance + self._relative_tolerance * abs(solver.y)
+        error, stiffness = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated)), self.stiffness
+        if error > AS_GOOD or stiffness > SPOILT:
+            error = self._defect(dense, tolerated)
+        if error <= AS_GOOD:
+            return dense
+        return self._finer(solver, 1 + math.ceil(max(error ** (1.0 / INTERPOLANT_ORDER), stiffness)))
+
+    def _defect(self, dense: DenseOutput, tolerated: FloatArray) -> float:
+        """Return what the interpolant would miss in half a step by its defect in the middle, in tolerances."""
+        first, last = dense.t_old, dense.t
+        middle, little = 0.5 * (first + last), 1e-3 * (last - first)
+        slope = (dense(middle + little) - dense(middle - little)) / (2.0 * little)
+        self._run.evaluations += 1
+        lacks = slope - np.array(self._rates(middle, dense(middle)))
+        return float(0.5 * (last - first) * np.max(abs(lacks) / tolerated))
+
+    def _finer(self, done: DOP853, parts: int) -> OdeSolution:
+        """Return the motion in the last step from as many shorter ones."""
+        first, last = done.t_old, done.t
+        solver = self._explicit(first, done.y_old, last, (last - first) / parts, (last - first) / parts)
+        times, pieces = [first], []
+        while solver.status == "running":
+            solver.step()
+            times.append(solver.t)
+            pieces.append(solver.dense_output())
+        self._run.evaluations += solver.nfev
+        return OdeSolution(times, pieces)
 
     def step(self, since: float) -> None:
         """Take one step; ``since`` is the time to tell if that fails."""
         if self._solver.status == "finished" and self.t < self._end:
             self._start(self.t, self.y, self._end, self._usual_step)
+        self._dense = None
         solver = self._solver
         t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
+        self._limited = max(0, self._limited + (1 if self.stiffness > STABLE else -1))
         if not self._edges or solver.t_bound != self._end:
             return
         landed, self._landed = self._landed, None
@@ -278,13 +376,15 @@ class Stepper:
 
     def _start(self, t: float, y: FloatArray, end: float, first_step: float | None = None) -> None:
         first_step = None if first_step is None else min(first_step, end - t)
-        self._solver = DOP853(
-            self._rates,
-            t,
-            y,
-            end,
-            rtol=self._relative_tolerance,
-            atol=self._run.local_tolerance,
-            first_step=first_step,
-        )
+        self._dense = None
+        if self._scales is not None:
+            self._solver = Radau(self._rates, t, y, end, first_step or end - t, self._scales)
+            return
+        self._solver = self._explicit(t, y, end, first_step)
         self._run.evaluations += self._solver.nfev
+
+    def _explicit(
+        self, t: float, y: FloatArray, end: float, first_step: float | None, most: float = math.inf
+    ) -> DOP853:
+        tolerances = {"rtol": self._relative_tolerance, "atol": self._run.local_tolerance}
+        return DOP853(self._rates, t, y, end, first_step=first_step, max_step=most, **tolerances)

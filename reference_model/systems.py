@@ -226,6 +226,9 @@ class DiscOnDisc(_SupportedMass):
 
 System: TypeAlias = PinOnDisc | DiscOnDisc
 
+LARGEST_STATE = 1e50
+"""Largest size of a component of a state in its SI unit: energies, and forces of hardening springs, stay finite."""
+
 ANGLE = 2
 """Place of the angle among the states of a disc."""
 
@@ -261,6 +264,12 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
             f"{type(system).__name__} takes {system.state_size} numbers"
         )
     _require_finite("initial_state", state)
+    if np.any(abs(state) > LARGEST_STATE):
+        i = int(np.argmax(abs(state)))
+        raise ValueError(
+            f"initial_state[{i}] = {state[i]:g}: it must not be larger than {LARGEST_STATE:g}, "
+            "or powers of it overflow"
+        )
     return state
 
 

@@ -13,21 +13,19 @@ from typing import Any
 
 import numpy as np
 
+from reference_model.collocation import INTEGRAL as RADAU
+from reference_model.collocation import NODES, POINTS, TO_SERIES
 from reference_model.ensemble.compiled import scalar
 from reference_model.ensemble.disc_slip import pull, ring_friction
 from reference_model.ensemble.linear import solve
 from reference_model.growth import (
-    _INTEGRAL,
-    _POINTS,
-    _TO_SERIES,
     FIRST_STEP,
     LEAST_STEP,
     MOST_ITERATIONS,
-    NODES,
     STIFF,
 )
 
-INTEGRAL, LAST_TERMS, PLACES = np.array(_INTEGRAL), np.array(_TO_SERIES[-2:]), 0.5 * (np.array(_POINTS) + 1.0)
+INTEGRAL, LAST_TERMS, PLACES = np.array(RADAU), np.array(TO_SERIES[-2:]), 0.5 * (np.array(POINTS) + 1.0)
 """As in :mod:`reference_model.growth`, with the places of the nodes in 0..1."""
 
 ACCURACY = 1e-12

@@ -1,0 +1,129 @@
+"""The plain reference on random systems of all kinds, within four decades of every parameter: time and accuracy.
+
+Run with ``python benchmarks/random_systems.py [count] [first]``; a thousand take about an hour. Each motion lasts for
+50 natural periods, asked for at 501 times. It is compared with the same motion at a tolerance smaller by 100: the
+difference stands beside that of a motion that starts 1e-9 of its size aside, since unstable motions part.
+"""
+
+from __future__ import annotations
+
+import math
+import signal
+import sys
+import time
+from types import FrameType
+
+import numpy as np
+
+from reference_model import DiscOnDisc, PinOnDisc, SimulationError, simulate
+from reference_model.systems import FloatArray, System
+
+PERIODS, SAMPLES = 50, 501
+LONGEST = 60.0  # s of processor time after which a run is broken off
+POINTS = (3, 4, 6, 12, 24)
+
+
+def random_system(seed: int) -> tuple[System, FloatArray]:
+    """Return a system with m = C = 1, all else log-uniform in 0.01 to 100, and a state of random size."""
+    rng = np.random.default_rng(seed)
+
+    def any_size() -> float:
+        return float(10.0 ** rng.uniform(-2.0, 2.0))
+
+    def sometimes() -> float:
+        return any_size() if rng.random() < 0.5 else 0.0
+
+    sign = float(rng.choice((-1.0, 1.0)))
+    common = {
+        "mass": 1.0,
+        "stiffness": 1.0,
+        "damping": any_size(),
+        "friction_force": any_size(),
+        "disc_speed": sign * any_size(),
+        "offset": sometimes(),
+    }
+    if rng.random() < 0.25:
+        common |= {"hardening": any_size()}
+    elif rng.random() < 0.25:
+        common |= {"stop_gap": any_size(), "stop_stiffness": any_size()}
+    size = any_size()
+    if seed % 3 == 0:
+        return PinOnDisc(**common), size * rng.normal(size=4)
+    points = int(rng.choice(POINTS)) if seed % 3 == 1 else None
+    disc = DiscOnDisc(
+        **common,
+        polar_inertia=any_size(),
+        contact_radius=any_size(),
+        shaft_damping=any_size() if rng.random() < 0.8 else 0.0,
+        shaft_speed=sign * any_size(),
+        contact_points=points,
+    )
+    state = size * rng.normal(size=6)
+    state[5] = disc.disc_speed if rng.random() < 0.3 else sign * any_size()
+    return disc, state
+
+
+def _break_off(_: int, frame: FrameType | None) -> None:
+    raise TimeoutError
+
+
+def measure(seed: int) -> tuple[str, float, int, float, float]:
+    """Return outcome, seconds, steps, difference from the tight run, and growth of a difference in the start."""
+    system, state = random_system(seed)
+    times = np.linspace(0.0, PERIODS * 2.0 * math.pi, SAMPLES)
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
+    began = time.process_time()
+    try:
+        found = simulate(system, state, times)
+    except TimeoutError:
+        return "broken off", time.process_time() - began, 0, math.nan, math.nan
+    except SimulationError as error:
+        return f"given up: {error}", time.process_time() - began, 0, math.nan, math.nan
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+    seconds = time.process_time() - began
+    scale = np.maximum(abs(found.states).max(axis=0), 1e-300)
+    if seconds > 2.0:
+        return "done", seconds, found.solution.steps, math.nan, math.nan
+    difference = growth = math.nan
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
+    try:
+        tight = simulate(system, state, times, tolerance=1e-11)
+        aside = simulate(system, state + 1e-9 * scale, times, tolerance=1e-9)
+        difference = float(np.max(abs(found.states - tight.states) / scale))
+        growth = float(np.max(abs(found.states - aside.states) / scale)) / 1e-9
+    except (TimeoutError, SimulationError):
+        pass
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+    return "done", seconds, found.solution.steps, difference, growth
+
+
+def main() -> None:
+    """Print each run that is not as it should be, and a summary."""
+    signal.signal(signal.SIGPROF, _break_off)
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    results = []
+    for seed in range(first, first + count):
+        result = measure(seed)
+        results.append(result)
+        outcome, seconds, steps, difference, growth = result
+        if outcome != "done" or seconds > 5.0 or difference > 1e-8 * max(1.0, growth):
+            print(
+                f"{seed}: {outcome}, {seconds:.1f} s, {steps} steps, {difference:.1e}, growth {growth:.1e}",
+                flush=True,
+            )
+    seconds = np.array([result[1] for result in results])
+    differences = np.array([result[3] for result in results])
+    median, most = np.quantile(seconds, (0.5, 0.99))
+    print(f"{count} runs: median {median:.2f} s, 99 % {most:.2f} s, slowest {seconds.max():.1f} s")
+    print(f"above 5 s: {np.sum(seconds > 5.0)}; not done: {sum(result[0] != 'done' for result in results)}")
+    print(
+        "difference from the tight run: "
+        + ", ".join(f"{q:.0%} {np.nanquantile(differences, q):.1e}" for q in (0.5, 0.9, 0.99, 1.0))
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,241 @@
+"""Radau's collocation: an implicit method of high order for stiff motions, with its polynomial in between.
+
+A polynomial goes through the start of a step and solves the equations of motion at its nodes, of which the last is
+the end (Radau IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). What decays faster than the
+step is damped out, so that the step is as long as the motion is smooth, and between the nodes the polynomial is as
+accurate as at its end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.integrate import DenseOutput
+from scipy.special import roots_jacobi
+
+from reference_model.systems import FloatArray
+
+NODES = 8
+POINTS = np.append(roots_jacobi(NODES - 1, 1.0, 0.0)[0], 1.0)
+"""Radau's nodes in −1..1, the last at 1."""
+
+TO_SERIES = np.linalg.inv(legendre.legvander(POINTS, NODES - 1))
+"""Makes Legendre coefficients of values at the nodes."""
+
+INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
+"""Makes integrals from 0 to the nodes, of 0..1, of values at them."""
+
+_FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
+"""Makes Legendre coefficients of values at the start and the nodes."""
+
+MOST_ITERATIONS = 10
+
+CONVERGED = 0.01
+"""Change, as a share of what is tolerated, at which the unknowns at the nodes count as solved for."""
+
+STALLED = 0.3
+"""Factor between two changes above which Newton's method needs another Jacobian."""
+
+LARGEST_GROWTH = 2.0
+"""Of one step over the one before."""
+
+SETTLED = 5
+"""Steps that did not grow much after which they count as settled: transients are over."""
+
+LEAST_SHARE = 1e-8
+"""A step is not made smaller than this share of the first."""
+
+
+def newton_matrix(jacobians: FloatArray, step: float) -> FloatArray:
+    """Return the matrix of Newton's method for Jacobians at the nodes, shape (NODES, n, n)."""
+    size = NODES * jacobians.shape[1]
+    coupling = np.einsum("ij,jkl->ikjl", INTEGRAL, jacobians).reshape(size, size)
+    return np.asarray(np.eye(size) - step * coupling)
+
+
+class Scales(NamedTuple):
+    """How large is little for the unknowns of a motion, all of shape (n,).
+
+    Parameters
+    ----------
+    tolerated : callable
+        Takes the unknowns and returns the errors that a step may have.
+    differences : callable
+        Takes the unknowns and returns changes by which derivatives are found.
+    most : array of shape (n,)
+        Changes of the unknowns that Newton's method may make at a time.
+
+    """
+
+    tolerated: Callable[[FloatArray], FloatArray]
+    differences: Callable[[FloatArray], FloatArray]
+    most: FloatArray
+
+
+class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
+    """The motion in a step from ``first`` to ``last``.
+
+    Parameters
+    ----------
+    first, last : float
+        Times, or what stands for them.
+    coefficients : array of shape (NODES + 1, n)
+        Of the Legendre series.
+
+    """
+
+    def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
+        """Take up a series."""
+        super().__init__(first, last)
+        self.coefficients = coefficients
+
+    def beyond(self, t: FloatArray, noise: FloatArray) -> FloatArray:
+        """Return the continuation to times (k,) after the step without terms below ``noise`` (n,), shape (k, n)."""
+        seen = np.where(abs(self.coefficients) > noise, self.coefficients, 0.0)
+        return np.asarray(legendre.legval(self._place(t), seen).T)
+
+    def _call_impl(self, t: FloatArray) -> FloatArray:
+        return np.asarray(legendre.legval(self._place(t), self.coefficients))
+
+    def _place(self, t: FloatArray) -> FloatArray:
+        return np.asarray((2.0 * t - (self.t_old + self.t)) / (self.t - self.t_old))
+
+
+class Radau:
+    """Steps by collocation with an interface like that of SciPy's solvers.
+
+    Parameters
+    ----------
+    rates : callable
+        The right side, as SciPy takes it; it must not depend on the time.
+    t, y : float, array of shape (n,)
+        Where to begin.
+    end : float
+        When to end.
+    first_step : float
+        The step to try first.
+    scales : Scales
+        Of errors and differences.
+
+    """
+
+    def __init__(
+        self,
+        rates: Callable[[float, FloatArray], Sequence[float]],
+        t: float,
+        y: FloatArray,
+        end: float,
+        first_step: float,
+        scales: Scales,
+    ) -> None:
+        self._fun, self.t_bound, self._scales = rates, end, scales
+        self.t, self.y = t, np.asarray(y)
+        self.status, self.nfev = "running", 0
+        self.f = self._rates(self.y[np.newaxis])[0]
+        self._tolerated = scales.tolerated(self.y)
+        self._next = first_step
+        self._least = LEAST_SHARE * first_step
+        self._polynomial: Polynomial | None = None
+        self._jacobian = np.zeros((len(y), len(y)))
+        self._unchanged = 0
+
+    @property
+    def settled(self) -> bool:
+        """Whether the steps have found their length."""
+        return self._unchanged >= SETTLED
+
+    @property
+    def stiffness(self) -> float:
+        """The length of the last step times the largest rate at its end."""
+        polynomial = self.dense_output()
+        return float((polynomial.t - polynomial.t_old) * np.max(abs(np.linalg.eigvals(self._jacobian))))
+
+    def dense_output(self) -> Polynomial:
+        """Return the polynomial of the last step."""
+        assert self._polynomial is not None
+        return self._polynomial
+
+    def step(self) -> str | None:
+        """Take one step, as long as the tolerances allow; return what went wrong, or None."""
+        h, most = self._next, LARGEST_GROWTH
+        while True:
+            h = min(h, self.t_bound - self.t)
+            if h < self._least and self.t + h < self.t_bound:
+                self.status = "failed"
+                return "the equations of a step could not be solved"
+            polynomial = self._collocate(h)
+            if polynomial is None:
+                h *= 0.5
+                most = 1.0
+                continue
+            tail = abs(polynomial.coefficients[-2:]) / self._tolerated
+            error = max(float(tail[1].max()), 0.1 * float(tail[0].max()))
+            change = 0.8 * max(error, 1e-16) ** (-1.0 / NODES)
+            if error <= 1.0:
+                break
+            h *= max(0.1, change)
+        self.t = self.t_bound if h == self.t_bound - self.t else self.t + h
+        self.y = polynomial(self.t)
+        self.f = self._rates(self.y[np.newaxis])[0]
+        self._tolerated = self._scales.tolerated(self.y)
+        self._unchanged = self._unchanged + 1 if change < 1.5 else 0
+        self._next = h * min(most, change)
+        self._polynomial = polynomial
+        if self.t == self.t_bound:
+            self.status = "finished"
+        return None
+
+    def _collocate(self, h: float) -> Polynomial | None:
+        """Solve for the unknowns at the nodes of a step; None if Newton's method does not converge."""
+        places = self.t + 0.5 * h * (POINTS + 1.0)
+        if self._polynomial is None:
+            values = self.y + np.outer(places - self.t, self.f)
+        else:
+            values = self._polynomial.beyond(places, CONVERGED * self._tolerated)
+        inverse = None
+        last = math.inf
+        for _ in range(MOST_ITERATIONS):
+            rates = self._rates(values)
+            if not np.all(np.isfinite(rates)):
+                return None
+            if inverse is None:
+                jacobians = self._jacobians(values)
+                try:
+                    matrix = newton_matrix(jacobians, h)
+                    rows = 1.0 / np.max(abs(matrix), axis=1)
+                    inverse = np.linalg.inv(matrix * rows[:, np.newaxis]) * rows
+                except np.linalg.LinAlgError:
+                    return None
+            residual = values - self.y - h * (INTEGRAL @ rates)
+            change = (inverse @ residual.ravel()).reshape(values.shape)
+            values = values - np.clip(change, -self._scales.most, self._scales.most)
+            size = float(np.max(abs(change) / self._tolerated))
+            if not math.isfinite(size):
+                return None
+            if size < CONVERGED or STALLED * last < size < 0.5:  # the latter by rounding
+                self._jacobian = jacobians[-1]
+                coefficients = _FROM_START @ np.vstack((self.y, values))
+                return Polynomial(self.t, self.t + h, coefficients)
+            if size > STALLED * last:
+                inverse = None
+            last = size
+        return None
+
+    def _rates(self, values: FloatArray) -> FloatArray:
+        """Return the rates at ``values`` (k, n)."""
+        self.nfev += len(values)
+        return np.array([self._fun(0.0, row) for row in values])
+
+    def _jacobians(self, values: FloatArray) -> FloatArray:
+        """Return the derivatives of the rates by the unknowns at the nodes, by differences."""
+        n = values.shape[1]
+        result = np.empty((len(values), n, n))
+        for i, row in enumerate(values):
+            changes = self._scales.differences(row)
+            moved = np.diag(changes)
+            result[i] = (self._rates(row + moved) - self._rates(row - moved)).T / (2.0 * changes)
+        return result
