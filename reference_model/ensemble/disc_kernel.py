@@ -250,8 +250,11 @@ def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) ->
 
 @scalar
 def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
-    """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look."""
-    return False
+    """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look.
+
+    But without friction all that is damped attracts.
+    """
+    return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
 
 
 @scalar

@@ -41,7 +41,8 @@ FIRST_SPAN = 0.1
 """Of the first one, in units of time, or twice what it must be worth."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""So many more short steps are made where no implicit one was worth it, and twice as many after each failure more, up to the last."""
+"""So many more short steps are made where no implicit one was worth it, and twice as many after each failure more,
+up to the last."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """By how much the next step may differ from this one at most, and below what the error estimate would allow."""
