@@ -26,13 +26,10 @@ from reference_model.ensemble.disc_regions import REGION, known_regions
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.ensemble.results import HANDED_OVER, Ensemble, Results
+from reference_model.ensemble.runge_kutta import tolerance_of_steps
 from reference_model.integrate import simulate
 from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
-
-LOCAL = 0.1
-"""Tolerance of a step over that of the motion. With 1e-9, of 12,000 trajectories of Figs. 8, 9 and 11 none errs by
-more than 5e-8 at t = 100; with twice as much, at a tenth fewer steps, one in 2000 errs by 1e-7."""
 
 LEAST_SPAN = 0.1
 """Turns of the master disc, or of the free centre, that the reference takes a trajectory through at least."""
@@ -89,7 +86,7 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
 def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, known: FloatArray) -> DiscAims:
     points = disc.contact_points or 0
     around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
-    return DiscAims(LOCAL * tolerance, early_end, around, known)
+    return DiscAims(tolerance_of_steps(tolerance), early_end, around, known)
 
 
 def _run(task: DiscTask, aims: DiscAims, results: Results, threads: int = 1) -> None:

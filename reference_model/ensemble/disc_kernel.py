@@ -37,6 +37,7 @@ from reference_model.ensemble.disc_lanes import (
     FLAG,
     IS_DUE,
     LAW,
+    LEAST_SLIP,
     LOST,
     NEAR_REST,
     RADII,
@@ -45,6 +46,7 @@ from reference_model.ensemble.disc_lanes import (
     RIGHTMOST,
     SLOTS,
     STEPS,
+    STIFF,
     TIME,
     TOLERANCE,
     TRIAL,
@@ -62,6 +64,7 @@ from reference_model.ensemble.disc_lanes import (
     law_of,
     put,
     put_slipping,
+    slip_left,
 )
 from reference_model.ensemble.disc_slip import (
     DiscLaw,
@@ -73,6 +76,8 @@ from reference_model.ensemble.disc_slip import (
     stuck_for,
 )
 from reference_model.ensemble.disc_stability import attracts
+from reference_model.ensemble.disc_stride import disc_stride_with
+from reference_model.ensemble.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.lanes import LANES, run
 from reference_model.ensemble.notes import EVERY, KIND, ON_THE_WAY, SLIPS, STATE, STICKS
 from reference_model.ensemble.notes import TIME as NOTE_TIME
@@ -102,6 +107,12 @@ STRETCHING_TIME = 0.5
 WATCHED_STEP = 1e-3
 """Step below which the points of a disc are looked at for one that comes to rest."""
 
+LINGERS = 0.01
+"""Time, in units, that slow slip of a disc or of a point lasts at least, at its pace, if it creeps."""
+
+SPENT_SHARE = 0.1
+"""Of the tolerance, for what is left of slip that dies out for ever."""
+
 SOON = 3e-4
 """Time, in units, in which a point must come to rest for that to be foreseen."""
 
@@ -114,12 +125,13 @@ LOOKS, TURNS_OF, PEAKS = 0, 1, 2
 NUMBER, LENGTH, RATE, END, TICK, MEASURED, SINCE, WAY_BEFORE, LEAST, LARGEST = range(10)
 FOUND, SERIES = 10, 13
 LAST, BEFORE, COUNT, SERIES_ITEMS = 5, 6, 7, 8
-NOTED = SERIES + 3 * SERIES_ITEMS
+SPAN = SERIES + 3 * SERIES_ITEMS
+NOTED = SPAN + 1
 ITEMS = NOTED + 1
 """Items of a page of the book: number, units of length and of time's inverse, end state so far, the period of looks;
 the window of the kind MEASURED (−1: none) in which measures of the end state are taken: since when, from which way
 on, radii so far; the measures found; of each kind what was seen last (5), the last two distances, and how often;
-where the next note goes."""
+how long an implicit step may be; where the next note goes."""
 
 CIRCLE = 1.0
 """Marks a region about a whirl, in the coordinates that turn with the centre; 0 is one about an equilibrium."""
@@ -208,10 +220,14 @@ def load_with(
 
 
 @written_out
-def attend_with(scratch: Any, book: Any, lane: int, aims: DiscAims, slow: Any, shows: Any) -> bool:
+def attend_with(
+    scratch: Any, book: Any, lane: int, aims: DiscAims, stride: Any, slow: Any, shows: Any
+) -> bool:
     """See to what the flag of a lane says; return whether its trajectory ends here."""
     page = book[lane]
     law = law_of(scratch, lane, aims.around)
+    if int(scratch[FLAG * LANES + lane]) & STIFF:
+        stride(scratch, page, lane, law)
     flag = int(scratch[FLAG * LANES + lane])
     if flag & LOST:
         page[END] = UNDECIDED
@@ -234,22 +250,56 @@ def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) ->
 
 @scalar
 def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
-    """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look."""
-    return False
+    """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look.
+
+    But without friction all that is damped attracts.
+    """
+    return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
 
 
-@inlined
-def _all_slow(scratch: Any, lane: int, law: DiscLaw) -> bool:
-    _, _, ux, uy, r, _, _, _ = eight_of(scratch, lane, TRIAL)
-    return bool(ux * ux + uy * uy + r * r < (NEAR_REST * law.friction) ** 2)
+@scalar
+def _ring_strides(scratch: Any, page: Any, lane: int, law: DiscLaw) -> None:
+    disc_stride_with(scratch, page, SPAN, lane, law, ring_rates, ring_edge, collocate_ring)
+
+
+@scalar
+def _points_stride(scratch: Any, page: Any, lane: int, law: DiscLaw) -> None:
+    disc_stride_with(scratch, page, SPAN, lane, law, points_rates, no_edge, collocate_points)
 
 
 @scalar
 def _ring_slow(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
     """Bring a disc on a ring to rest if what is left of slip can be told; return whether the trajectory ends."""
-    if not _all_slow(scratch, lane, law) or not comes_to_rest(scratch, lane, law):
+    if not slip_left(scratch, lane)[0] < NEAR_REST * law.friction:
         return False
-    return _ring_rests(scratch, page, lane, law, aims)
+    if _creeps_out(scratch, page, lane, law, aims):
+        return True
+    return comes_to_rest(scratch, lane, law) and _ring_rests(scratch, page, lane, law, aims)
+
+
+@scalar
+def _creeps_out(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Tell whether a disc all but rests that slips ever more slowly for ever, and end its trajectory.
+
+    That it can only where its pull does nothing but turn with the master disc. As a pin, see
+    ``pin_slip.creeps_steadily``: what is left of speed and way is far below the tolerance.
+    """
+    s, left = slip_left(scratch, lane)
+    steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
+    least = max(SPENT_SHARE * scratch[TOLERANCE * LANES + lane], LEAST_SLIP)
+    if not (steady and LINGERS < left < math.inf and s * max(left, 1.0) < least):
+        return False
+    x, y, _, _, _, angle, t, way = eight_of(scratch, lane, TRIAL)
+    z = complex(x, y)
+    if page[END] == UNDECIDED:
+        page[END] = STUCK
+        _keep(page, abs(z), abs(z), 0.0)
+    if not aims.early:
+        delay = scratch[DURATION * LANES + lane] - t
+        turn = law.disc_speed * delay
+        z *= complex(math.cos(turn), math.sin(turn))
+        put(scratch, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
+    return True
 
 
 @scalar
@@ -269,7 +319,12 @@ def _ring_slips(scratch: Any, lane: int, law: DiscLaw) -> None:
 @scalar
 def _points_slow(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
     """Hand over a disc on points that is about to rest, or one of whose points is."""
-    if not _all_slow(scratch, lane, law) and not _point_rests(scratch, lane, law):
+    s, left = slip_left(scratch, lane)
+    slow = s < NEAR_REST * law.friction
+    if slow and _creeps_out(scratch, page, lane, law, aims):
+        return True
+    goes_on = not slow or (left > LINGERS and s > LEAST_SLIP)
+    if goes_on and not _point_rests(scratch, lane, law):
         return False
     return _points_rest(scratch, page, lane, law, aims)
 
@@ -502,7 +557,8 @@ def _point_rests(scratch: Any, lane: int, law: DiscLaw) -> bool:
             # Without its own friction, and what that must be to hold it: see reference_model.pivot.
             free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
             holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free
-            if (v.conjugate() * rate).real < 0.0 and abs(holding) < most:
+            falling = -(v.conjugate() * rate).real / abs(v)
+            if abs(v) < LINGERS * falling and abs(holding) < most:
                 return True
     return False
 
@@ -566,7 +622,7 @@ def _advance_rings(scratch: Any, around: Any) -> None:
 
 @scalar
 def _attend_ring(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
-    return attend_with(scratch, book, lane, aims, _ring_slow, _ring_shows)
+    return attend_with(scratch, book, lane, aims, _ring_strides, _ring_slow, _ring_shows)
 
 
 @scalar
@@ -581,7 +637,7 @@ def _advance_points(scratch: Any, around: Any) -> None:
 
 @scalar
 def _attend_points(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
-    return attend_with(scratch, book, lane, aims, _points_slow, _points_show)
+    return attend_with(scratch, book, lane, aims, _points_stride, _points_slow, _points_show)
 
 
 @outermost

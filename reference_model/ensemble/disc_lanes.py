@@ -26,16 +26,22 @@ LAW = 2 * TRIAL
 """Where the constants of a disc begin."""
 
 CONSTANTS = len(DiscLaw._fields) - 1
-(TOLERANCE, USUAL, DURATION, DUE, WATCH, FLAG, STEPS, SLOTS) = range(LAW + CONSTANTS, LAW + CONSTANTS + 8)
+(TOLERANCE, USUAL, DURATION, DUE, WATCH, FLAG, STEPS, SHORT, SLOTS) = range(
+    LAW + CONSTANTS, LAW + CONSTANTS + 9
+)
 """The tolerance of a step; the step before the edge was in the way; when it ends, and when it wants to be attended
-before; how closely it is watched; why it wants to be attended; steps so far; the number of slots."""
+before; how closely it is watched; why it wants to be attended; steps so far; how many of the last were short; the
+number of slots."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """A lane may be attended whenever x is largest, whenever the radius is largest or smallest, or both."""
 
-REST, IS_DUE, RIGHTMOST, EXTREME, LOST = 1, 2, 4, 8, 16
+REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up: slip may be about to end; the time has come; x was largest; so was the radius, or smallest;
-step size or number of steps are beyond what is sensible."""
+step size or number of steps are beyond what is sensible; an implicit step may be worth its while."""
+
+SHORT_STEP, MANY = 0.1, 40.0
+"""As in :mod:`pin_lanes`; explicit steps of discs cost more."""
 
 MOST_STEPS = 5_000_000.0
 SMALLEST_STEP = 1e-13
@@ -107,8 +113,9 @@ def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: f
         new = moved(q, h, (1.0,), (mean,))
         k1 = rates(new[:6], law)
 
-        # Slip counts by its own size once it is small: its direction decides when it ends.
-        small = math.sqrt(q[2] * q[2] + q[3] * q[3] + q[4] * q[4]) / (SLOW * law.friction + LEAST)
+        # Slip counts by its own size once it is small, if there is friction: its direction decides when it ends.
+        slip = math.sqrt(q[2] * q[2] + q[3] * q[3] + q[4] * q[4])
+        small = (slip + law.free) / (SLOW * law.friction + LEAST)
         high = low = 0.0
         for j in range(7):
             size = 1.0 + (max(abs(q[j]), abs(new[j])) if j < 5 else 0.0)
@@ -138,17 +145,16 @@ def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: f
         scratch[USUAL * LANES + lane] = 0.0 if taken else (max(h, usual) if crossed else usual)
         scratch[(TRIAL + STEP) * LANES + lane] = resumed if taken else (h * share if good else next_step)
 
-        s2 = new[2] * new[2] + new[3] * new[3] + new[4] * new[4]
-        nearly = NEAR_REST * law.friction
-        watch = scratch[WATCH * LANES + lane]
         count = scratch[STEPS * LANES + lane] + 1.0
-        extreme = (q[0] * k[0] + q[1] * k[1] > 0.0) != (new[0] * k1[0] + new[1] * k1[1] > 0.0)
         done = new[6] >= end - AT_END
-        flag = REST if (s2 < nearly * nearly) | (h < small_step) else 0.0
-        flag += IS_DUE if (new[6] >= scratch[DUE * LANES + lane]) | done else 0.0
-        flag += RIGHTMOST if (k[0] > 0.0) & (k1[0] <= 0.0) & ((watch == TURNS) | (watch == BOTH)) else 0.0
-        flag += EXTREME if extreme & (watch >= BOTH) else 0.0
+        flag = reasons(
+            q, k, new, k1, NEAR_REST * law.friction, (new[6] >= scratch[DUE * LANES + lane]) | done, h < small_step,
+            scratch[WATCH * LANES + lane],
+        )  # fmt: skip
         flag = flag if taken else 0.0
+        short = scratch[SHORT * LANES + lane] + 1.0 if new[6] - q[6] < SHORT_STEP else 0.0
+        flag += STIFF if short > MANY else 0.0
+        scratch[SHORT * LANES + lane] = short
         lost = (not h > SMALLEST_STEP) | (count > MOST_STEPS)
         flag += LOST if lost & (not (taken & done)) else 0.0
         scratch[FLAG * LANES + lane] = flag
@@ -156,6 +162,18 @@ def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: f
         for j in range(8):
             scratch[(TRIAL + j) * LANES + lane] = new[j] if taken else q[j]
             scratch[(TRIAL + RATES + j) * LANES + lane] = k1[j] if taken else k[j]
+
+
+@inlined
+def reasons(q: Any, k: Any, new: Any, k1: Any, nearly: float, due: bool, fine: bool, watch: float) -> float:
+    """Return the flags of a step from ``q`` with the rates ``k`` to what is ``new``."""
+    s2 = new[2] * new[2] + new[3] * new[3] + new[4] * new[4]
+    extreme = (q[0] * k[0] + q[1] * k[1] > 0.0) != (new[0] * k1[0] + new[1] * k1[1] > 0.0)
+    flag = REST if (s2 < nearly * nearly) | fine else 0.0
+    flag += IS_DUE if due else 0.0
+    flag += RIGHTMOST if (k[0] > 0.0) & (k1[0] <= 0.0) & ((watch == TURNS) | (watch == BOTH)) else 0.0
+    flag += EXTREME if extreme & (watch >= BOTH) else 0.0
+    return flag
 
 
 @scalar
@@ -218,7 +236,7 @@ def put_slipping(scratch: Any, lane: int, law: DiscLaw, rates: Any) -> None:
     for j in range(8):
         scratch[(TRIAL + RATES + j) * LANES + lane] = k[j]
     scratch[(TRIAL + STEP) * LANES + lane] = FIRST_STEP
-    scratch[USUAL * LANES + lane] = 0.0
+    scratch[USUAL * LANES + lane] = scratch[SHORT * LANES + lane] = 0.0
 
 
 @scalar
@@ -239,6 +257,16 @@ def _motion(q: Any, k: Any, omega: float) -> Any:
     """Return place, velocity and acceleration of the centre."""
     pace, v = 1.0 / k[6], complex(k[0], k[1])
     return complex(q[0], q[1]), pace * v, pace * (complex(k[2], k[3]) + 1j * omega * v)
+
+
+@inlined
+def slip_left(scratch: Any, lane: int) -> Any:
+    """Return slip speed, and the time that it would last if it went on falling as it does; inf if it does not."""
+    _, _, ux, uy, r, _, _, _ = eight_of(scratch, lane, TRIAL)
+    k = eight_of(scratch, lane, TRIAL + RATES)
+    s = math.sqrt(ux * ux + uy * uy + r * r)
+    falling = -(ux * k[2] + uy * k[3] + r * k[4]) / (s * k[6])
+    return s, (s / falling if falling > 0.0 else math.inf)
 
 
 @scalar

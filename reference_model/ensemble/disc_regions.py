@@ -124,7 +124,7 @@ def _region(
     """Return the region about a stable motion; its level is 0 if there is none."""
     circle = kind == CIRCLE
     d, k = len(centre), disc.natural_frequency
-    length = max(radius, disc.friction_force / disc.stiffness)
+    length = max(radius, disc.friction_force / disc.stiffness) or disc.contact_radius
     scale = np.array([length, *[length * k] * 3] if circle else [length] * 2 + [length * k] * 3)
 
     steps, ring = APART * scale, replace(disc, contact_points=None)

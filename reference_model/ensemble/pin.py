@@ -152,7 +152,7 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
     if noted:
         note(page, SLIPS, 0.0, z, w, law)
     if w == 0j and friction > 0.0:
-        return rest(scratch, page, lane, z, 0.0, law, aims)
+        return rest(scratch, page, lane, z, 0.0, law, aims, False)
     put_slipping(scratch, lane, z, w, law)
     if page[LEVEL] == math.inf:
         page[END] = SELF_CENTRED

@@ -22,12 +22,12 @@ there, upper half; its radii in m and mean slip speed in m/s. Level or reach are
     NUMBER, LENGTH, RATE, DURATION, END, WELL_X, WELL_Y, LEVEL, FORM, TICK,
     TURN_X, TURN_Y, TURN_V, TURN_LAST, TURN_BEFORE, TURN_COUNT,
     RELEASE, RELEASE_LAST, RELEASE_BEFORE, RELEASE_COUNT, MEASURED,
-    SINCE, WAY_BEFORE, LEAST, LARGEST, FOUND_LEAST, FOUND_LARGEST, FOUND_SLIP, NOTED, ITEMS,
-) = (*range(9), *range(8 + FORM_SIZE, 29 + FORM_SIZE))  # fmt: skip
+    SINCE, WAY_BEFORE, LEAST, LARGEST, FOUND_LEAST, FOUND_LARGEST, FOUND_SLIP, SPAN, NOTED, ITEMS,
+) = (*range(9), *range(8 + FORM_SIZE, 30 + FORM_SIZE))  # fmt: skip
 """Items of a page of the book: number, unit of length, duration in units and end state so far; the equilibrium and
 when to look next; the last crossing and the distances of the last three; the same of releases; what the window is
-from which the measures of the end state are taken: since when, from which way on, radii so far; what was found; and
-where the next note goes."""
+from which the measures of the end state are taken: since when, from which way on, radii so far; what was found; how
+long an implicit step may be; and where the next note goes."""
 
 NO_WINDOW, OF_TURN, OF_RELEASE = 0.0, 1.0, 2.0
 """What is MEASURED: nothing yet, a turn from crossing to crossing, or a cycle from release to release."""

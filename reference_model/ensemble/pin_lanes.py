@@ -7,7 +7,7 @@ from typing import Any
 from reference_model.ensemble.arc import Arc, Motion, arc_between, size_of
 from reference_model.ensemble.compiled import inlined, scalar
 from reference_model.ensemble.lanes import LANES
-from reference_model.ensemble.pin_slip import PinLaw, pin_rates
+from reference_model.ensemble.pin_slip import PinLaw, pin_rates, pull
 from reference_model.ensemble.runge_kutta import error_of, factor_of, step
 
 X, Y, WX, WY, TIME, WAY, KX, KY, KWX, KWY, SHARE, KWAY, STEP = range(13)
@@ -19,20 +19,29 @@ TRIAL = STEP + 1
 
 (
     STIFFNESS, DAMPING, FRICTION, DISC_SPEED, OFFSET, STRETCHING, FREE,
-    TOLERANCE, SLOW, DUE, WATCH, FLAG, STEPS, MOST_STEPS, SLOTS,
-) = range(2 * TRIAL, 2 * TRIAL + 15)  # fmt: skip
+    TOLERANCE, SLOW, DUE, WATCH, FLAG, STEPS, MOST_STEPS, SHORT, SLOTS,
+) = range(2 * TRIAL, 2 * TRIAL + 16)  # fmt: skip
 """The law; the tolerance of a step; the slip speed below which rest may be near; the time at which the lane wants to
-be attended; how closely it is watched; why it wants to be attended; steps so far and at most; the number of slots."""
+be attended; how closely it is watched; why it wants to be attended; steps so far and at most; how many of the last
+were short; the number of slots."""
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 """A lane may be attended whenever x is largest, and also whenever the radius is largest or smallest."""
 
-REST, IS_DUE, RIGHTMOST, EXTREME, LOST = 1, 2, 4, 8, 16
+REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up: slip is about to end; the time has come; x was largest; so was the radius, or smallest; step
-size or number of steps are beyond what is sensible."""
+size or number of steps are beyond what is sensible; an implicit step may be worth its while."""
 
-STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 100.0
-"""A motion that takes more steps than these, the second in a unit of time, creeps: it is given up, undecided."""
+STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
+"""A motion that takes more steps than these, the second in a unit of time, is given up, undecided."""
+
+SHORT_STEP, MANY = 5e-3, 40.0
+"""Time, in its unit, below which a step is short, and so many of them one after the other are more than coming to
+rest or letting go takes: it is stability that limits them. One implicit step costs as much as some 50 of a single
+trajectory, or a thousand of one among others in lanes."""
+
+SLOWNESS = 1e-3
+"""Slip speed, in units of g, below which a pin that friction does not bring to rest begins with short steps."""
 
 SMALLEST_STEP = 1e-13
 
@@ -82,16 +91,13 @@ def advance(scratch: Any, _: None) -> None:
 
         slow, watch = scratch[SLOW * LANES + lane], scratch[WATCH * LANES + lane]
         count = scratch[STEPS * LANES + lane] + 1.0
-        resting = (wx * wx + wy * wy < slow * slow) & (wx * new[2] + wy * new[3] < 0.0)
-        rightmost = (k[0] > 0.0) & (new[0] <= 0.0) & (watch >= TURNS)
-        extreme = ((y[0] * k[0] + y[1] * k[1] > 0.0) != (x * new[0] + y_ * new[1] > 0.0)) & (watch >= RADII)
-        flag = REST if resting else 0.0
-        flag += IS_DUE if later >= scratch[DUE * LANES + lane] else 0.0
-        flag += RIGHTMOST if rightmost else 0.0
-        flag += EXTREME if extreme else 0.0
+        flag = reasons(y, k, (x, y_, wx, wy), new, later, scratch[DUE * LANES + lane], slow, watch)
         flag = flag if good else 0.0
         lost = (shorter < SMALLEST_STEP) | (count > scratch[MOST_STEPS * LANES + lane])
+        short = scratch[SHORT * LANES + lane] + 1.0 if later - t < SHORT_STEP else 0.0
+        flag += STIFF if short > MANY else 0.0
 
+        scratch[SHORT * LANES + lane] = short
         scratch[FLAG * LANES + lane] = flag + (LOST if lost else 0.0)
         scratch[STEPS * LANES + lane] = count
         scratch[(TRIAL + X) * LANES + lane] = x if good else y[0]
@@ -107,6 +113,22 @@ def advance(scratch: Any, _: None) -> None:
         scratch[(TRIAL + SHARE) * LANES + lane] = new[4] if good else k[4]
         scratch[(TRIAL + KWAY) * LANES + lane] = new[5] if good else k[5]
         scratch[(TRIAL + STEP) * LANES + lane] = shorter
+
+
+@inlined
+def reasons(
+    y: Any, k: Any, after: Any, rates: Any, later: float, due: float, slow: float, watch: float
+) -> float:
+    """Return the flags of a step from ``y`` with the rates ``k`` to what is ``after``, at the time ``later``."""
+    x, y_, wx, wy = after
+    resting = (wx * wx + wy * wy < slow * slow) & (wx * rates[2] + wy * rates[3] < 0.0)
+    rightmost = (k[0] > 0.0) & (rates[0] <= 0.0) & (watch >= TURNS)
+    extreme = ((y[0] * k[0] + y[1] * k[1] > 0.0) != (x * rates[0] + y_ * rates[1] > 0.0)) & (watch >= RADII)
+    flag = REST if resting else 0.0
+    flag += IS_DUE if later >= due else 0.0
+    flag += RIGHTMOST if rightmost else 0.0
+    flag += EXTREME if extreme else 0.0
+    return flag
 
 
 @scalar
@@ -147,14 +169,22 @@ def slip_of(scratch: Any, lane: int, block: int) -> complex:
 @scalar
 def put_slipping(scratch: Any, lane: int, z: complex, w: complex, law: PinLaw) -> None:
     """Put a slipping pin into the slots of the trial, with a first step."""
-    k = pin_rates((z.real, z.imag, w.real, w.imag), law)
-    put_place(scratch, lane, z, w)
-    for i in range(6):
-        scratch[(TRIAL + KX + i) * LANES + lane] = k[i]
+    put_motion(scratch, lane, z, w, law)
+    creeps = abs(w) < SLOWNESS * law.friction and abs(pull(z, w, law)) > law.friction
+    scratch[SHORT * LANES + lane] = MANY if creeps else 0.0
     h = FIRST_STEP
     if law.friction > 0.0:
         h = min(h, (abs(w) + law.stretching) / law.friction)  # the direction of slip is slaved no faster
     scratch[(TRIAL + STEP) * LANES + lane] = h
+
+
+@inlined
+def put_motion(scratch: Any, lane: int, z: complex, w: complex, law: PinLaw) -> None:
+    """Put a slipping pin and its rates into the slots of the trial."""
+    k = pin_rates((z.real, z.imag, w.real, w.imag), law)
+    put_place(scratch, lane, z, w)
+    for i in range(6):
+        scratch[(TRIAL + KX + i) * LANES + lane] = k[i]
 
 
 @inlined

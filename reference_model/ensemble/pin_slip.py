@@ -140,17 +140,30 @@ def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
 
 
 @scalar
+def turns_steadily(law: PinLaw) -> bool:
+    """Tell whether the pull of a pin at rest does nothing but turn with the disc, so that friction may hold it."""
+    return law.offset == 0.0 or law.disc_speed == 0.0
+
+
+@scalar
 def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
-    """Tell whether the slow slip of a pin without offset dies out for ever, without rest.
+    """Tell whether the slow slip of a pin dies out for ever, without rest: see :func:`turns_steadily`.
 
     Its speed s is along the pull, which turns with it, and e is by how much that would exceed g at rest. They go by
-    s' = e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator. If it is overdamped and e >= c·s/2 the speed never
-    comes to zero.
+    s' = e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, on a disc at rest with an offset too. If it is
+    overdamped and e >= c·s/2 the speed never comes to zero.
     """
     inward = law.stiffness - law.disc_speed**2
     excess = abs(pull(z, 0j, law)) - law.friction
     overdamped = inward > 0.0 and law.damping**2 >= 4.0 * inward
-    return overdamped and 0.5 * law.damping * abs(w) <= excess <= CREEP * law.friction
+    return overdamped and turns_steadily(law) and 0.5 * law.damping * abs(w) <= excess <= CREEP * law.friction
+
+
+@scalar
+def creeping_ends(z: complex, law: PinLaw) -> complex:
+    """Return the place on the disc, of a pin that :func:`creeps_steadily` at ``z``, where friction would hold it."""
+    a = pull(z, 0j, law)
+    return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 
 
 @scalar

@@ -67,6 +67,7 @@ from reference_model.ensemble.pin_lanes import (
     REST,
     RIGHTMOST,
     STEPS,
+    STIFF,
     TIME,
     TRIAL,
     TURNS,
@@ -84,6 +85,7 @@ from reference_model.ensemble.pin_lanes import (
 from reference_model.ensemble.pin_slip import (
     PinLaw,
     begin_slip,
+    creeping_ends,
     creeps_by_turns,
     creeps_steadily,
     pull,
@@ -92,6 +94,7 @@ from reference_model.ensemble.pin_slip import (
     time_to_rest,
 )
 from reference_model.ensemble.pin_stability import orbit_attracts
+from reference_model.ensemble.pin_stride import stride
 from reference_model.ensemble.results import EndState
 from reference_model.systems import FloatArray
 
@@ -105,6 +108,9 @@ UNDECIDED, SELF_CENTRED, WHIRL, STUCK, STICK_SLIP = (
 
 SERIES_SHARE = 0.1
 """Of the tolerance, for the last terms of the series by which slip begins."""
+
+SPENT_SHARE = 0.1
+"""Of the tolerance, for what is left of the slip, and of the way, of a pin that creeps to its place for ever."""
 
 REVERSAL_SLIP = 1e-13
 """Slip, in units, below which slip that friction can't hold counts as turned."""
@@ -132,6 +138,8 @@ def attend(scratch: Any, book: Any, lane: int, aims: Aims) -> bool:
     """See to what the flag of a lane says; return whether its trajectory ends here."""
     page = book[lane]
     law = law_of(scratch, lane)
+    if int(scratch[FLAG * LANES + lane]) & STIFF:
+        stride(scratch, page, lane, law)
     flag = int(scratch[FLAG * LANES + lane])
     later = scratch[(TRIAL + TIME) * LANES + lane]
     if flag & LOST:
@@ -260,25 +268,35 @@ def maybe_rest(scratch: Any, page: Any, lane: int, law: PinLaw, aims: Aims) -> b
     """Bring the pin to rest if what is left of slip can be told; return whether the trajectory ends."""
     z, w = place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL)
     t, s = scratch[(TRIAL + TIME) * LANES + lane], abs(w)
-    if law.offset == 0.0 and page[END] == UNDECIDED and creeps_steadily(z, w, law):
-        page[END] = STUCK
-        keep(page, sticking_radius(law), sticking_radius(law), 0.0)
-        if aims.early:
-            return True
+    creeps = creeps_steadily(z, w, law)
+    if creeps:
+        place = creeping_ends(z, law)
+        if page[END] == UNDECIDED:
+            page[END] = STUCK
+            radius = sticking_radius(law) if law.offset == 0.0 else abs(place)
+            keep(page, radius, radius, 0.0)
+            if aims.early:
+                return True
+        creeps = max(s, abs(place - z)) < max(SPENT_SHARE * aims.tolerance, REVERSAL_SLIP)
     left = time_to_rest(z, w, law, aims.tolerance)
-    if left == math.inf and s < REVERSAL_SLIP:
+    if creeps or (left == math.inf and s < REVERSAL_SLIP):
         left = 0.0
     if not t + left < page[DURATION]:
         return False
     middle = z + 0.5 * left * (0.75 * w + 1j * law.disc_speed * z)
     z += left * (0.5 * w + 1j * law.disc_speed * middle)
     scratch[(TRIAL + WAY) * LANES + lane] += 0.5 * s * left
-    return rest(scratch, page, lane, z, t + left, law, aims)
+    return rest(scratch, page, lane, z, t + left, law, aims, creeps)
 
 
 @scalar
-def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, aims: Aims) -> bool:
-    """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before."""
+def rest(
+    scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, aims: Aims, creeps: bool
+) -> bool:
+    """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before.
+
+    One that ``creeps`` slips so slowly that it might as well rest, for ever.
+    """
     end: float = page[DURATION]
     w = 0j
     forget_turns(scratch, page, lane)
@@ -289,13 +307,14 @@ def rest(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, 
         scratch[STEPS * LANES + lane] += 1.0
         if scratch[STEPS * LANES + lane] > scratch[MOST_STEPS * LANES + lane]:
             page[END], end = UNDECIDED, t  # given up
-        if abs(pull(z, 0j, law)) <= law.friction:
-            held = release_delay(z, law)
-            if held > 0.0 and takes_notes(page):
+        if creeps or abs(pull(z, 0j, law)) <= law.friction:
+            held = math.inf if creeps else release_delay(z, law)
+            if held > 0.0 and not creeps and takes_notes(page):
                 note(page, STICKS, t, z, w, law)
             if held == math.inf:
-                page[END] = STUCK
-                keep(page, abs(z), abs(z), 0.0)
+                if page[END] == UNDECIDED or not creeps:
+                    page[END] = STUCK
+                    keep(page, abs(z), abs(z), 0.0)
                 if aims.early:
                     end = t
             turn = law.disc_speed * min(held, end - t)

@@ -13,11 +13,8 @@ from reference_model.ensemble.pin_book import KNOWN
 from reference_model.ensemble.recording import Recording
 from reference_model.ensemble.regions import known_ends
 from reference_model.ensemble.results import Ensemble, Results
-from reference_model.stepping import TIGHTEST
+from reference_model.ensemble.runge_kutta import tolerance_of_steps
 from reference_model.systems import FloatArray, PinOnDisc
-
-LOCAL = 0.1
-"""Tolerance of a step over that of a single motion, which is to be as accurate as that of the plain reference."""
 
 
 def simulate_pins(
@@ -35,10 +32,11 @@ def simulate_pins(
     known = np.zeros(KNOWN)  # an array that may be written to: the kernel is compiled for one kind
     if not varied:
         known[:] = known_ends(pin)
+    local = tolerance_of_steps(tolerance)
     task, results = PinTask(table, starts, np.full(1, duration)), Results.empty(n, pin.state_size)
 
     def run(first: int, last: int) -> None:
-        run_pins(task, tolerance, early_end, False, known, results, first, last)
+        run_pins(task, local, early_end, False, known, results, first, last)
 
     in_chunks(run, n, threads)
     return results.ensemble(varied.get("friction_force", pin.friction_force))
@@ -46,7 +44,7 @@ def simulate_pins(
 
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a pin from ``state`` on."""
-    local = max(LOCAL * tolerance, TIGHTEST)
+    local = tolerance_of_steps(tolerance)
     table, nothing = parameter_table(pin, PARAMETERS), np.zeros(KNOWN)
 
     def run(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:

@@ -114,8 +114,8 @@ class Recording:
         short = results.times < durations - self._rounding
         if np.any(short):
             raise SimulationError(
-                f"the compiled run gave up {since + float(np.min(results.times[short])):g} s after its start: the "
-                "motion creeps, or the state is not finite; leave out compiled=True, or take a larger tolerance"
+                f"the compiled run gave up {since + float(np.min(results.times[short])):g} s after its start: too "
+                "many steps, or the state is not finite; leave out compiled=True, or take a larger tolerance"
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:

@@ -14,6 +14,7 @@ from numba.extending import overload
 from scipy.integrate import DOP853
 
 from reference_model.ensemble.compiled import inlined
+from reference_model.stepping import TIGHTEST
 
 Tuple = tuple[float, ...]
 
@@ -28,8 +29,16 @@ E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
 """Weights of the step, and of its differences from the embedded methods of third and fifth order, at the stages 1, 6
 to 12."""
 
+LOCAL = 0.1
+"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs alike."""
+
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 """By how much the next step may differ from this one, and the factor below what the error estimate would allow."""
+
+
+def tolerance_of_steps(tolerance: float) -> float:
+    """Return the tolerance of each step of a motion that is to be accurate to ``tolerance``."""
+    return max(LOCAL * tolerance, TIGHTEST)
 
 
 def weighted(weights: Tuple, rates: tuple[Tuple, ...]) -> Tuple:

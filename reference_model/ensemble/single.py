@@ -14,7 +14,7 @@ from reference_model.systems import PinOnDisc, System, checked_state, checked_ti
 from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
 from reference_model.units import Units
 
-METHOD = "compiled DOP853 in stretched time; closed-form stick phases"
+METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 
 def simulate_compiled(

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from compare.paper import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
-from reference_model import DiscOnDisc, PinOnDisc, Ring, SimulationError, ThreeTermRing, simulate
+from reference_model import (
+    DiscOnDisc,
+    PinOnDisc,
+    Ring,
+    SimulationError,
+    ThreeTermRing,
+    simulate,
+    sticking_radius,
+)
 from reference_model.ensemble import recording, simulate_ensemble
 
 SECOND = list(FIG5_STARTS.values())[1]
@@ -107,9 +115,14 @@ def test_too_little_room_for_notes_at_first_does_not_change_the_motion(monkeypat
     assert found.stick_times.tolist() == usual.stick_times.tolist()
 
 
-def test_the_end_is_that_of_an_ensemble_of_the_same_steps():
-    found = simulate(FIG5, SECOND, [0.0, 37.3], tolerance=1e-8, compiled=True)
-    ensemble = simulate_ensemble(FIG5, SECOND, duration=37.3, tolerance=1e-9, early_end=False)
+@pytest.mark.parametrize(
+    ("system", "start"),
+    [(FIG5, SECOND), (FIG8, [0.3, 0.0, 0.0, 0.1, 0.0, 0.5]), (on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0])],
+    ids=["pin", "ring", "six points"],
+)
+def test_a_tolerance_means_the_same_steps_in_a_single_run_and_in_an_ensemble(system, start):
+    found = simulate(system, start, [0.0, 37.3], tolerance=1e-8, compiled=True)
+    ensemble = simulate_ensemble(system, start, duration=37.3, tolerance=1e-8, early_end=False)
     assert found.solution.steps == ensemble.steps[0]
     assert np.max(np.abs(found.at_end - ensemble.states[0])) < 1e-8
 
@@ -156,10 +169,79 @@ def test_what_compiled_code_does_not_know_is_refused_by_name(system, options, me
         simulate(system, compiled=True, **arguments)
 
 
-def test_a_run_that_is_given_up_says_when():
-    overdamped = replace(FIG5, damping=1e7)
-    with pytest.raises(SimulationError, match=r"the compiled run gave up 0\.0\d+ s after its start"):
-        simulate(overdamped, SECOND, [0.0, 50.0], compiled=True)
+def test_a_run_that_is_given_up_says_when(monkeypatch):
+    monkeypatch.setattr(recording, "ROUNDED", -0.1)  # as if it had not come to its end
+    with pytest.raises(SimulationError, match=r"the compiled run gave up 50 s after its start"):
+        simulate(FIG5, SECOND, [0.0, 50.0], compiled=True)
+
+
+CREEPING = replace(FIG5, offset=0.0, damping=2.0, friction_force=0.1, disc_speed=0.5)
+"""Slip dies out like exp(−t/2) for ever: the smaller root of λ² − 2λ + 3/4 = 0, see ``pin_slip.creeps_steadily``."""
+
+
+def as_disc(pin, points):
+    """A disc that does not turn against the master disc, so that its centre moves as the pin does."""
+    return DiscOnDisc(
+        mass=pin.mass, stiffness=pin.stiffness, damping=pin.damping, friction_force=pin.friction_force,
+        disc_speed=pin.disc_speed, offset=pin.offset, polar_inertia=0.02, contact_radius=0.2, shaft_damping=0.0,
+        shaft_speed=0.0, contact_points=points,
+    )  # fmt: skip
+
+
+def slip_of(motion):
+    n = motion.states.shape[1] // 2
+    omega, (x, y), (vx, vy) = motion.system.disc_speed, motion.states.T[:2], motion.states.T[n : n + 2]
+    return np.hypot(vx + omega * y, vy - omega * x)
+
+
+@pytest.mark.parametrize("points", ["pin", None, 6], ids=["pin", "ring", "six points"])
+def test_slip_that_dies_out_for_ever_is_followed_to_any_time(points):
+    system, start = CREEPING, [0.5, 0.0, 0.0, 0.0]
+    if points != "pin":
+        system, start = as_disc(CREEPING, points), [0.5, 0.0, 0.0, 0.0, 0.0, 0.5]
+    early = simulate(system, start, [0.0, 5.0, 10.0], compiled=True)
+    assert early.states == pytest.approx(simulate(system, start, [0.0, 5.0, 10.0]).states, abs=1e-9)
+    late = simulate(system, start, [0.0, 20.0, 24.0, 28.0, 32.0, 1000.0], compiled=True)
+    assert [phase.kind for phase in late.phases] == ["slip"]
+    assert late.solution.steps < 5000
+    # To leading order s ~ exp(−t/2): what is left out is of the order of s itself, and rounding of x of 1e-17/s.
+    assert np.diff(np.log(slip_of(late)[1:5])) == pytest.approx(-2.0, rel=1e-4)
+    assert late.radius[-1] == pytest.approx(sticking_radius(CREEPING), rel=1e-9)
+
+
+def test_a_light_disc_with_a_strong_damper_moves_as_slowly_as_the_balance_of_forces_says():
+    disc = replace(as_disc(CREEPING, None), mass=1e-6, contact_radius=1e3, damping=1e6)
+    found = simulate(disc, [0.5, 0.0, 0.0, 0.0, 0.0, 0.5], [0.0, 50.0], compiled=True)
+    assert found.solution.steps < 5000
+    # β·v = −C·z + μN·i·z/|z| (the slip is that of the master disc below) to the first order in C/β and μN/β.
+    z = 0.5 * np.exp(-50e-6) * np.exp(1j * 0.1 / 0.5 * 50e-6)
+    assert complex(*found.at_end[:2]) == pytest.approx(z, abs=1e-9)
+
+
+def test_random_pins_within_four_decades_of_every_parameter_are_followed_through_50_periods():
+    rng = np.random.default_rng(13)
+    for _ in range(150):
+        m, stiffness, damping, friction, speed, offset, size = 10.0 ** rng.uniform(-2.0, 2.0, 7)
+        pin = PinOnDisc(
+            mass=m, stiffness=stiffness, damping=damping, friction_force=friction,
+            disc_speed=speed * rng.choice((-1.0, 1.0)), offset=offset * rng.choice((0.0, 1.0)),
+        )  # fmt: skip
+        k = pin.natural_frequency
+        start = size * rng.normal(size=4) * np.array([1.0, 1.0, k, k])
+        found = simulate(pin, start, [0.0, 50.0 * 2.0 * np.pi / k], compiled=True)
+        assert found.solution.steps < 400_000
+
+
+def test_states_between_steps_that_strong_damping_shortens_are_as_accurate_as_ends():
+    pin = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=8.3458546, friction_force=0.00348404708, disc_speed=3.83354141,
+        offset=2.108728,
+    )  # fmt: skip
+    start, times = (0.01498423, -0.0328726, 0.04863351, -0.1851470), np.linspace(0.0, 27.656, 1001)
+    found = simulate(pin, start, times, compiled=True)
+    for i in (90, 350, 513, 577, 800):
+        end = simulate(pin, start, times[[0, i]], tolerance=1e-12).at_end
+        assert found.states[i] == pytest.approx(end, abs=2e-9)
 
 
 def test_the_law_of_the_parameters_may_be_named():

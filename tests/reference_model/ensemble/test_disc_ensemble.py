@@ -231,6 +231,35 @@ def test_without_friction_a_disc_swings_like_the_linear_oscillator():
     assert found.states[0, 5] == pytest.approx(0.5 - 0.2 * math.exp(-0.01 * 50.0), abs=1e-8)
 
 
+@pytest.mark.parametrize("points", [None, 6])
+def test_without_friction_a_disc_that_starts_without_slip_moves_and_is_decided_as_any(points):
+    disc = replace(FIG8, friction_force=0.0, damping=0.3, shaft_damping=0.5, contact_points=points)
+    start = turning_with(disc, 0.3, 0.1)
+    full = simulate_ensemble(disc, start, duration=20.0, early_end=False)
+    k, decay = math.sqrt(1.0 - 0.15**2), 0.15
+    z, v = complex(0.3 - disc.offset, 0.1), 1j * disc.disc_speed * complex(0.3, 0.1)
+    z = disc.offset + math.exp(-decay * 20.0) * (
+        z * math.cos(20.0 * k) + (v + decay * z) / k * math.sin(20.0 * k)
+    )
+    assert full.time[0] == 20.0
+    assert full.states[0, :2] == pytest.approx((z.real, z.imag), abs=1e-8)
+    for parameters in ({}, {"mass": [disc.mass]}):
+        found = simulate_ensemble(disc, start, duration=300.0, parameters=parameters)
+        assert found.end[0] == EndState.SELF_CENTRED
+        assert found.largest_radius[0] == pytest.approx(disc.offset, rel=1e-4)
+
+
+@pytest.mark.parametrize("points", [None, 6])
+@pytest.mark.filterwarnings("error")
+def test_without_friction_and_offset_a_disc_comes_to_the_axis(points):
+    disc = replace(
+        FIG8, friction_force=0.0, damping=0.3, shaft_damping=0.5, offset=0.0, contact_points=points
+    )
+    assert (
+        simulate_ensemble(disc, turning_with(disc, 0.3, 0.1), duration=300.0).end[0] == EndState.SELF_CENTRED
+    )
+
+
 def test_more_points_than_are_written_out_are_refused():
     with pytest.raises(ValueError, match=r"contact_points = 25: .* takes up to 24"):
         simulate_ensemble(replace(FIG8, contact_points=25), starts_of(1), duration=1.0)
