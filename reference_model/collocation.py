@@ -189,6 +189,7 @@ class Radau:
             self.status = "finished"
         return None
 
+    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # of a trial, which is given up for that
     def _collocate(self, h: float) -> Polynomial | None:
         """Solve for the unknowns at the nodes of a step; None if Newton's method does not converge."""
         places = self.t + 0.5 * h * (POINTS + 1.0)

@@ -51,9 +51,9 @@ def simulate_ensemble(
     duration : float
         In s, > 0.
     tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2, as ``reference_model.simulate`` takes it: steps have a tenth of
-        it, of pins and of discs alike (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11
-        after 100 s half are off by less than 4e-9, 99 of 100 by less than 1e-8, and one, of Fig. 9, by 2e-7.
+        Relative accuracy to aim at, from 1e-14 to 1e-2, as ``reference_model.simulate`` takes it: steps have a tenth
+        of it, of pins and of discs alike (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9
+        and 11 after 100 s half are off by less than 4e-9, 99 of 100 by less than 1e-8, and one, of Fig. 9, by 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Those that differ from trajectory to trajectory.
     early_end : bool
