@@ -47,6 +47,10 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
         else:
             kept = settled
         if kept:
+            if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
+                creeping[released:first] = (
+                    WHOLE  # slip that comes back before it has got anywhere is no release
+                )
             released = beyond
         else:
             creeping[first:beyond] = NOTHING

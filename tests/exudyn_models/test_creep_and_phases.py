@@ -80,6 +80,13 @@ def test_slip_that_hesitates_at_the_bend_of_the_law_is_one_release():
     assert all(before.end == after.start for before, after in pairwise(found))
 
 
+def test_creep_that_settles_again_before_the_slip_has_got_anywhere_is_one_stick_phase():
+    short, long = 0.1 * settling_time(PIN, EPSILON), 3.0 * settling_time(PIN, EPSILON)
+    speeds = [1e5, 3.0, 0.5, 0.9, 1.1, 1.1, 0.9, 0.9, 1.1, 3.0, 1e5]
+    steps = motion_of_slip(speeds, [1.0, short, long, short, short, short, long, long, short, 1.0])
+    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip", "stick", "slip"]
+
+
 def test_slip_that_only_passes_through_zero_is_no_sticking():
     # Pulled with twice what friction can hold, with 1 + v/ε friction against it, and 1 − v/ε along it.
     relaxation = PIN.mass * EPSILON / PIN.friction_force
