@@ -37,7 +37,9 @@ from reference_model.ensemble.pin_lanes import (
     DUE,
     FLAG,
     LANDING,
+    MANY,
     MOST_STEPS,
+    SHORT,
     SLOTS,
     SLOW,
     STEPS,
@@ -58,7 +60,7 @@ from reference_model.ensemble.pin_lanes import (
     put_slipping,
     slip_of,
 )
-from reference_model.ensemble.pin_slip import MOST_TERMS, PinLaw
+from reference_model.ensemble.pin_slip import MOST_TERMS, PinLaw, pull
 from reference_model.ensemble.pin_watch import SELF_CENTRED, UNDECIDED, Aims, attend, rest
 from reference_model.ensemble.results import Results
 from reference_model.systems import FloatArray
@@ -68,6 +70,9 @@ STRETCHING_TIME = 0.5
 
 ROUNDING = 4.0 * 2.220446049250313e-16
 """Relative slip that counts as none: what turns with the disc as closely as floats can say."""
+
+SLOWNESS = 1e-3
+"""Slip speed, in units of g, below which a pin that friction does not bring to rest starts with implicit steps."""
 
 TICK_TURNS = 4.0
 """Free periods after which a motion that is never rightmost is looked at nevertheless."""
@@ -154,6 +159,8 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
     if w == 0j and friction > 0.0:
         return rest(scratch, page, lane, z, 0.0, law, aims, False)
     put_slipping(scratch, lane, z, w, law)
+    if abs(w) < SLOWNESS * friction < SLOWNESS * abs(pull(z, w, law)):
+        scratch[SHORT * LANES + lane] = MANY
     if page[LEVEL] == math.inf:
         page[END] = SELF_CENTRED
         keep(page, 0.0, 0.0, 0.0)

@@ -7,7 +7,7 @@ from typing import Any
 from reference_model.ensemble.arc import Arc, Motion, arc_between, size_of
 from reference_model.ensemble.compiled import inlined, scalar
 from reference_model.ensemble.lanes import LANES
-from reference_model.ensemble.pin_slip import PinLaw, pin_rates, pull
+from reference_model.ensemble.pin_slip import PinLaw, pin_rates
 from reference_model.ensemble.runge_kutta import error_of, factor_of, step
 
 X, Y, WX, WY, TIME, WAY, KX, KY, KWX, KWY, SHARE, KWAY, STEP = range(13)
@@ -39,9 +39,6 @@ SHORT_STEP, MANY = 5e-3, 40.0
 """Time, in its unit, below which a step is short, and so many of them one after the other are more than coming to
 rest or letting go takes: it is stability that limits them. One implicit step costs as much as some 50 of a single
 trajectory, or a thousand of one among others in lanes."""
-
-SLOWNESS = 1e-3
-"""Slip speed, in units of g, below which a pin that friction does not bring to rest begins with short steps."""
 
 SMALLEST_STEP = 1e-13
 
@@ -170,8 +167,7 @@ def slip_of(scratch: Any, lane: int, block: int) -> complex:
 def put_slipping(scratch: Any, lane: int, z: complex, w: complex, law: PinLaw) -> None:
     """Put a slipping pin into the slots of the trial, with a first step."""
     put_motion(scratch, lane, z, w, law)
-    creeps = abs(w) < SLOWNESS * law.friction and abs(pull(z, w, law)) > law.friction
-    scratch[SHORT * LANES + lane] = MANY if creeps else 0.0
+    scratch[SHORT * LANES + lane] = 0.0
     h = FIRST_STEP
     if law.friction > 0.0:
         h = min(h, (abs(w) + law.stretching) / law.friction)  # the direction of slip is slaved no faster

@@ -66,6 +66,9 @@ def stride(scratch: Any, page: Any, lane: int, law: PinLaw) -> None:
     put_motion(scratch, lane, z, complex(wx, wy), law)
     later = t + took if took < left else page[DURATION]
     scratch[(TRIAL + TIME) * LANES + lane] = later
+    scratch[(TRIAL + STEP) * LANES + lane] = scratch[
+        STEP * LANES + lane
+    ]  # the step on trial tells nothing of it
     scratch[(TRIAL + WAY) * LANES + lane] = scratch[WAY * LANES + lane] + way
     after, rates = np.array((z.real, z.imag, wx, wy)), np.empty(4)
     for i in range(4):
