@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
 from exudyn_models.dense_output import creep_at, creep_until
@@ -169,18 +170,37 @@ class _Turns:
                 count=self.count,
             )
             crossing = self._end_of_creep(seen, run, part)
-            coarse = False
-            if crossing is not None:
-                last = int(np.searchsorted(run.times, crossing)) - 1
-                coarse = part == WHOLE and step > self._release_step(seen, run, last)
-                run = run.only(np.arange(last + 1)) if coarse else creep_until(run, crossing)
+            fine = self._fine_up_to(seen, run, step, crossing) if part == WHOLE else None
+            coarse = fine is not None
+            if fine is not None:
+                run = run.only(np.arange(fine + 1))
+            elif crossing is not None:
+                run = creep_until(run, crossing)
             if len(run.times) > 1 or not coarse:
                 self.recording.add(run, axes)
                 before = axes.fixed_steps(run)
             if not coarse:
                 return before, part if crossing is None else None
             state, start, step = before.states[-1], float(before.times[-1]), step / REFINEMENT
-            until, balanced = min(until, start + 2.0 * REFINEMENT * step), True
+            until = min(until, start + 2.0 * REFINEMENT * step)
+            balanced = (
+                balanced or len(run.times) > 1
+            )  # what slipped until now is so only after a step of creep
+
+    def _fine_up_to(self, seen: System, run: Steps, step: float, crossing: float | None) -> int | None:
+        """Return the number of the step after which smaller ones are needed, None if all are fine.
+
+        They are for a release at ``crossing``, and where the load comes so near to what friction holds that the error
+        of the creep, (ωh)²/12 of it, decides whether and when it is exceeded.
+        """
+        unclear = (self.system.disc_speed * step) ** 2 > GRAZING
+        if crossing is not None:
+            last = int(np.searchsorted(run.times, crossing)) - 1
+            return last if unclear or step > self._release_step(seen, run, last) else None
+        if not unclear:
+            return None
+        grazed = _tops(seen, run, self.epsilon, 1.0 - (self.system.disc_speed * step) ** 2)
+        return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
     def _release_step(self, seen: System, run: Steps, last: int) -> float:
         """Return the step in which what is released after step ``last`` gets no faster than a part of ε."""
@@ -241,6 +261,9 @@ class _Turns:
 CROSSING = 1e-9
 """Error of the time at which a creep ends, in steps."""
 
+GRAZING = 1e-6
+"""(ωh)² of the steps that tell whether and when friction can't hold a load: that is off by 1e-7 of itself."""
+
 REFINEMENT = 16.0
 """By how much steps become smaller, once or several times, before a release."""
 
@@ -248,12 +271,21 @@ INSIDE = np.linspace(0.0, 1.0, 17)[1:]
 """Places in a step at which creep that is near to its end is looked at."""
 
 
+def _tops(system: System, run: Steps, epsilon: float, above: float) -> NDArray[np.intp]:
+    """Return the numbers of the steps of ``run`` at which the creep is largest, and more than ``above``·ε.
+
+    The first and the last one may be among them: what is largest may lie shortly after or before it.
+    """
+    ratio = np.pad(
+        creep_ratios(system, run.states, epsilon)[:, WHOLE], 1, mode="constant", constant_values=-np.inf
+    )
+    return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
+
+
 def _suspects(system: System, run: Steps, epsilon: float) -> FloatArray:
     """Return times in ``run`` at which the creep may have ended: the last, and those about its maxima near ε."""
-    ratio = creep_ratios(system, run.states, epsilon)[:, WHOLE]
-    top = (ratio[1:-1] > 0.99) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:])
-    steps = np.flatnonzero(top)
-    steps = np.union1d(steps, steps + 1)
+    steps = _tops(system, run, epsilon, 0.99)
+    steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * INSIDE
     return np.append(inside.ravel(), run.times[-1])
 
