@@ -28,12 +28,14 @@ ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
 
 
-def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> tuple[FloatArray, FloatArray]:
+def refined(
+    quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9, *, alike: bool = True
+) -> tuple[FloatArray, FloatArray]:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than the
-    largest change in its row (along the last axis): one of several numbers may change by next to nothing by chance,
-    but not all. Nor is it less than rounding. No engine takes notice of ever smaller tolerances: where that changes
+    largest change in its row (along the last axis), if the numbers there are ``alike``, of one unit and size: one of
+    several numbers may change by next to nothing by chance, but not all. Nor is it less than rounding. No engine takes notice of ever smaller tolerances: where that changes
     nothing at all, the change against the next larger tolerance that does counts in its place. How often the estimate
     covers the true error, and how far it lies above, the study "error-estimates" measures.
     """
@@ -42,14 +44,14 @@ def refined(quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9) -> 
         other = np.asarray(quantity(factor * tolerance), dtype=float)
         if not np.array_equal(found, other, equal_nan=True):
             break
-    return found, change_as_error(found, other)
+    return found, change_as_error(found, other, alike=alike)
 
 
-def change_as_error(found: FloatArray, other: FloatArray) -> FloatArray:
+def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:
     """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape."""
     change = np.abs(other - found)
     numbers = np.where(np.isfinite(change), change, 0.0)
-    largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if change.ndim > 0 else change
+    largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
     return np.asarray(np.maximum(SAFETY * change, largest) + ROUNDING * np.max(np.abs(found), initial=0.0))
 
 

@@ -104,7 +104,7 @@ def settled(car: Drivetrain, operation: Operation, rate: float, start: complex, 
     delay = SEEN / rate
     earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
     rest = remaining_transient(earlier, found[-1], rate, delay)
-    return Settled(found[-1], change_as_error(found[-1], finer[-1]) + rest)
+    return Settled(found[-1], change_as_error(found[-1], finer[-1], alike=False) + rest)
 
 
 def predicted_rest(car: Drivetrain, operation: Operation) -> Settled:

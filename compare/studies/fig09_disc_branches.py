@@ -330,7 +330,7 @@ def offset_claims(engine: Engine) -> tuple[Claim, Claim]:
         orbits = [orbit_of(engine, OFFSET_LOAD, 0, tolerance, offset) for offset in OFFSETS]
         return np.array([(*orbit.mean, *circle_in(orbit)) for orbit in orbits])
 
-    measured, error = refined(parts, SHOOTING)
+    measured, error = refined(parts, SHOOTING, alike=False)
     circle = circle_of(OFFSET_LOAD, 0)
     response = [first_order_shift(with_load(replace(RING, offset=offset), OFFSET_LOAD)) for offset in OFFSETS]
     shift = np.abs(measured[:, 0] + 1j * measured[:, 1] - response)[:, np.newaxis]

@@ -106,7 +106,7 @@ def measure_cycle(engine: Engine) -> Findings:
     """Measure period and turn of the modulation, and the extremes of the cycle, on the continuous ring."""
     run = functools.cache(lambda tolerance: engine.simulate(RING, START, TIMES, tolerance=tolerance))
     predicted, other = predicted_modulation()
-    measured, error = refined(lambda tolerance: last_modulation(run(tolerance).states)[0])
+    measured, error = refined(lambda tolerance: last_modulation(run(tolerance).states)[0], alike=False)
     error = np.nan_to_num(error + other + last_modulation(run(1e-9).states)[1], nan=np.inf)
     claims = tuple(
         Claim(
@@ -163,7 +163,7 @@ def measure_six_points(engine: Engine) -> Findings:
         return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
 
     times, times_error = refined(rests)
-    values, values_error = refined(lambda tolerance: extremes_of(run(tolerance)))
+    values, values_error = refined(lambda tolerance: extremes_of(run(tolerance)), alike=False)
     source, note = (
         f"{SOURCE}: 0 here; start {START}",
         f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11.",
@@ -209,7 +209,7 @@ def shooting_claim() -> Claim:
         orbit = modulated_cycle(RING, guess, tolerance=tolerance, samples=len(ROUND))
         return np.array([orbit.period, orbit.turn, *extremes_of(orbit.trajectory)])
 
-    measured, change = refined(found)
+    measured, change = refined(found, alike=False)
     return Claim(
         SHOOTING,
         equation="(19)–(21)",
