@@ -35,9 +35,10 @@ def refined(
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than the
     largest change in its row (along the last axis), if the numbers there are ``alike``, of one unit and size: one of
-    several numbers may change by next to nothing by chance, but not all. Nor is it less than rounding. No engine takes notice of ever smaller tolerances: where that changes
-    nothing at all, the change against the next larger tolerance that does counts in its place. How often the estimate
-    covers the true error, and how far it lies above, the study "error-estimates" measures.
+    several numbers may change by next to nothing by chance, but not all. Nor is it less than rounding. No engine
+    takes notice of ever smaller tolerances: where that changes nothing at all, the change against the next larger
+    tolerance that does counts in its place. How often the estimate covers the true error, and how far it lies above,
+    the study "error-estimates" measures.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
