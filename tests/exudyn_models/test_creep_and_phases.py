@@ -4,13 +4,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import reference_model
 from compare.paper import FIG5, FIG11
+from compare.studies.sticking_domain import pin_at, safest_angle, stuck
+from exudyn_models import simulate
 from exudyn_models.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
 from exudyn_models.friction_laws import point_regularisation
 from exudyn_models.phases import phases
 from exudyn_models.scales import settling_time
 from exudyn_models.solving import Steps
-from reference_model.systems import DiscOnDisc
+from reference_model.systems import DiscOnDisc, PinOnDisc
 
 EPSILON = 1e-6
 PIN = replace(FIG5, disc_speed=0.0, offset=0.0)
@@ -104,3 +107,30 @@ def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_
     assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
     # The load is the creep's share of ε, and up to m·a/μN = 1e-4 of inertia more.
     assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + 0.5, abs=1e-4)
+
+
+NEAR_ITS_LIMIT = PinOnDisc(
+    mass=1.88, stiffness=1.3, damping=0.13, friction_force=0.175, disc_speed=0.143, offset=-0.1
+)
+"""It starts stuck where friction holds nearly all that it can, and is let go after 0.6 s."""
+
+
+def test_stick_up_to_a_release_has_an_error_of_first_order_in_the_tolerance_and_no_other():
+    place = np.array([-0.0625, -0.1218])
+    start = [*place, -NEAR_ITS_LIMIT.disc_speed * place[1], NEAR_ITS_LIMIT.disc_speed * place[0]]
+    times = np.linspace(0.0, 3.0, 31)
+    exact = reference_model.simulate(NEAR_ITS_LIMIT, start, times)
+    assert [phase.kind for phase in exact.phases] == ["stick", "slip"]
+    errors = [
+        np.max(abs(simulate(NEAR_ITS_LIMIT, start, times, tolerance=tolerance).states - exact.states))
+        for tolerance in (8e-9, 1e-9, 1.25e-10)
+    ]
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])) / 3.0, 1.0, atol=0.1)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-8])
+def test_a_pin_is_let_go_by_a_load_that_exceeds_friction_by_a_thousandth_for_a_moment(tolerance):
+    pin = pin_at(2.0)
+    start = stuck(pin, 1.001 * reference_model.sticking_radius(pin), safest_angle(pin))
+    run = simulate(pin, start, [0.0, 1.02 * np.pi / pin.disc_speed], tolerance=tolerance)
+    assert [phase.kind for phase in run.phases][:2] == ["stick", "slip"]
