@@ -86,9 +86,15 @@ def measure(engine: Engine) -> Findings:
 def theory(starts: int = ENSEMBLE) -> Findings:
     """Compare the ends of an ensemble at both scales, and simulate Fig. 5 at the paper's."""
     exact = exact_motion()
+    path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
     return Findings(
         (shares_claim(starts),),
-        {"states": exact.states, "sticks": exact.stick_times, "rest": np.array(equilibrium_position(FIG5))},
+        {
+            "states": exact.states,
+            "path": path.states[:, :2],
+            "sticks": exact.stick_times,
+            "rest": np.array(equilibrium_position(FIG5)),
+        },
     )
 
 
@@ -310,7 +316,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     milliseconds = 1e3 * CLUTCH.time
     times = milliseconds * np.linspace(0.0, UNTIL, SAMPLES)
     if exact:
-        x, y = micrometres * exact["states"][:, :2].T
+        x, y = micrometres * exact["path"].T
         plane.plot(x, y, color=BLACK, linewidth=0.8, label="Fig. 5, its lengths times 1e-3")
         plane.plot(
             *(micrometres * exact["rest"]), marker="*", markersize=12.0, color=PURPLE, label="rest by (3)"
@@ -325,8 +331,8 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
             history.semilogy(times[1::4], np.maximum(apart[1::4], 1e-16), **points(engine, linestyle=":"))
     plane.set(xlabel=axis("x", "µm"), ylabel=axis("y", "µm"), aspect="equal")
     if plane.lines:
-        plane.legend(loc="lower left")
-    history.set(xlabel=axis("t", "ms"), ylabel="distance from the motion at the paper's scale over X0")
+        plane.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+    history.set(xlabel=axis("t", "ms"), ylabel="distance from the line over X0")
     if history.lines:
         history.legend(loc="upper right")
     return {"clutch-scale": figure}
