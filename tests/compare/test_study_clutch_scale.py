@@ -2,7 +2,6 @@
 
 import functools
 
-import numpy as np
 import pytest
 from studies_under_test import altered, verdicts
 
@@ -97,8 +96,6 @@ def test_scaling_keeps_the_dimensionless_numbers():
 
 @pytest.mark.parametrize("data", [{}, {"theory"}, {"theory", "reference"}, {"reference"}])
 def test_the_figure_is_drawn_whatever_is_there(data):
-    exact = study.exact_motion()
-    found = {"states": exact.states, "sticks": exact.stick_times}
-    everything = {"theory": found | {"rest": np.array([0.03, 0.04])}, "reference": found}
+    everything = {"theory": study.theory(4).data, "reference": {"states": study.exact_motion().states}}
     figures = study.draw({name: everything[name] for name in sorted(data)})
     assert saved(figures["clutch-scale"])[1].startswith(b"\x89PNG")
