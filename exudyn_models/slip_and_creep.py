@@ -171,21 +171,18 @@ class _Turns:
             )
             crossing = self._end_of_creep(seen, run, part)
             fine = self._fine_up_to(seen, run, step, crossing) if part == WHOLE else None
-            coarse = fine is not None
             if fine is not None:
                 run = run.only(np.arange(fine + 1))
             elif crossing is not None:
                 run = creep_until(run, crossing)
-            if len(run.times) > 1 or not coarse:
+            if len(run.times) > 1 or fine is None:
                 self.recording.add(run, axes)
                 before = axes.fixed_steps(run)
-            if not coarse:
+            if fine is None:
                 return before, part if crossing is None else None
             state, start, step = before.states[-1], float(before.times[-1]), step / REFINEMENT
             until = min(until, start + 2.0 * REFINEMENT * step)
-            balanced = (
-                balanced or len(run.times) > 1
-            )  # what slipped until now is so only after a step of creep
+            balanced = balanced or len(run.times) > 1  # only what has crept for a step is
 
     def _fine_up_to(self, seen: System, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the number of the step after which smaller ones are needed, None if all are fine.
