@@ -10,7 +10,7 @@ report: $(VENV)/installed
 
 # Takes the numbers of README and docs over from the last report; .ci/run fails where the two part.
 readme: $(VENV)/installed
-	$(BIN)/python -m compare.readme write report/results.json
+	$(BIN)/python -m compare.cli.readme write report/results.json
 
 test: $(VENV)/installed
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal

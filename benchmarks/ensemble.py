@@ -40,10 +40,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from compare.paper import FIG5
+from compare.claims.paper_parameters import FIG5
 from reference_model.ensemble import simulate_ensemble
 from reference_model.ensemble.chunks import CHUNK
-from reference_model.ensemble.runge_kutta import LOCAL
+from reference_model.ensemble.core.runge_kutta import LOCAL
 from reference_model.systems import FloatArray
 
 STARTS = 20_000

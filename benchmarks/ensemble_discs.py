@@ -31,10 +31,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from compare.paper import FIG8, FIG9, FIG11
+from compare.claims.paper_parameters import FIG8, FIG9, FIG11
 from reference_model.ensemble import simulate_ensemble
-from reference_model.ensemble.disc_kernel import PARAMETERS
-from reference_model.ensemble.runge_kutta import LOCAL
+from reference_model.ensemble.core.runge_kutta import LOCAL
+from reference_model.ensemble.disc.kernel import PARAMETERS
 from reference_model.systems import DiscOnDisc, FloatArray
 
 STARTS = 2000

@@ -14,10 +14,10 @@ from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
-from compare.paper import FIG5, FIG5_STARTS
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from reference_model import simulate
-from reference_model.pin import SlipMotion
-from reference_model.sticking import release_delay
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.stick import release_delay
 from reference_model.systems import FloatArray
 
 STARTS = tuple(FIG5_STARTS.values())

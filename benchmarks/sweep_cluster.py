@@ -15,13 +15,13 @@ from distributed import LocalCluster
 from rich.console import Console
 from rich.table import Table
 
-from compare.command_input import cores
-from compare.paper import FIG5
-from compare.sweep.axes import Axis
-from compare.sweep.executors import Cluster, Executor, InProcess
-from compare.sweep.plan import RandomBasin
-from compare.sweep.run import simulated
-from compare.sweep.store import SweepStore
+from compare.claims.paper_parameters import FIG5
+from compare.cli.options import cores
+from compare.sweep.compute.executors import Cluster, Executor, InProcess
+from compare.sweep.compute.run import simulated
+from compare.sweep.compute.store import SweepStore
+from compare.sweep.define.axes import Axis
+from compare.sweep.define.plan import RandomBasin
 
 CHUNKS = 100
 SIZES = (2000, 8000, 32768)

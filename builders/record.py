@@ -5,8 +5,8 @@
     python builders/record.py mujoco bullet   # or some of them
 
 Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
-of ``compare.accuracy.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is left out, with a
-sentence. Times are to be compared within one recording only.
+of ``compare.claims.error_estimates.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is
+left out, with a sentence. Times are to be compared within one recording only.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from typing import Any
 import numpy as np
 
 import compare.engines
-from compare.accuracy import COARSENING
-from compare.foreign import COLUMNS, DIGITS, FOLDER
+from compare.claims.error_estimates import COARSENING
 from compare.foreign.cases import CASES, Case
+from compare.foreign.records import COLUMNS, DIGITS, FOLDER
 from reference_model import SimulationError, Trajectory
 
 LONGEST = 0.7

@@ -164,8 +164,8 @@ class Engine:
     def _step(self, tolerance: float) -> float:
         """Return the step in s, which goes with the square root of ``tolerance``.
 
-        Where errors are estimated, see ``compare.accuracy.COARSENING``, an error of first order then falls to
-        a third.
+        Where errors are estimated, see ``compare.claims.error_estimates.COARSENING``, an error of first order then
+        falls to a third.
         """
         return (self.step or 0.0) * math.sqrt(tolerance / USUAL_TOLERANCE)
 
@@ -361,7 +361,7 @@ def _simulate_exudyn(
 def _simulate_exudyn_native(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    from exudyn_models.native_contact import simulate_with_native_contact
+    from exudyn_models.paper.native_contact import simulate_with_native_contact
 
     return simulate_with_native_contact(system, initial_state, times, tolerance=tolerance)
 

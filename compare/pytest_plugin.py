@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pytest
 
 if TYPE_CHECKING:
-    from compare.claim import Claim
-    from compare.study import Findings, Study
-    from compare.workers import Failure
+    from compare.claims.claim import Claim
+    from compare.claims.study import Findings, Study
+    from compare.run.workers import Failure
 
 STUDIES = Path(__file__).with_name("studies")
 
@@ -136,7 +136,7 @@ class StudyFile(pytest.File):
 
     def collect(self) -> Iterator[ClaimTest]:
         """Yield a test for each sentence and engine."""
-        from compare.claim_list import sentences
+        from compare.studies.claim_list import sentences
 
         names = [name for name in _engines(self.config) if not self.study.only or name in self.study.only]
         for name in names:
@@ -164,8 +164,8 @@ class ClaimTest(pytest.Item):
 
     def runtest(self) -> None:
         """Pass if all claims of this sentence agree."""
-        from compare.claim import Verdict
-        from compare.workers import Failure
+        from compare.claims.claim import Verdict
+        from compare.run.workers import Failure
 
         outcome = self.config.stash[_BENCH].outcome(self.study, self.engine)
         if isinstance(outcome, Failure):
@@ -192,7 +192,7 @@ class Bench:
     """Measures each study with each engine once, when its first claim is asked for."""
 
     def __init__(self, limit: float) -> None:
-        from compare.workers import Workers
+        from compare.run.workers import Workers
 
         self._workers = Workers(1, limit)
         self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
@@ -219,9 +219,9 @@ def _measured(study: Study, name: str) -> Findings:
 
     Raises ``RuntimeError`` for a claim that no test would show.
     """
-    from compare.claim_list import listed_claims
     from compare.engines import engines
-    from compare.runner import measured
+    from compare.run.runner import measured
+    from compare.studies.claim_list import listed_claims
 
     findings, listed = measured(study, engines([name])[0]), listed_claims()[study.name]
     if unlisted := sorted(
@@ -232,14 +232,15 @@ def _measured(study: Study, name: str) -> Findings:
         }
     ):
         raise RuntimeError(
-            f"claims.json is out of date, see compare/claim_list.py; it lacks {unlisted}, or what implies them"
+            f"claims.json is out of date, see compare/studies/claim_list.py; it lacks "
+            f"{unlisted}, or what implies them"
         )
     return findings
 
 
 def _account(study: Study, claim: Claim) -> str:
     """Return a claim with the numbers that decide, and all that is needed to repeat it."""
-    from compare.claim import Verdict
+    from compare.claims.claim import Verdict
     from compare.report.numbers import error_text, value_text
     from compare.report.worst import answers_text, in_short, worst
 

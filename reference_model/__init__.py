@@ -17,15 +17,16 @@ Where to find what:
 - a check of any engine: ``power``.
 """
 
-from reference_model.annulus import Annulus
-from reference_model.basins import basin_boundary, boundary_point
-from reference_model.contact import PointsOnRing, Ring, ThreeTermRing
-from reference_model.integrate import simulate
-from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
-from reference_model.pin_formulas import sticking_radius
-from reference_model.power import PowerBalance, power_balance
-from reference_model.stability import onset_load
-from reference_model.steady_states import (
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing
+from reference_model.formulas.pin import sticking_radius
+from reference_model.formulas.power_balance import PowerBalance, power_balance
+from reference_model.motion.exact import simulate
+from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
+from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
+from reference_model.orbits.shooting import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
+from reference_model.steady.stability import onset_load
+from reference_model.steady.steady_states import (
     SelfCentredEquilibrium,
     SpinningEquilibrium,
     SpinningWhirl,
@@ -36,7 +37,6 @@ from reference_model.steady_states import (
     why_no_equilibrium,
     why_no_whirl,
 )
-from reference_model.stick_slip import StickSlipOrbit, stick_slip_orbits
 from reference_model.systems import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 

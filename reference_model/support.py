@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
+from reference_model.numerics.roots import zero_between
 from reference_model.systems import FloatArray, System
-from reference_model.zeros import zero_between
 
 ROUNDED_UP = 1.0 + 1e-14
 """Brings a bound that holds but for rounding to the safe side."""

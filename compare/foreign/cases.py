@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from compare.claim import Kind
-from compare.paper import FIG5, FIG5_STARTS, FIG11
+from compare.claims.claim import Kind
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from reference_model import Trajectory, simulate
-from reference_model.pin_formulas import whirl_radius
+from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
 Quantity = NDArray[np.complex128]
@@ -32,7 +32,7 @@ class Case:
     sentence : str
         What is claimed of it.
     kind : str
-        What ``exact`` is taken from, as in ``compare.claim.KINDS``.
+        What ``exact`` is taken from, as in ``compare.claims.claim.KINDS``.
     system : PinOnDisc or DiscOnDisc
         The parameters.
     start : tuple of float

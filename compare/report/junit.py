@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from compare.claim import Claim
+from compare.claims.claim import Claim
 from compare.report.matrix import Matrix, Row, State, state_of
 from compare.report.numbers import error_text
 from compare.report.worst import answers_text, in_short, worst
-from compare.runner import Run
-from compare.workers import Failure
+from compare.run.runner import Run
+from compare.run.workers import Failure
 
 
 def junit(run: Run, matrix: Matrix) -> bytes:

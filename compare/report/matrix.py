@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Literal
 
-from compare.claim import THEORY, Claim, Evidence, Verdict
+from compare.claims.claim import THEORY, Claim, Evidence, Verdict
+from compare.claims.evidence import evidence_of
+from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by
-from compare.evidence import evidence_of
 from compare.report.worst import deciding, in_short
-from compare.runner import Run
-from compare.study import Findings, Recorded, Study
-from compare.workers import Failure
+from compare.run.runner import Run
+from compare.run.workers import Failure
 
 
 class State(Enum):
@@ -67,7 +67,7 @@ class Cell:
     reason : str
         Why there is no verdict.
     evidence : str
-        Its kind, see ``compare.claim.EVIDENCE``; "" where there is no verdict.
+        Its kind, see ``compare.claims.claim.EVIDENCE``; "" where there is no verdict.
     implied_by : str
         From which claim, or from which engine's verdict on the same claim, it follows.
 

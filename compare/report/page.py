@@ -11,14 +11,14 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from compare import quotes
-from compare.claim import EVIDENCE, THEORY, Claim, Evidence
+from compare.claims.claim import EVIDENCE, THEORY, Claim, Evidence
+from compare.claims.study import Study
+from compare.report import quotes
 from compare.report.matrix import WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
 from compare.report.worst import Worst, answers_text, in_short, worst
-from compare.runner import Drawing, Run
-from compare.study import Study
-from compare.workers import Failure
+from compare.run.runner import Drawing, Run
+from compare.run.workers import Failure
 
 
 @dataclass(frozen=True)

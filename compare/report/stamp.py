@@ -6,7 +6,7 @@ import os
 import platform
 from datetime import datetime, timezone
 
-from compare.store import LIBRARIES, exudyn_user_settings, version_of
+from compare.run.findings_store import LIBRARIES, exudyn_user_settings, version_of
 
 
 def platform_stamp() -> dict[str, str]:

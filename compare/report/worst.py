@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.claim import Claim, Verdict
+from compare.claims.claim import Claim, Verdict
 from compare.report.numbers import error_text
 
 SPACE = "\N{NO-BREAK SPACE}"

@@ -8,9 +8,9 @@ from pathlib import Path
 from compare.report.junit import junit
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
-from compare.report.results import results
+from compare.report.results_json import results
 from compare.report.stamp import platform_stamp
-from compare.runner import Drawing, Run
+from compare.run.runner import Drawing, Run
 from compare.text_files import replacing, write_text
 
 

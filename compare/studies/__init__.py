@@ -4,35 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from compare.claims.study import Study
 from compare.engines import known
-from compare.studies.basins import STUDY as BASINS
-from compare.studies.clutch_scale import STUDY as CLUTCH_SCALE
-from compare.studies.connector import STUDY as CONNECTOR
-from compare.studies.contact_laws import STUDY as CONTACT_LAWS
-from compare.studies.drivetrain_frozen import STUDY as DRIVETRAIN_FROZEN
-from compare.studies.drivetrain_launch import STUDY as DRIVETRAIN_LAUNCH
-from compare.studies.drivetrain_momentum import STUDY as DRIVETRAIN_MOMENTUM
-from compare.studies.drivetrain_reduced import STUDY as DRIVETRAIN_REDUCED
-from compare.studies.drivetrain_run_up import STUDY as DRIVETRAIN_RUN_UP
-from compare.studies.engine_convergence import STUDY as ENGINE_CONVERGENCE
-from compare.studies.error_estimates import STUDY as ERROR_ESTIMATES
-from compare.studies.fig03_self_centring import STUDY as FIG03
-from compare.studies.fig04_whirl_shift import STUDY as FIG04
-from compare.studies.fig05_coexistence import STUDY as FIG05
-from compare.studies.fig06_branches import STUDY as FIG06
-from compare.studies.fig08_disc_spin import STUDY as FIG08
-from compare.studies.fig09_disc_branches import STUDY as FIG09
-from compare.studies.fig11_modulated_cycle import STUDY as FIG11
-from compare.studies.foreign_engines import STUDY as FOREIGN_ENGINES
-from compare.studies.free_ring import STUDY as FREE_RING
-from compare.studies.nonlinear_support import STUDY as NONLINEAR_SUPPORT
-from compare.studies.power_balance import STUDY as POWER_BALANCE
-from compare.studies.simulated_map import STUDY as SIMULATED_MAP
-from compare.studies.stability_map import STUDY as STABILITY_MAP
-from compare.studies.sticking_domain import STUDY as STICKING_DOMAIN
-from compare.studies.trajectories import STUDY as TRAJECTORIES
-from compare.studies.whirl_stability import STUDY as WHIRL_STABILITY
-from compare.study import Study
+from compare.studies.disc.contact_laws import STUDY as CONTACT_LAWS
+from compare.studies.disc.fig08 import STUDY as FIG08
+from compare.studies.disc.fig09 import STUDY as FIG09
+from compare.studies.disc.fig11 import STUDY as FIG11
+from compare.studies.disc.free_ring import STUDY as FREE_RING
+from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
+from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
+from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
+from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
+from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
+from compare.studies.drivetrain.reduced import STUDY as DRIVETRAIN_REDUCED
+from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
+from compare.studies.engines.clutch_scale import STUDY as CLUTCH_SCALE
+from compare.studies.engines.connector import STUDY as CONNECTOR
+from compare.studies.engines.engine_convergence import STUDY as ENGINE_CONVERGENCE
+from compare.studies.engines.error_estimates import STUDY as ERROR_ESTIMATES
+from compare.studies.engines.foreign_engines import STUDY as FOREIGN_ENGINES
+from compare.studies.engines.power_balance import STUDY as POWER_BALANCE
+from compare.studies.engines.trajectories import STUDY as TRAJECTORIES
+from compare.studies.pin.basins import STUDY as BASINS
+from compare.studies.pin.fig03 import STUDY as FIG03
+from compare.studies.pin.fig04 import STUDY as FIG04
+from compare.studies.pin.fig05 import STUDY as FIG05
+from compare.studies.pin.fig06 import STUDY as FIG06
+from compare.studies.pin.nonlinear_support import STUDY as NONLINEAR_SUPPORT
+from compare.studies.pin.sticking_domain import STUDY as STICKING_DOMAIN
+from compare.studies.pin.whirl_stability import STUDY as WHIRL_STABILITY
 
 STUDIES: tuple[Study, ...] = (
     FIG03,

@@ -16,7 +16,7 @@ The plain :func:`reference_model.simulate` judges it: but for handing over to he
 anything from here.
 """
 
-from reference_model.ensemble.results import EndState, Ensemble
+from reference_model.ensemble.end_states import EndState, Ensemble
 from reference_model.ensemble.simulate import simulate_ensemble
 
 __all__ = ["EndState", "Ensemble", "simulate_ensemble"]

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference_model.ensemble.notes import KIND, NONE, ON_THE_WAY, SLIPS, STATE, TIME
-from reference_model.ensemble.results import HANDED_OVER, Results
-from reference_model.stepping import Kind
+from reference_model.ensemble.checkpoints import KIND, NONE, ON_THE_WAY, SLIPS, STATE, TIME
+from reference_model.ensemble.end_states import HANDED_OVER, Results
+from reference_model.motion.stepper import Kind
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.ensemble.results import Ensemble
+from reference_model.ensemble.end_states import Ensemble
 from reference_model.systems import (
     FloatArray,
     PinOnDisc,
@@ -80,10 +80,10 @@ def simulate_ensemble(
 
     # Each of them loads what is compiled for it.
     if isinstance(system, PinOnDisc):
-        from reference_model.ensemble.pins import simulate_pins
+        from reference_model.ensemble.pin.driver import simulate_pins
 
         return simulate_pins(system, starts, duration, tolerance, varied, early_end, n, threads)
-    from reference_model.ensemble.disc import simulate_discs
+    from reference_model.ensemble.disc.driver import simulate_discs
 
     return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
 

@@ -1,6 +1,6 @@
 """An engine of its own kind, and engines broken on purpose: a check is worth what it fails on.
 
-The one that is right is that of ``compare.faults``. The model of most of the broken ones is eq. 1 or 19 with a
+The one that is right is that of ``compare.judge.faults``. The model of most of the broken ones is eq. 1 or 19 with a
 friction law that is viscous below a small slip speed ε, in plain coordinates and with LSODA, which copes with the
 stiffness of stick. ε falls with the tolerance, so that errors can be estimated. Nothing is shared with the two
 engines of the project.
@@ -19,7 +19,7 @@ from scipy.integrate import LSODA
 from scipy.special import ellipe, ellipkm1
 
 from compare.engines import EVERY_KIND, Engine
-from compare.faults import plain
+from compare.judge.faults import plain
 from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 

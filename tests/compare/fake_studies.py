@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from compare import cli
-from compare.claim import Claim, ErrorBudget
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.study import Findings, Study
+from compare.cli import commands as cli
 from compare.engines import Engine, register
-from compare.paper import FIG5, FIG11
+from compare.figures import axis, curve, engines_in, new_figure, points
 from compare.report.animation import gif
-from compare.report.style import axis, curve, engines_in, new_figure, points
-from compare.study import Findings, Study
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 LOADS = np.linspace(0.0, 0.1, 21)

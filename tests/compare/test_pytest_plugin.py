@@ -9,9 +9,9 @@ import xml.etree.ElementTree as ET
 import pytest
 from processes import PATIENCE, ROOT
 
-from compare.claim import THEORY
-from compare.claim_list import sentences
+from compare.claims.claim import THEORY
 from compare.studies import STUDIES
+from compare.studies.claim_list import sentences
 
 ENGINES = """
 import os, time
@@ -199,7 +199,7 @@ def test_what_cannot_be_judged_is_refused_at_once(options, sentence, tmp_path):
     "named",
     [
         ("--pyargs", "compare"),
-        ("--pyargs", "compare.studies.trajectories"),
+        ("--pyargs", "compare.studies.engines.trajectories.claims"),
         (str(ROOT / "compare" / "studies" / "trajectories.py"),),
     ],
     ids=["package", "module", "file"],

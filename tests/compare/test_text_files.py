@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from compare import cli
-from compare.export import WRITERS
+from compare.cli import commands as cli
+from compare.cli.trajectory_files import WRITERS
 from compare.text_files import check_writable, replacing
 
 OLD = "old\n"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.paper import FIG9
+from compare.claims.paper_parameters import FIG9
 from reference_model.systems import DiscOnDisc
 
 FIG_9 = replace(FIG9, offset=0.0)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
-from reference_model.contact import contact_of
+from reference_model.contact.contact_law import contact_of
 
 TIGHTEST = 3e-14
 

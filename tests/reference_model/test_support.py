@@ -15,21 +15,17 @@ from plain_engines import support_force
 from test_systems import refusal
 
 import reference_model
-from compare.paper import FIG11
-from reference_model import (
-    PinOnDisc,
-    boundaries,
-    disc_balance,
-    disc_formulas,
-    modulation,
-    pin_formulas,
-    stick_slip_orbits,
-    whirls,
-)
+from compare.claims.paper_parameters import FIG11
+from reference_model import PinOnDisc, stick_slip_orbits, whirls
 from reference_model import smallest_load_with_whirl as smallest_load
-from reference_model.characteristic import characteristic_coefficients
-from reference_model.contact import Ring
-from reference_model.pin import simulate_polar_form
+from reference_model.contact.contact_law import Ring
+from reference_model.formulas import disc as disc_formulas
+from reference_model.formulas import pin as pin_formulas
+from reference_model.formulas import torque_balance as disc_balance
+from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
+from reference_model.motion.pin_equations import simulate_polar_form
+from reference_model.steady import bifurcation_curves as boundaries
+from reference_model.steady import lyapunov_coefficient as modulation
 from reference_model.support import Support
 
 PIN = PinOnDisc(

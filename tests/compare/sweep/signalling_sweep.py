@@ -8,8 +8,8 @@ import os
 import signal
 import sys
 
-from compare import cli
-from compare.sweep.store import Round
+from compare.cli import commands as cli
+from compare.sweep.compute.store import Round
 
 NUMBER = signal.Signals[sys.argv[1]]
 PROCESS, CHUNK = int(sys.argv[2]) or os.getpid(), int(sys.argv[3])

@@ -8,11 +8,11 @@ import pytest
 import xarray as xr
 from processes import REAL, environment
 
-from compare import cli
-from compare.paper import FIG5
-from compare.sweep.cli import MAPS, PLANES, STORE
-from compare.sweep.distributions import KINDS
-from compare.sweep.store import SweepStore
+from compare.claims.paper_parameters import FIG5
+from compare.cli import commands as cli
+from compare.cli.sweep import MAPS, PLANES, STORE
+from compare.sweep.compute.store import SweepStore
+from compare.sweep.define.distributions import KINDS
 
 SMALL = ["--until", "20"]
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
@@ -39,7 +39,7 @@ def test_help_has_the_axes_and_distributions_that_there_are(capsys):
 def test_help_of_sweeps_starts_without_the_heavy_libraries():
     heavy = "numpy scipy matplotlib numba xarray zarr distributed reference_model"
     code = (
-        "import sys, compare.cli; compare.cli.status(['sweep', 'basin', '--help']); "
+        "import sys, compare.cli.commands; compare.cli.commands.status(['sweep', 'basin', '--help']); "
         f"print([name for name in '{heavy}'.split() if name in sys.modules])"
     )
     process = subprocess.run([REAL[0], "-c", code], env=environment(), capture_output=True, encoding="utf-8")
@@ -130,7 +130,7 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(finished, m
 
 def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
     _, arguments = finished
-    monkeypatch.setattr("compare.sweep.stamp.sweep_stamp", lambda: "other")
+    monkeypatch.setattr("compare.sweep.compute.stamp.sweep_stamp", lambda: "other")
     assert cli.status([*arguments, "--resume"]) == 2
     assert "was computed by other code or libraries" in capsys.readouterr().err
 
@@ -147,7 +147,7 @@ def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
 )
 def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch, capsys):
     plans = []
-    monkeypatch.setattr("compare.sweep.cli._sweep", lambda plan, *others: plans.append(plan))
+    monkeypatch.setattr("compare.cli.sweep._sweep", lambda plan, *others: plans.append(plan))
     cli.status(["sweep", "basin", *more])
     assert plans[0].duration == until
     cli.status(["sweep", "basin", "--help"])

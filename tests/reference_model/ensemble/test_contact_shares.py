@@ -5,8 +5,8 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.contact import PointsOnRing, Ring
-from reference_model.ensemble.contact_shares import points_shares, ring_shares, turned
+from reference_model.contact.contact_law import PointsOnRing, Ring
+from reference_model.ensemble.core.contact_shares import points_shares, ring_shares, turned
 
 LANES = 16
 EPS = np.finfo(float).eps

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.paper import FIG8, FIG9, FIG11
+from compare.claims.paper_parameters import FIG8, FIG9, FIG11
 from reference_model import DiscOnDisc, self_centred_equilibria, simulate, whirls
-from reference_model.ensemble import EndState, disc_kernel, disc_lanes, simulate_ensemble
-from reference_model.ensemble.disc_regions import known_regions
+from reference_model.ensemble import EndState, simulate_ensemble
+from reference_model.ensemble.disc import kernel as disc_kernel
+from reference_model.ensemble.disc import lanes as disc_lanes
+from reference_model.ensemble.disc.trapping import known_regions
 
 STICKING = DiscOnDisc(
     mass=1.0, polar_inertia=0.034, stiffness=1.0, damping=0.255, friction_force=0.14, disc_speed=1.2, offset=0.1,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.paper import FIG5
+from compare.claims.paper_parameters import FIG5
 from reference_model import (
     boundary_point,
     self_centred_equilibria,
@@ -15,10 +15,12 @@ from reference_model import (
     whirl_branch,
     whirl_orbit,
 )
-from reference_model.ensemble import EndState, pin_slip, regions, simulate_ensemble
-from reference_model.ensemble.pin_book import KNOWN_LEVEL, KNOWN_REACH
-from reference_model.ensemble.pin_ends import ACCURACY, converged, depth, well_of
-from reference_model.ensemble.pin_stability import orbit_attracts, return_derivative
+from reference_model.ensemble import EndState, simulate_ensemble
+from reference_model.ensemble.pin import slip as pin_slip
+from reference_model.ensemble.pin import trapping as regions
+from reference_model.ensemble.pin.end_states import ACCURACY, converged, depth, well_of
+from reference_model.ensemble.pin.memory import KNOWN_LEVEL, KNOWN_REACH
+from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
 
 STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
 STICK_SLIP = replace(FIG5, damping=1.173, friction_force=0.658, disc_speed=1.8, offset=-0.42)

@@ -8,13 +8,15 @@ import numba
 import numpy as np
 import pytest
 
-from compare.paper import FIG5, FIG5_STARTS
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, simulate
-from reference_model.ensemble import chunks, pin_lanes, pin_slip, simulate_ensemble
-from reference_model.ensemble.pin import run_pins, units
-from reference_model.pin import SlipMotion
-from reference_model.sticking import release_delay, slip_from_rest
-from reference_model.units import Units
+from reference_model.ensemble import chunks, simulate_ensemble
+from reference_model.ensemble.pin import lanes as pin_lanes
+from reference_model.ensemble.pin import slip as pin_slip
+from reference_model.ensemble.pin.kernel import run_pins, units
+from reference_model.motion.nondimensional import Units
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.stick import release_delay, slip_from_rest
 
 TOLERANCE = 1e-9
 

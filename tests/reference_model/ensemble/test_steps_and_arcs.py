@@ -4,8 +4,8 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.ensemble import arc
-from reference_model.ensemble.runge_kutta import (
+from reference_model.ensemble.core import dense_output as arc
+from reference_model.ensemble.core.runge_kutta import (
     CAUTION,
     LARGEST_FACTOR,
     SMALLEST_FACTOR,

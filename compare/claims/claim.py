@@ -1,0 +1,253 @@
+"""A claim: a measured number beside the predicted one, with the error that is allowed to lie between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.systems import FloatArray
+
+Kind = Literal["formula", "conservation", "order", "trajectory"]
+"""What the prediction is taken from.
+
+"formula": a closed form, an eigenvalue, the root of a balance, or which of several ends a theory says;
+"conservation": energy or momentum, with no other solution beside; "order": how an error falls; "trajectory": another
+simulation's motion, or what is read off it. An engine that shares a mistake with that simulation passes the last.
+"""
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+THEORY = "theory"
+"""Stands for the engine of a claim in which none takes part."""
+
+Evidence = Literal["independent", "self-check", "algebra", "implied"]
+"""What agreement is worth, see ``EVIDENCE``."""
+
+EVIDENCE: dict[Evidence, str] = {
+    "independent": "beside a formula, a conservation law, an order of convergence, or a code that shares nothing",
+    "self-check": "an engine against itself: at another tolerance, or with the same law of friction on both sides",
+    "algebra": "formulas of the theory against each other; no engine takes part",
+    "implied": "it follows from another verdict that agrees, to which it adds nothing",
+}
+"""Kinds of evidence, from the one that counts to those that do not add to it, in words."""
+
+Basis = Literal["independent", "reference", "self-check", "algebra"]
+"""What evidence a claim is, before it is known which engine it is about.
+
+"reference": the prediction is a motion of the reference, or is computed with its law of friction. That is a
+self-check of the reference and of what shares code with it, and independent of all others.
+"""
+
+BASES: tuple[Basis, ...] = get_args(Basis)
+
+
+class Verdict(Enum):
+    """What a claim has shown; only AGREES is a pass."""
+
+    AGREES = "agrees"
+    DIFFERS = "differs"
+    INCONCLUSIVE = "inconclusive"
+
+
+@dataclass(frozen=True)
+class ErrorBudget:
+    """The difference that the engine's and the formula's own errors can explain.
+
+    Parameters
+    ----------
+    numerical : float or array
+        Estimated from the run itself (same run at another tolerance, Richardson), in the claim's unit. Not a
+        number where an engine gave none to estimate it from: then the claim differs.
+    model : float
+        Zero for an identity; for an approximation the derived size of the first term left out.
+    resolution : float
+        The largest total budget with which agreement still says something.
+
+    """
+
+    numerical: FloatArray
+    model: float
+    resolution: float
+
+    def __init__(self, numerical: ArrayLike, *, resolution: float, model: float = 0.0) -> None:
+        object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
+        object.__setattr__(self, "model", float(model))
+        object.__setattr__(self, "resolution", float(resolution))
+        if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
+            raise ValueError("an error budget takes errors >= 0 and a resolution > 0")
+
+    @property
+    def total(self) -> FloatArray:
+        """Numerical plus model error."""
+        return self.numerical + self.model
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """One statement about one engine (or about the theory alone).
+
+    Parameters
+    ----------
+    sentence : str
+        What is claimed, the same for every engine; it names the row of the matrix.
+    equation : str
+        Of the paper, as "(3)", or "" where the statement is ours.
+    kind : str
+        What the prediction is taken from, one of ``KINDS``.
+    engine : str
+        Name of the engine, or "theory" where no simulation takes part.
+    predicted, measured : float or array of the same shape
+        In ``unit``.
+    budget : ErrorBudget
+        Errors in the same unit.
+    parameters : mapping
+        All that is needed to repeat the measurement: numbers, or words where a number says less.
+    source : str
+        Where the parameters come from: a figure, or an assumption in words.
+    unit : str
+        "" for a dimensionless number.
+    note : str
+        How the measurement or its error estimate was made, where that is not obvious.
+    basis : str
+        What evidence it is, one of ``BASES``. Without it: "reference" for the kind "trajectory", else "algebra" where
+        no engine takes part and "independent" where one does.
+    implied_by : str
+        Sentence of a claim of the same study from which this one follows for the same engine, by algebra or because
+        it is read off the same numbers; "" for none.
+    answers : bool
+        Whether the numbers count answers of yes or no, see ``compare.claims.answers``.
+    named : mapping
+        Names by which texts quote an element (its flat index), or all of them at once (None), see
+        ``compare.report.quotes``.
+
+    """
+
+    sentence: str
+    equation: str
+    kind: Kind
+    engine: str
+    predicted: FloatArray
+    measured: FloatArray
+    budget: ErrorBudget
+    parameters: Mapping[str, float | str]
+    source: str
+    unit: str = ""
+    note: str = ""
+    basis: Basis = "independent"
+    implied_by: str = ""
+    answers: bool = False
+    named: Mapping[str, int | None] = field(default_factory=dict)
+
+    def __init__(
+        self,
+        sentence: str,
+        *,
+        equation: str,
+        kind: Kind = "formula",
+        engine: str,
+        predicted: ArrayLike,
+        measured: ArrayLike,
+        budget: ErrorBudget,
+        parameters: Mapping[str, float | str],
+        source: str,
+        unit: str = "",
+        note: str = "",
+        basis: Basis | None = None,
+        implied_by: str = "",
+        answers: bool = False,
+        named: Mapping[str, int | None] | None = None,
+    ) -> None:
+        values = {
+            "sentence": sentence,
+            "equation": equation,
+            "kind": kind,
+            "engine": engine,
+            "predicted": np.asarray(predicted, dtype=float),
+            "measured": np.asarray(measured, dtype=float),
+            "budget": budget,
+            "parameters": parameters,
+            "source": source,
+            "unit": unit,
+            "note": note,
+            "basis": _usual_basis(kind, engine) if basis is None else basis,
+            "implied_by": implied_by,
+            "answers": answers,
+            "named": dict(named or {}),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if kind not in KINDS:
+            raise ValueError(f"claim {sentence!r}: kind = {kind!r}: it must be one of {', '.join(KINDS)}")
+        if self.basis not in BASES:
+            raise ValueError(f"claim {sentence!r}: basis = {basis!r}: it must be one of {', '.join(BASES)}")
+        if self.basis == "algebra" and engine != THEORY:
+            raise ValueError(f"claim {sentence!r} is about {engine}: algebra is of the theory alone")
+        if self.predicted.shape != self.measured.shape:
+            raise ValueError(
+                f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
+                f"measured {self.measured.shape}"
+            )
+        if self.predicted.size == 0:
+            raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+        for name, place in self.named.items():
+            if place is not None and not 0 <= place < self.predicted.size:
+                raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
+        if np.broadcast_shapes(budget.numerical.shape, self.predicted.shape) != self.predicted.shape:
+            raise ValueError(
+                f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
+                f"predicted {self.predicted.shape}"
+            )
+
+    @property
+    def difference(self) -> FloatArray:
+        """|measured − predicted|, elementwise."""
+        return np.abs(self.measured - self.predicted)
+
+    @property
+    def ratio(self) -> FloatArray:
+        """Difference over budget, elementwise: agreement is up to 1.
+
+        Without a difference it is 0, whatever the budget; a difference without a budget, and a number that is
+        missing, is infinitely far off.
+        """
+        difference, total = np.broadcast_arrays(self.difference, self.budget.total)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(difference == 0.0, 0.0, difference / total)
+        missing = np.isnan(total) | ~np.isfinite(self.measured) | ~np.isfinite(self.predicted)
+        return np.asarray(np.where(missing, np.inf, ratio))
+
+    @property
+    def worst(self) -> int:
+        """Flat index of the element with the largest ratio; among several, of the largest difference."""
+        ratio = self.ratio
+        return _place_of_largest(np.where(ratio == np.max(ratio), self.difference, -1.0))
+
+    @property
+    def largest(self) -> int:
+        """Flat index of the element with the largest difference, a missing one before all."""
+        return _place_of_largest(self.difference)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Differs beyond the budget or without a number, is inconclusive beyond the resolution, agrees elsewhere."""
+        within = self.difference <= self.budget.total  # False for NaN
+        if not np.all(np.isfinite(self.measured)) or not np.all(within):
+            return Verdict.DIFFERS
+        if np.any(self.budget.total > self.budget.resolution):
+            return Verdict.INCONCLUSIVE
+        return Verdict.AGREES
+
+
+def _place_of_largest(values: FloatArray) -> int:
+    return int(np.argmax(np.nan_to_num(values, nan=np.inf, posinf=np.inf)))
+
+
+def _usual_basis(kind: Kind, engine: str) -> Basis:
+    if kind == "trajectory":
+        return "reference"
+    return "algebra" if engine == THEORY else "independent"

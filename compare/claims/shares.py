@@ -1,0 +1,70 @@
+"""How large a share of the starts ends as what, and between which bounds it lies."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.sweep.define.refinement import Ends, mixed
+from reference_model.ensemble import EndState
+
+CONFIDENCE = 0.95
+
+SAMPLE = (
+    f"Wilson's interval of {100.0 * CONFIDENCE:g} % for independent starts; what is undecided may be any end"
+)
+GRID = (
+    "from the cells of which all corners end like this to those of which one does (or is undecided), as parts of the "
+    "area: a bound as long as the boundary passes only through cells whose corners differ"
+)
+
+
+class Share(NamedTuple):
+    """A share between 0 and 1, and its bounds."""
+
+    value: float
+    low: float
+    high: float
+
+
+def of_sample(ends: Ends) -> dict[EndState, Share]:
+    """Return the shares among independent random starts of the ends ``ends``, shape (n,)."""
+    from scipy.stats import binomtest  # takes long to load, and grids do without
+
+    counts = {end: int(np.count_nonzero(ends == end)) for end in EndState}
+    doubtful = counts[EndState.UNDECIDED]
+    shares = {}
+    for end, count in counts.items():
+        most = count if end == EndState.UNDECIDED else count + doubtful
+        low, high = (
+            binomtest(k, ends.size).proportion_ci(CONFIDENCE, method="wilson") for k in (count, most)
+        )
+        shares[end] = Share(count / ends.size, float(low.low), float(high.high))
+    return shares
+
+
+def of_grid(ends: Ends) -> dict[EndState, Share]:
+    """Return the shares of a rectangle's area from the ends on a grid that covers it, shape (y, x).
+
+    The value counts each corner of a cell as a quarter of it.
+    """
+    uniform = ~mixed(ends)
+    doubtful = _corners(ends == EndState.UNDECIDED) > 0
+    shares = {}
+    for end in EndState:
+        corners = _corners(ends == end)
+        possible = (corners > 0) | (doubtful if end != EndState.UNDECIDED else False)
+        shares[end] = Share(
+            float(np.mean(corners)) / 4.0,
+            float(np.mean(uniform & (corners == 4))),
+            float(np.mean(possible)),
+        )
+    return shares
+
+
+def _corners(chosen: np.ndarray) -> np.ndarray:
+    """Return how many corners of each cell are chosen."""
+    one = chosen.astype(np.uint8)
+    result: np.ndarray = one[:-1, :-1] + one[1:, :-1] + one[:-1, 1:] + one[1:, 1:]
+    return result

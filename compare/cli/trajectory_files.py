@@ -1,0 +1,71 @@
+"""Trajectories as CSV or JSON files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import IO
+
+from compare.run.findings_store import version_of
+from reference_model.systems import DiscOnDisc, PinOnDisc, System
+from reference_model.trajectory import Trajectory
+
+COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
+    PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
+    DiscOnDisc: (
+        ("x", "m"),
+        ("y", "m"),
+        ("angle", "rad"),
+        ("vx", "m/s"),
+        ("vy", "m/s"),
+        ("spin", "rad/s"),
+    ),
+}
+"""Name and unit of each state of a system."""
+
+
+def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:
+    """Return the function for the ending of ``path``; raise ``ValueError`` if there is none."""
+    if path.suffix not in WRITERS:
+        raise ValueError(f"can't tell the format of {path.name!r}: it must end in {' or '.join(WRITERS)}")
+    return WRITERS[path.suffix]
+
+
+def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
+    """Write a line of column names with units, then a line for each time; numbers in full."""
+    header = [("t", "s"), *COLUMNS[type(trajectory.system)]]
+    stream.write(",".join(f"{name} [{unit}]" for name, unit in header) + "\n")
+    for time, state in zip(trajectory.times, trajectory.states, strict=True):
+        stream.write(",".join(repr(float(value)) for value in (time, *state)) + "\n")
+
+
+def write_json(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
+    """Write the motion with all that is known about it: parameters, phases, and how it was computed."""
+    columns = COLUMNS[type(trajectory.system)]
+    content = {
+        "version": version_of("friction-discs"),
+        "engine": engine,
+        "system": type(trajectory.system).__name__,
+        "parameters": asdict(trajectory.system),
+        "columns": [name for name, _ in columns],
+        "units": {"t": "s", **dict(columns)},
+        "phases": [
+            {
+                "kind": phase.kind,
+                "start": float(phase.start),
+                "end": float(phase.end),
+                "initial_state": phase.initial_state.tolist(),
+            }
+            for phase in trajectory.phases
+        ],
+        "solution": asdict(trajectory.solution),
+        "times": trajectory.times.tolist(),
+        "states": trajectory.states.tolist(),
+    }
+    json.dump(content, stream, ensure_ascii=False, allow_nan=False, default=float)
+    stream.write("\n")
+
+
+WRITERS: dict[str, Callable[[Trajectory, str, IO[str]], None]] = {".csv": write_csv, ".json": write_json}

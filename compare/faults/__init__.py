@@ -1,5 +1,0 @@
-"""Mistakes that a judge of engines has to find, each in an engine that is right but for it."""
-
-from compare.faults.catalogue import FAULTS, RIGHT, Fault
-
-__all__ = ["FAULTS", "RIGHT", "Fault"]

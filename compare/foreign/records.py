@@ -1,0 +1,78 @@
+"""What foreign engines yield, recorded by ``builders/record.py``, and our own engines recorded with them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from reference_model.systems import FloatArray
+
+FOLDER = Path(__file__).parent
+
+COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
+"""Of a recorded run.
+
+The error in m is the largest over time, against the exact motion; the change is that against the run before, whose
+tolerance is larger by ``compare.claims.error_estimates.COARSENING``, and none at the first. Seconds are those of
+the processor, wall those on the clock.
+"""
+
+DIGITS = 4
+"""Of the numbers in the files."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One setting of an engine.
+
+    Parameters
+    ----------
+    engine, version, recorded, platform : str
+        What ran, when and on what.
+    setting : str
+        Its name; "" for an engine of ours.
+    says : str
+        How it is set, in words.
+    runs : mapping
+        Of each case, by the names of ``compare.foreign.cases.CASES``: arrays of shape (n, len(COLUMNS)), from the
+        largest tolerance to the smallest.
+
+    """
+
+    engine: str
+    version: str
+    recorded: str
+    platform: str
+    setting: str
+    says: str
+    runs: Mapping[str, FloatArray]
+
+    @property
+    def name(self) -> str:
+        """Engine and setting."""
+        return f"{self.engine}, {self.setting}" if self.setting else self.engine
+
+
+def recordings() -> tuple[Recording, ...]:
+    """Return all that is recorded, our own engines first, the reference before the others.
+
+    Raises
+    ------
+    ValueError
+        For a file whose columns are not ``COLUMNS``.
+
+    """
+    found: list[Recording] = []
+    for path in sorted(FOLDER.glob("*.json")):
+        file = json.loads(path.read_text(encoding="utf-8"))
+        if tuple(file["columns"]) != COLUMNS:
+            raise ValueError(f"{path.name}: columns = {file['columns']}: they must be {list(COLUMNS)}")
+        about = {key: file[key] for key in ("engine", "version", "recorded", "platform")}
+        for setting in file["settings"]:
+            runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
+            found.append(Recording(**about, setting=setting["name"], says=setting["says"], runs=runs))
+    return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))

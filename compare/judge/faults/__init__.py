@@ -1,0 +1,5 @@
+"""Mistakes that a judge of engines has to find, each in an engine that is right but for it."""
+
+from compare.judge.faults.catalogue import FAULTS, RIGHT, Fault
+
+__all__ = ["FAULTS", "RIGHT", "Fault"]

@@ -1,0 +1,247 @@
+"""Run studies with engines: in parallel, with failures kept apart, and nothing lost at Ctrl-C."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from compare.claims.claim import THEORY
+from compare.claims.errata import Erratum, Evidence
+from compare.claims.study import Data, Findings, Study
+from compare.engines import Engine, UnsupportedSystemError
+from compare.figures import paper_style, saved
+from compare.run.code_files import UnknownCodeError
+from compare.run.findings_store import PACKAGES, Store, stamp
+from compare.run.fingerprint import fingerprint
+from compare.run.workers import Done, Failure, Workers
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Figures as (SVG, PNG) and animations as GIF, by name."""
+
+    figures: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+    animations: dict[str, bytes] = field(default_factory=dict)
+
+
+@dataclass
+class Run:
+    """What was asked for, and what of it is there.
+
+    Parameters
+    ----------
+    studies, engines : tuple
+        What was asked for; ``engines`` are names, without "theory".
+    contact_only : tuple of str
+        Names of the engines that take part only in studies in which the contact decides.
+    about : tuple of str
+        What there is to know of the engines.
+    errata : tuple of Erratum
+        Whose evidence was asked for.
+    outcomes : dict
+        Findings or failure for each (study, engine or "theory") that came to an end.
+    seconds : dict
+        How long each took.
+    drawings : dict
+        Drawing or failure for each study.
+    evidence : dict
+        Evidence or failure for each erratum, by its place in ``errata``.
+    unknown : dict
+        Why a study or an engine is always measured anew, by its name: what it depends on can't be seen.
+    interrupted : bool
+        Whether Ctrl-C came before all was done.
+
+    """
+
+    studies: tuple[Study, ...]
+    engines: tuple[str, ...]
+    errata: tuple[Erratum, ...] = ()
+    contact_only: tuple[str, ...] = ()
+    about: tuple[str, ...] = ()
+    outcomes: dict[tuple[str, str], Findings | Failure] = field(default_factory=dict)
+    seconds: dict[tuple[str, str], float] = field(default_factory=dict)
+    drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
+    evidence: dict[int, Evidence | Failure] = field(default_factory=dict)
+    unknown: dict[str, str] = field(default_factory=dict)
+    interrupted: bool = False
+
+    def columns(self, study: Study) -> tuple[str, ...]:
+        """Return who takes part in ``study``: "theory" if it has any, and the engines that it is about."""
+        theory = (THEORY,) if study.theory is not None else ()
+        return theory + tuple(name for name in self.engines if self._takes_part(name, study))
+
+    def _takes_part(self, name: str, study: Study) -> bool:
+        return (not study.only or name in study.only) and (study.contact or name not in self.contact_only)
+
+    @property
+    def missing(self) -> tuple[tuple[str, str], ...]:
+        """(study, engine) of all that did not come to an end."""
+        return tuple(
+            (study.name, column)
+            for study in self.studies
+            for column in self.columns(study)
+            if (study.name, column) not in self.outcomes
+        )
+
+    def data(self, study: Study) -> dict[str, Data]:
+        """Return the arrays of all that found any, by engine."""
+        found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
+        return {
+            column: outcome.data
+            for column, outcome in found.items()
+            if isinstance(outcome, Findings) and outcome.data
+        }
+
+
+def run(
+    studies: tuple[Study, ...],
+    engines: tuple[Engine, ...],
+    *,
+    folder: Path,
+    jobs: int = 1,
+    limit: float | None = None,
+    resume: bool = False,
+    errata: tuple[Erratum, ...] = (),
+    progress: Callable[[int, int, str], None] = lambda done, total, name: None,
+) -> Run:
+    """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
+
+    Parameters
+    ----------
+    studies, engines, errata
+        What to do.
+    folder : Path
+        Findings are written there as they come in.
+    jobs : int
+        Number of processes; with 1, and no ``limit``, all happens in this one.
+    limit : float, optional
+        Seconds after which a measurement is given up, as its engine's failure.
+    resume : bool
+        Take from ``folder`` what was found by the same code.
+    progress : callable
+        Called with the number of finished and of all pieces of work, and the name of the last one.
+
+    Returns
+    -------
+    Run
+        With ``interrupted`` set, and without what was not finished, after Ctrl-C.
+
+    """
+    result = Run(
+        studies,
+        tuple(engine.name for engine in engines),
+        errata,
+        tuple(engine.name for engine in engines if engine.contact_only),
+        tuple(engine.about for engine in engines if engine.about),
+    )
+    with Workers(jobs, limit) as workers:
+        try:
+            _Runner(result, workers, Store(folder), progress).work({e.name: e for e in engines}, resume)
+        except KeyboardInterrupt:
+            result.interrupted = True
+    return result
+
+
+class _Runner:
+    """Submits the measurements, and each study's drawing as soon as its last measurement is there."""
+
+    def __init__(
+        self, result: Run, workers: Workers, store: Store, progress: Callable[[int, int, str], None]
+    ) -> None:
+        self._result = result
+        self._workers = workers
+        self._store = store
+        self._progress = progress
+        self._stamps: dict[tuple[str, str], str | None] = {}
+        self._prints: dict[int, str | None] = {}
+
+    def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
+        result = self._result
+        work = {
+            (study.name, column): (study, engines.get(column))
+            for study in sorted(result.studies, key=lambda study: -study.seconds)
+            for column in result.columns(study)
+        }
+        for key, (study, engine) in work.items():
+            self._stamps[key] = self._stamp(study, engine)
+            found = self._store.find(*key, self._stamps[key]) if resume else None
+            if found is None:
+                self._workers.submit(key, measured, study, engine)
+            else:
+                result.outcomes[key], result.seconds[key] = found
+        for study in result.studies:
+            self._draw_if_complete(study.name)
+        for i, erratum in enumerate(result.errata):
+            self._workers.submit(("errata", i), erratum.evidence)
+        total = len(work) + len(result.studies) + len(result.errata)
+        done = len(result.outcomes)
+        self._progress(done, total, "")
+        for finished in self._workers.finished():
+            done += 1
+            self._progress(done, total, self._take(finished))
+
+    def _stamp(self, study: Study, engine: Engine | None) -> str | None:
+        """Return what the findings depend on, None where that is not known."""
+        what = (
+            {study.name: study.theory} if engine is None else {study.name: study.measure, engine.name: engine}
+        )
+        prints = [self._fingerprint(name, thing) for name, thing in what.items()]
+        return None if None in prints else stamp(*filter(None, prints))
+
+    def _fingerprint(self, name: str, thing: object) -> str | None:
+        """Return what ``thing`` depends on besides the packages; file why that is not known."""
+        if id(thing) not in self._prints:
+            try:
+                self._prints[id(thing)] = fingerprint(thing, PACKAGES)
+            except UnknownCodeError as error:
+                self._prints[id(thing)] = None
+                self._result.unknown[name] = str(error)
+        return self._prints[id(thing)]
+
+    def _take(self, done: Done) -> str:
+        """File what is finished where it belongs and return its name."""
+        kind: Any
+        name: Any
+        kind, name = done.key  # type: ignore[misc]
+        if kind == "errata":
+            self._result.evidence[name] = done.value
+            return "errata"
+        if kind == "draw":
+            self._result.drawings[name] = done.value
+            return f"{name} figures"
+        self._result.outcomes[kind, name] = done.value
+        self._result.seconds[kind, name] = done.seconds
+        if isinstance(done.value, Findings):
+            self._store.keep(kind, name, self._stamps[kind, name], done.value, done.seconds)
+        self._draw_if_complete(kind)
+        return f"{kind} {name}"
+
+    def _draw_if_complete(self, name: str) -> None:
+        study = next(study for study in self._result.studies if study.name == name)
+        if all((name, column) in self._result.outcomes for column in self._result.columns(study)):
+            self._workers.submit(("draw", name), drawn, study, self._result.data(study), first=True)
+
+
+def measured(study: Study, engine: Engine | None) -> Findings:
+    """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``."""
+    findings: object = None
+    if engine is not None:
+        try:
+            findings = study.measure(engine)
+        except UnsupportedSystemError as error:
+            findings = Findings(not_simulated=str(error))
+    elif study.theory is not None:
+        findings = study.theory()
+    if not isinstance(findings, Findings):
+        raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
+    return findings
+
+
+def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
+    """Return the figures and animations of a study as bytes."""
+    with paper_style():
+        figures = {name: saved(figure) for name, figure in study.draw(data).items()} if data else {}
+        animations = dict(study.animations(data)) if data and study.animations is not None else {}
+    return Drawing(figures, animations)

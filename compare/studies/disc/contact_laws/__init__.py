@@ -1,0 +1,5 @@
+"""Eq. 20 to 23: the friction that acts on a disc in each engine, and how far the laws of contact are apart."""
+
+from compare.studies.disc.contact_laws.claims import STUDY
+
+__all__ = ["STUDY"]

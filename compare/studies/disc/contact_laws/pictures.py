@@ -1,0 +1,96 @@
+"""How the study of the laws of contact is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from compare.claims.study import Data
+from compare.figures import (
+    BLACK,
+    GREEN,
+    GREY,
+    PURPLE,
+    SKY,
+    axis,
+    curve,
+    engines_in,
+    new_figure,
+    points,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RATIO = axis("U/W")
+
+LOOKS = {
+    "expansion": ("(23)", PURPLE),
+    "points6": ("6 points", GREEN),
+    "points12": ("12 points", SKY),
+    "points24": ("24 points", BLACK),
+}
+"""Name and colour of the laws whose error is drawn."""
+
+NEAR = (0.2, 5.0)
+"""U/W where there is an error to be seen."""
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw force and moment of all laws over U/W, and how far they are from the ring."""
+    return {"contact-laws": laws(data), "contact-errors": errors(data)}
+
+
+def laws(data: Mapping[str, Data]) -> Figure:
+    """Draw force and moment of the laws."""
+    figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
+    for i, panel in enumerate(panels):
+        if "theory" in data:
+            theory = data["theory"]
+            ratio = theory["ratio"]
+            low, high = theory["points6"]
+            panel.fill_between(
+                ratio,
+                low[:, i],
+                high[:, i],
+                color=GREEN,
+                alpha=0.3,
+                linewidth=0.0,
+                label="6 points, all angles",
+            )
+            panel.plot(ratio, theory["annulus"][:, i], color=GREY, linestyle="--", label="annulus")
+            panel.plot(ratio, theory["expansion"][:, i], color=PURPLE, label="(23)")
+            panel.plot(ratio, theory["ring"][:, i], **curve("theory", "ring", linewidth=1.2))
+        for engine in engines_in(data):
+            if "ring" in data[engine]:
+                panel.plot(
+                    data[engine]["ratio"], data[engine]["ring"][:, i], **points(engine, f"ring, {engine}")
+                )
+        panel.set(xscale="log", xlabel=RATIO)
+    force, moment = panels
+    force.set(ylabel=axis(r"F/\mu N"), title="Force against the slip")
+    moment.set(ylabel=axis(r"M/\mu N R"), title="Moment")
+    if force.get_legend_handles_labels()[0]:
+        force.legend()
+    return figure
+
+
+def errors(data: Mapping[str, Data]) -> Figure:
+    """Draw the distance of the laws from the ring, and mark where it is the largest."""
+    figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
+    for i, panel in enumerate(panels):
+        if "theory" in data:
+            theory = data["theory"]
+            for name, (label, colour) in LOOKS.items():
+                place, size = theory[f"{name}_worst"][i]
+                error = theory[f"{name}_error"][:, i]
+                panel.plot(theory["ratio"], error, color=colour, label=f"{label}: {size:.3f} at {place:.2f}")
+                panel.plot([place], [size], color=colour, marker="o", markersize=6.0, linestyle="none")
+            panel.legend(title="the largest, at U/W")
+        panel.set(xscale="log", xlabel=RATIO, xlim=NEAR, xticks=(0.2, 0.5, 1.0, 2.0, 5.0))
+        panel.set_xticks((), minor=True)
+        panel.xaxis.set_major_formatter("{x:g}")
+    force, moment = panels
+    force.set(ylabel=axis(r"|\Delta F|/\mu N"), title="Distance of the force from that of the ring")
+    moment.set(ylabel=axis(r"|\Delta M|/\mu N R"), title="Distance of the moment from that of the ring")
+    return figure

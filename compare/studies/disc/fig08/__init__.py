@@ -1,0 +1,5 @@
+"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the load, and where it ends."""
+
+from compare.studies.disc.fig08.claims import STUDY
+
+__all__ = ["STUDY"]

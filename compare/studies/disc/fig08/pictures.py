@@ -1,0 +1,113 @@
+"""Figures of the study of Fig. 8."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compare.claims.study import Data
+from compare.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
+from compare.studies.disc.fig08.theory import RING, last_load, place_and_spin, with_load
+from reference_model.formulas.disc import shaft_torque
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw Fig. 8 with distances and places, and how the spin depends on the offset."""
+    figures = {"fig08-spin": draw_spin(data)} if data else {}
+    if "theory" in data:
+        figures["fig08-offset"] = draw_offsets(data["theory"])
+    return figures
+
+
+def draw_spin(data: Mapping[str, Data]) -> Figure:
+    """Draw the spin over the load, how far all are from the continuous ring, and the places of rest."""
+    figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
+    own = f"{RING.offset:g}"
+    if "theory" in data:
+        found = data["theory"]
+        spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
+        spin.plot(
+            found[f"corrected load {own}"],
+            found[f"corrected {own}"][:, 2],
+            **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
+        )
+        printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "label": "(26), as printed"}
+        spin.plot(found["printed load"], found["printed"][:, 2], **printed)
+        loads = found["distance load"]
+        distance.plot(
+            loads[1:],
+            found["distance corrected"][1:, 2],
+            **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
+        )
+        distance.plot(loads[1:], found["distance printed"][1:, 2], **printed)
+        plane.plot(*found[f"ring {own}"][:, :2].T, **curve("theory", "semicircle (4)"))
+    for engine in engines_in(data):
+        found = data[engine]
+        if "six points" in found:
+            spin.plot(found["load"], found["six points"][:, 2], **points(engine, f"{engine}, six points"))
+        for name, look in (("ring", {"alpha": 0.55}), ("six points", {})):
+            if name in found:
+                ring = np.array([place_and_spin(with_load(RING, load)) for load in found["load"]])
+                away = np.maximum(np.abs(found[name] - ring)[:, 2], np.finfo(float).eps)
+                distance.plot(found["load"], away, **points(engine, f"{engine}, {name}", **look))
+        if "ring" in found:
+            plane.plot(*found["ring"][:, :2].T, **points(engine))
+    for speed, name in ((RING.disc_speed, r"master disc, $\omega$"), (RING.shaft_speed, r"shaft, $\Omega$")):
+        spin.axhline(speed, color=GREY, linewidth=0.8, linestyle=":")
+        spin.annotate(name, (0.001, speed), (0, -11), textcoords="offset points", fontsize=9.5)
+    spin.set(
+        xlabel=axis(r"\mu N", "N"),
+        ylabel=axis(r"\dot\varphi", "rad/s"),
+        title=rf"Fig. 8, $X_0 = {own}$ m",
+        ylim=(RING.shaft_speed - 0.02, RING.disc_speed + 0.02),
+    )
+    distance.set(
+        xlabel=axis(r"\mu N", "N"),
+        ylabel="difference in rad/s",
+        yscale="log",
+        ylim=(1e-16, 1e5),
+        title="Spin less that on the continuous ring",
+    )
+    plane.set(
+        xlabel=axis("x", "m"),
+        ylabel=axis("y", "m"),
+        aspect="equal",
+        xlim=(-0.005, 0.105),
+        ylim=(-0.005, 0.066),
+        title="Places of rest",
+    )
+    spin.legend(loc="upper left", bbox_to_anchor=(0.0, 0.89), fontsize=9.0)
+    distance.legend(loc="upper left", fontsize=9.0, ncols=2)
+    plane.legend(loc="lower center", fontsize=9.0)
+    return figure
+
+
+def draw_offsets(theory: Data) -> Figure:
+    """Draw the spin for several offsets, and the load at which the equilibrium ends over the offset."""
+    figure, (spin, end) = new_figure(ncols=2, width=9.8, height=3.9)
+    for offset, colour in zip(theory["offset"], PALETTE, strict=False):
+        ring, ring_load = theory[f"ring {offset:g}"], theory[f"ring load {offset:g}"]
+        look: dict[str, Any] = {"color": colour, "linewidth": 1.4}
+        spin.plot(ring_load, ring[:, 2], label=rf"$X_0 = {offset:g}$ m", **look)
+        loads, corrected = theory[f"corrected load {offset:g}"], theory[f"corrected {offset:g}"]
+        spin.plot(loads, corrected[:, 2], linestyle=(0.0, (4.0, 2.0)), **(look | {"linewidth": 1.0}))
+        last = last_load(replace(RING, offset=float(offset)))
+        spin.plot(last, RING.disc_speed, marker="o", color=colour, markersize=5.0)
+        end.plot(offset, last, marker="o", color=colour, markersize=5.0, zorder=5.0)
+    spin.plot([], [], color=GREY, linewidth=1.0, linestyle=(0.0, (4.0, 2.0)), label="(26), corrected")
+    spin.set(xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\dot\varphi", "rad/s"), title="Spin up to the end")
+    spin.legend(loc="lower right")
+    offsets = theory["end offset"]
+    moment = shaft_torque(RING) / RING.contact_radius
+    end.loglog(offsets, theory["end"], **curve("theory", "disc"))
+    end.loglog(offsets, RING.stiffness * offsets, color=GREY, linewidth=1.0, label=r"pin (5), $C X_0$")
+    end.axhline(moment, color=GREY, linewidth=1.0, linestyle=":", label=r"$b(\omega-\Omega)/R$")
+    end.set(xlabel=axis("X_0", "m"), ylabel=axis(r"\mu N", "N"), title="Largest load with an equilibrium")
+    end.legend(loc="upper left")
+    return figure

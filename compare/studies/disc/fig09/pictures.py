@@ -1,0 +1,184 @@
+"""Figures of the branches of the disc: radius, spin, and where the motions end over the offset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compare.claims.study import Data
+from compare.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
+from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING, radius_of_pin, spin_of_large_whirl
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LEAST_LOAD = 2e-4
+UNSTABLE: dict[str, Any] = {"color": GREY, "linestyle": (0.0, (3.0, 1.5)), "linewidth": 1.4, "zorder": 2.5}
+WHIRL: dict[str, Any] = {"color": GREEN, "linewidth": 1.6, "zorder": 2.5}
+CENTRED_WHIRL: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "zorder": 2.4}
+SIX: dict[str, dict[str, Any]] = {
+    "reference": {"marker": "h", "markersize": 10.5},
+    "exudyn": {"marker": "+", "markersize": 8.0},
+}
+"""Marks of results on six points, where they differ from those on the ring."""
+
+PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw radius and spin over the load, and the ends of the motions over the offset."""
+    figures = {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)}
+    if "theory" in data:
+        figures["fig09-offset"] = draw_ends(data["theory"])
+    return figures
+
+
+def draw_radius(data: Mapping[str, Data]) -> Figure:
+    """Fig. 9 over logarithmic axes, and what lies near to the axis over linear ones."""
+    figure, (whole, near) = new_figure(ncols=2, width=11.0, height=5.0)
+    if "theory" in data:
+        _whirls(whole, data["theory"])
+        for panel in (whole, near):
+            _near_axis(panel, data["theory"])
+    for engine in engines_in(data):
+        found = data[engine]
+        pin = np.array([radius_of_pin(load) for load in found["circle load"]])
+        for prefix, style in _marks(engine, found):
+            whole.plot(found["circle load"], found[f"{prefix}circle"][:, 0] * pin, **style)
+            radius = RING.offset * np.hypot(*found[f"{prefix}rest"].T[:2])
+            for panel in (whole, near):
+                panel.plot(found["rest load"], radius, **style | {"label": ""})
+        if "orbit" in found:
+            whole.plot(found["orbit load"], found["orbit"][:, 1:3], **points(engine, ""))
+            for panel in (whole, near):
+                panel.plot(found["stick load"], found["stuck"][:, 0], **points(engine, ""))
+    for panel in (whole, near):
+        panel.set(xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\rho", "m"))
+    whole.set(xscale="log", yscale="log", xlim=(LEAST_LOAD, 1.3 * LARGEST_LOAD), ylim=(4e-3, 120.0))
+    near.set(xlim=(0.0, 1.05 * LARGEST_LOAD), ylim=(0.0, 0.215))
+    _legend_below(figure, whole)
+    return figure
+
+
+def _whirls(panel: Axes, found: Data) -> None:
+    load, radius, _ = found["circles, ring"].T
+    fold = int(np.argmin(load))
+    panel.plot(load[: fold + 1], radius[: fold + 1], label="whirl, $X_0=0$, ring", **CENTRED_WHIRL)
+    panel.plot(load[fold:], radius[fold:], **UNSTABLE | {"color": PURPLE})
+    load, radius, _ = found["circles, (23)"].T
+    panel.plot(load, radius, **curve("theory", "whirl, $X_0=0$, eq. (23)", **PAPER))
+    load, least, greatest, _ = found["orbits"].T
+    fold = int(np.argmin(load))
+    for bound, label in ((least, "whirl, $X_0=0.1$ m, least and greatest"), (greatest, "")):
+        panel.plot(load[: fold + 1], bound[: fold + 1], label=label, **WHIRL)
+
+
+def _near_axis(panel: Axes, found: Data) -> None:
+    """Draw the inner whirl, the equilibrium and sticking."""
+    load, least, greatest, _ = found["orbits"].T
+    inner = slice(int(np.argmin(load)), None)
+    panel.plot(load[inner], least[inner], label="unstable", **UNSTABLE)
+    panel.plot(load[inner], greatest[inner], **UNSTABLE)
+    load, radius, _ = found["rests"].T
+    held = load <= found["last stable load"][0]
+    panel.plot(load[held], radius[held], **curve("theory", "self-centred equilibrium", linewidth=1.4))
+    panel.plot(load[~held], radius[~held], **UNSTABLE)
+    load, radius = found["sticking"].T
+    panel.fill_between(load, radius, color=GREY, alpha=0.4, linewidth=0.0, label="sticks, (9)")
+
+
+def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
+    """Return the prefixes of the data on the ring and on six points that there are, with their marks."""
+    both = (
+        ("", points(engine)),
+        ("six ", points(engine, f"{engine}, six points", **SIX.get(engine, {"markersize": 3.5}))),
+    )
+    return [(prefix, style) for prefix, style in both if f"{prefix}circle" in found]
+
+
+def draw_spin(data: Mapping[str, Data]) -> Figure:
+    """Fig. 10, and the distance of the whirl's spin from its limit."""
+    figure, (whole, distance) = new_figure(ncols=2, width=11.0, height=4.8)
+    limit = spin_of_large_whirl(RING)
+    if "theory" in data:
+        _spin_by_theory(whole, distance, data["theory"], limit)
+    for engine in engines_in(data):
+        found = data[engine]
+        for prefix, style in _marks(engine, found):
+            spin = RING.disc_speed * found[f"{prefix}circle"][:, 2]
+            whole.plot(found["circle load"], spin, **style)
+            distance.plot(found["circle load"], spin - limit, **style)
+            whole.plot(
+                found["rest load"], RING.disc_speed * found[f"{prefix}rest"][:, 2], **style | {"label": ""}
+            )
+        if "orbit" in found:
+            distance.plot(found["orbit load"], found["orbit"][:, -1] - limit, **points(engine, ""))
+            whole.plot(found["stick load"], found["stuck"][:, 1], **points(engine, ""))
+    whole.set(
+        xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\dot\varphi", "rad/s"), xlim=(0.0, 1.05 * LARGEST_LOAD)
+    )
+    distance.set(xscale="log", yscale="log", xlim=(LEAST_LOAD, 1.3 * LARGEST_LOAD), ylim=(5e-11, 1e-2))
+    distance.set(
+        xlabel=axis(r"\mu N", "N"), ylabel=rf"$\dot\varphi$ of the whirl less its limit {limit:.5f} in rad/s"
+    )
+    _legend_below(figure, whole)
+    return figure
+
+
+def _spin_by_theory(whole: Axes, distance: Axes, found: Data, limit: float) -> None:
+    for name, label, style in (
+        ("ring", "whirl, $X_0=0$, ring", CENTRED_WHIRL),
+        ("(23)", "whirl, $X_0=0$, eq. (23)", curve("theory", "", **PAPER)),
+    ):
+        load, _, spin = found[f"circles, {name}"].T
+        fold = int(np.argmin(load))
+        style = style | {"label": label}
+        whole.plot(load[:fold], spin[:fold], **style)
+        distance.plot(load[:fold], spin[:fold] - limit, **style)
+        unstable = style if name == "(23)" else UNSTABLE | {"color": PURPLE}
+        distance.plot(load[fold:], spin[fold:] - limit, **unstable)
+    load, _, _, spin = found["orbits"].T
+    fold = int(np.argmin(load))
+    for panel, zero in ((whole, 0.0), (distance, limit)):
+        panel.plot(load[: fold + 1], spin[: fold + 1] - zero, label="whirl, $X_0=0.1$ m, mean", **WHIRL)
+        panel.plot(load[fold:], spin[fold:] - zero, **UNSTABLE)
+    load, _, spin = found["rests"].T
+    held = load <= found["last stable load"][0]
+    whole.plot(load[held], spin[held], **curve("theory", "self-centred equilibrium", linewidth=1.4))
+    whole.plot(load[~held], spin[~held], label="unstable", **UNSTABLE)
+    load, _ = found["sticking"].T
+    whole.plot(load, np.full(len(load), RING.disc_speed), color=BLACK, linestyle="--", label="sticking")
+
+
+def draw_ends(found: Data) -> Figure:
+    """Draw over the offset where each motion ends."""
+    figure, (panel,) = new_figure(width=7.0, height=4.4)
+    offset, last, stable = found["offset"], found["last load"], found["last stable"]
+    panel.fill_between(offset, last, 1.0, color=GREY, alpha=0.4, linewidth=0.0)
+    panel.plot(offset, last, **curve("theory", linewidth=1.3))
+    panel.plot(offset, stable, color=GREY, linewidth=1.6)
+    x, load = found["folds"].T
+    panel.plot(x[1:], load[1:], color=GREEN, marker="o", markersize=4.0)
+    panel.plot(offset[0], load[0], color=PURPLE, marker="<", clip_on=False)
+    panel.axvline(RING.offset, color=BLACK, linewidth=0.7, linestyle=":")
+    words: dict[str, Any] = {"ha": "center", "va": "center"}
+    panel.text(0.012, 0.11, "no equilibrium, sticking", **words)
+    panel.text(0.012, 0.004, "equilibrium unstable", **words)
+    panel.text(0.16, 0.01, "equilibrium\nand whirl", **words)
+    panel.text(0.15, 0.0008, "equilibrium,\nno whirl", **words)
+    panel.text(0.0044, 0.0185, r"friction holds $C X_0$ and $b(\omega-\Omega)$", va="top")
+    panel.text(0.085, 0.0075, "loses its stability", color=GREY, rotation=51.0, ha="right", va="center")
+    panel.text(0.042, 0.00058, "fold of the whirl", color=GREEN, va="top")
+    panel.text(0.0043, 0.97 * load[0], r"fold for $X_0=0$", color=PURPLE, va="top")
+    panel.set(xscale="log", yscale="log", xlim=(offset[0], offset[-1]), ylim=(1.5e-4, 0.35))
+    panel.set(xlabel=axis("X_0", "m"), ylabel=axis(r"\mu N", "N"))
+    return figure
+
+
+def _legend_below(figure: Figure, panel: Axes) -> None:
+    handles, labels = panel.get_legend_handles_labels()
+    unique = dict(zip(labels, handles, strict=True))
+    figure.legend(unique.values(), unique.keys(), loc="outside lower center", ncols=4)

@@ -1,0 +1,346 @@
+"""Formulas for Figs. 9 and 10: the branches of all motions over the load, and where each of them ends."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.error_estimates import ROUNDING, extrapolated_order
+from compare.claims.paper_parameters import FIG9
+from compare.claims.study import Data, Findings
+from compare.studies.disc.fig08.theory import equilibrium_of, last_load, with_load
+from compare.studies.toolkit.common import at_each, parameters_of
+from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
+from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing, contact_of
+from reference_model.formulas.disc import held_pin, pin_of, whirl_at
+from reference_model.formulas.pin import sticking_radius, whirl_radius
+from reference_model.steady.stability import turning_frame_jacobian, whirl_eigenvalues
+from reference_model.steady.steady_states import whirls
+from reference_model.systems import DiscOnDisc, FloatArray
+
+RING = FIG9
+CENTRED = replace(FIG9, offset=0.0)
+
+PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
+"""(23)."""
+
+LARGEST_LOAD = 0.2
+"""End of the axis in N: twice the load C·X0 about which sticking begins. The paper prints no range."""
+
+BRANCH_START = 0.1
+BRANCH_END = 1.0
+"""Load of the first whirl of the branch in units of C·X0, and its last crossing of the x axis in those of X0."""
+
+OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
+"""Loads in N of whirls before the branch."""
+
+FOLD_START = 0.016
+"""Load a little above that of the fold, in units of C·X0."""
+
+FOLD_OFFSETS = (0.04, 0.06, 0.1, 0.15, 0.25)
+OFFSETS = np.geomspace(0.004, 0.25, 40)
+"""X0 in m for which the end of the whirl, and those of the other motions, are computed."""
+
+DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
+
+SOURCE = (
+    'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and loads '
+    "are our choice, the paper leaves them out"
+)
+
+FOLD = "Without offset the whirl ends in a fold: at its smallest load an eigenvalue of it passes zero"
+WEAK = "As β → 0 the equilibrium loses its stability at β over the rate by which friction feeds its circular motion"
+
+MERGES = "The inner, unstable whirl shrinks onto the equilibrium at the load where that loses its stability"
+
+
+def extent(orbit: Orbit) -> FloatArray:
+    """Return the least and the greatest distance from the axis in m."""
+    radius = orbit.trajectory.radius
+    return np.array([np.min(radius), np.max(radius)])
+
+
+def radius_of_pin(load: float) -> float:
+    """Return μN/(βk) in m, the radius (11) of a pin's whirl."""
+    return whirl_radius(pin_of(with_load(CENTRED, load)))
+
+
+def spin_of_large_whirl(disc: DiscOnDisc) -> float:
+    """Return the spin in rad/s to which that of the whirl tends for large loads, where the rim slips by little.
+
+    Then F = 1 and M = R²S/(2U), and U = (ω − k)·μN/(βk) grows with the load as the moment does: the torsional balance
+    b(ω − Ω − S) = μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
+    """
+    k = disc.natural_frequency
+    friction = disc.contact_radius**2 * disc.damping * k / (2.0 * (disc.disc_speed - k))
+    difference = disc.disc_speed - disc.shaft_speed
+    return disc.disc_speed - disc.shaft_damping * difference / (disc.shaft_damping + friction)
+
+
+def first_order_shift(disc: DiscOnDisc) -> complex:
+    """Return the time mean of x + iy in m of a disc's whirl with a small offset, exact in first order of X0.
+
+    In the axes that turn with the circle the pull k²X0 of the offset turns backwards, and the deviation from the
+    circle answers with Re(a·exp(−iκt)), (−iκ − A)a = k²X0·(0, 0, 1, −i, 0), A the Jacobian. The part of it that turns
+    backwards too, (a_x + i·a_y)/2, is at rest in space.
+    """
+    circle = whirls(replace(disc, offset=0.0))[0]
+    jacobian = turning_frame_jacobian(replace(disc, offset=0.0), circle.state)
+    pull = disc.offset * disc.natural_frequency**2 * np.array([0.0, 0.0, 1.0, -1.0j, 0.0])
+    answer = np.linalg.solve(-1.0j * circle.frequency * np.eye(5) - jacobian, pull)
+    return complex(answer[0] + 1.0j * answer[1]) / 2.0
+
+
+def to_inner_orbits(disc: DiscOnDisc) -> Iterator[Orbit]:
+    """Yield whirls from the load of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
+    outermost = whirl_orbit(disc, tolerance=1e-10, samples=64)
+    return whirl_branch(outermost, BRANCH_END * disc.offset, step=0.12)
+
+
+def inner_orbit(disc: DiscOnDisc) -> Orbit:
+    """Return the first orbit beyond the fold at a larger load than that of ``disc``."""
+    orbits = to_inner_orbits(disc)
+    next(orbits)
+    return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
+
+
+# ---------------------------------------------------------------- where the motions end
+
+
+def last_stable_load(disc: DiscOnDisc) -> float:
+    """Return the load in N up to which the self-centred equilibrium is stable; that of its end if it always is."""
+    end = last_load(disc)
+
+    def growth(logarithm: float) -> float:
+        return equilibrium_of(with_load(disc, math.exp(logarithm))).eigenvalues[0].real
+
+    loads = np.linspace(math.log(1e-3 * end), math.log(end * (1.0 - 1e-6)), 16)
+    for lower, upper in itertools.pairwise(loads):
+        if growth(upper) > 0.0:
+            return math.exp(brentq(growth, lower, upper, xtol=ROUNDING))
+    return end
+
+
+def smallest_load(disc: DiscOnDisc) -> float:
+    """Return the load in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
+    sizes: list[float] = []
+    loads: list[float] = []
+    for orbit in to_inner_orbits(with_load(disc, FOLD_START * disc.stiffness * disc.offset)):
+        sizes.append(math.log(orbit.state[0]))
+        loads.append(orbit.system.friction_force)
+        if loads[-1] > min(loads):
+            break
+    square, linear, constant = np.polyfit(sizes[-3:], loads[-3:], 2)
+    return float(constant - linear**2 / (4.0 * square))
+
+
+def weak_damping_load(disc: DiscOnDisc) -> float:
+    """Return the load in N at which the equilibrium loses its stability, in first order of β.
+
+    Small loads leave the centre at X0, where the master disc slips by U = ωX0 below it and S = ω − Ω. Friction
+    resists slip across it with μN·F/U and along it with μN·F', F' = ∂F/∂U, and slip is u = ż − iωz. A motion ~
+    exp((ik + δ)t) has (s + μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k², where s = 2mδ + β: so s = μN·σ, and δ = 0 at μN
+    = β/σ. A pin has F' = 0, thus σ = 0.
+    """
+    slip = disc.disc_speed * disc.offset
+    law = contact_of(disc)
+    assert isinstance(law, IsotropicContact)
+    spin = disc.disc_speed - disc.shaft_speed
+    across = law.shares(slip, spin).resistance / slip
+    along = law.slopes(slip, spin).resistance_by_slip
+    beyond = (disc.disc_speed / disc.natural_frequency) ** 2 - 1.0
+    total = across + along
+    return (
+        disc.damping
+        * (total + math.sqrt(total**2 + 4.0 * across * along * beyond))
+        / (2.0 * across * along * beyond)
+    )
+
+
+def theory() -> Findings:
+    """Compute all branches, and check the ends of whirl and equilibrium."""
+    found = orbits()
+    return Findings(
+        (fold_claim(), weak_damping_claim(RING), merging_claim(found)),
+        circles() | smooth(found) | rests() | sticking() | ends(),
+    )
+
+
+def fold_claim() -> Claim:
+    """Return the loads at which an eigenvalue passes zero beside the smallest ones of the balances."""
+    laws: Sequence[IsotropicContact | None] = (None, PAPER_LAW)
+    measured = [whirl_at(CENTRED, _marginal_ratio(law), law).load for law in laws]
+    return Claim(
+        FOLD,
+        equation="(20), (23)",
+        engine="theory",
+        predicted=[smallest_load_with_whirl(CENTRED, law) for law in laws],
+        measured=measured,
+        budget=ErrorBudget(1e-12 * max(measured), resolution=1e-9 * max(measured)),
+        parameters=parameters_of(CENTRED, without=("friction_force",)),
+        source=SOURCE,
+        unit="N",
+        note="On the continuous ring and by (23). Predicted: the minimum of the load over the ratio of the slip "
+        "speeds of rim and centre. Measured: the load where the eigenvalue is zero, to 1e-6 of "
+        "that ratio; the load is flat there.",
+    )
+
+
+def _marginal_ratio(law: IsotropicContact | None) -> float:
+    """Return the angle α of the whirl, tan α = R|S| : U, at which an eigenvalue but that of the phase is zero."""
+
+    def growth(alpha: float) -> float:
+        whirl = whirl_at(CENTRED, alpha, law)
+        k = CENTRED.natural_frequency
+        state = np.array([whirl.radius, 0.0, 0.0, 0.0, k * whirl.radius, whirl.spin])
+        return max(value.real for value in whirl_eigenvalues(with_load(CENTRED, whirl.load), state, law)[1:])
+
+    return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
+
+
+def weak_damping_claim(disc: DiscOnDisc) -> Claim:
+    """Return the order in β of the error of :func:`weak_damping_load`."""
+    discs = [replace(disc, damping=float(damping)) for damping in DAMPINGS]
+    errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
+    order, numerical, model = extrapolated_order(errors, 1e-12)
+    return Claim(
+        WEAK,
+        equation="",
+        engine="theory",
+        predicted=1.0,
+        measured=order,
+        budget=ErrorBudget(numerical, model=model, resolution=0.05),
+        parameters=parameters_of(disc, without=("friction_force", "damping")),
+        source=SOURCE + "; the falling β are ours",
+        note=f"Order in β of the error, for {at_each('β', DAMPINGS)} N s/m, extrapolated. Not in the paper, which "
+        f"has the equilibrium stable. With the β of Fig. 9 it loses its stability at {last_stable_load(disc):.6f} N, "
+        f"{weak_damping_load(disc):.6f} N by this formula: far below C·X0, where sticking begins.",
+    )
+
+
+def merging_claim(found: Sequence[Orbit]) -> Claim:
+    """Extrapolate the load of the last orbits to one of no size."""
+    load = np.array([orbit.system.friction_force for orbit in found])
+    square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in found])
+    near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))
+    return Claim(
+        MERGES,
+        equation="",
+        engine="theory",
+        predicted=last_stable_load(RING),
+        measured=near,
+        budget=ErrorBudget(1e-9 * near, model=abs(near - far), resolution=0.01 * near),
+        parameters=parameters_of(RING, without=("friction_force",)),
+        source=SOURCE,
+        unit="N",
+        note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. "
+        "Measured: the load of the reference's inner whirls, found by shooting, as a polynomial in the square of "
+        f"their size (root of the mean square distance from the centre, {math.sqrt(square[-4]):.2g} to "
+        f"{math.sqrt(square[-1]):.2g} m), at zero. Model error: the change with one orbit less. So the basin of the "
+        "equilibrium shrinks to nothing there.",
+        basis="reference",
+        named={"last stable load": 0},
+    )
+
+
+# ---------------------------------------------------------------- curves
+
+
+def circles() -> Data:
+    """Return load, radius, spin of whirls without offset by the ring and by (23), from the largest on."""
+    angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
+    data: Data = {}
+    laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}
+    for name, law in laws.items():
+        data[f"circles, {name}"] = np.array([whirl_at(CENTRED, alpha, law) for alpha in angles])
+    return data
+
+
+@functools.cache
+def orbits() -> tuple[Orbit, ...]:
+    """Return whirls with offset by falling size, from the largest load through the fold to the equilibrium."""
+    outer = [whirl_orbit(with_load(RING, load), tolerance=1e-10, samples=64) for load in OUTER_LOADS]
+    return (*outer, *to_inner_orbits(with_load(RING, BRANCH_START * RING.stiffness * RING.offset)))
+
+
+def smooth(found: Sequence[Orbit]) -> Data:
+    """Return load, least and greatest radius, and mean spin of the ``found`` orbits and of those between them.
+
+    Interpolated are the places, which change smoothly where the extremes do not because the orbit passes the axis.
+    Beyond the last orbit its shape shrinks onto the equilibrium, its square linear in the load.
+    """
+    limit = spin_of_large_whirl(RING)
+    load = np.array([orbit.system.friction_force for orbit in found])
+    spin = np.array([np.mean(orbit.trajectory.states[:-1, -1]) for orbit in found])
+    places = np.array([orbit.trajectory.states[:, 0] + 1j * orbit.trajectory.states[:, 1] for orbit in found])
+    scale = load / (RING.damping * RING.natural_frequency)
+    shapes = places / scale[:, np.newaxis]
+    rows = np.column_stack((np.log(load), np.log(spin - limit), shapes.real, shapes.imag))
+    fine = PchipInterpolator(np.arange(len(found)), rows)(np.linspace(0.0, len(found) - 1.0, 20 * len(found)))
+    fine_load = np.exp(fine[:, 0])
+    n = places.shape[1]
+    radius = (
+        np.hypot(fine[:, 2 : n + 2], fine[:, n + 2 :])
+        * (fine_load / (RING.damping * RING.natural_frequency))[:, np.newaxis]
+    )
+
+    end = last_stable_load(RING)
+    rest = equilibrium_of(with_load(RING, end))
+    size = np.linspace(1.0, 0.0, 20)[:, np.newaxis]
+    centre = np.mean(places[-1, :-1])
+    shrinking = np.abs(
+        size**2 * centre + (1.0 - size**2) * complex(rest.x, rest.y) + size * (places[-1] - centre)
+    )
+    weight = size[:, 0] ** 2
+    return {
+        "orbits": np.column_stack(
+            (
+                np.append(fine_load, weight * load[-1] + (1.0 - weight) * end),
+                np.append(np.min(radius, axis=1), np.min(shrinking, axis=1)),
+                np.append(np.max(radius, axis=1), np.max(shrinking, axis=1)),
+                np.append(limit + np.exp(fine[:, 1]), weight * spin[-1] + (1.0 - weight) * rest.spin),
+            )
+        )
+    }
+
+
+def rests() -> Data:
+    """Return load, radius and spin of the equilibria, and the load from which on they are unstable."""
+    end = last_load(RING)
+    loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep
+    found = [equilibrium_of(with_load(RING, load)) for load in loads]
+    return {
+        "rests": np.array(
+            [(load, math.hypot(one.x, one.y), one.spin) for load, one in zip(loads, found, strict=True)]
+        ),
+        "last stable load": np.array([last_stable_load(RING)]),
+    }
+
+
+def sticking() -> Data:
+    """Return loads from where sticking begins, and the radius (9)."""
+    loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
+    return {
+        "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])
+    }
+
+
+def ends() -> Data:
+    """Return over the offset where equilibrium and whirl end, and where the equilibrium loses its stability."""
+    discs = [replace(RING, offset=float(offset)) for offset in OFFSETS]
+    folds = [(0.0, smallest_load_with_whirl(CENTRED))]
+    folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in FOLD_OFFSETS]
+    return {
+        "offset": OFFSETS,
+        "last load": np.array([last_load(disc) for disc in discs]),
+        "last stable": np.array([last_stable_load(disc) for disc in discs]),
+        "folds": np.array(folds),
+    }

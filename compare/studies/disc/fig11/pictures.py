@@ -1,0 +1,285 @@
+"""Figures of the modulated cycle: histories, spectrum and section, growth out of the whirl, and the offsets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from compare.claims.study import Data
+from compare.figures import (
+    BLACK,
+    GREEN,
+    GREY,
+    PURPLE,
+    axis,
+    curve,
+    engine_style,
+    engines_in,
+    new_figure,
+    points,
+)
+from compare.studies.disc.fig11.cycle import TIMES
+from compare.studies.toolkit.fig11_motion import DISCS, RING
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+K = RING.natural_frequency
+
+EXPANDED = "(23)"
+
+ENLARGED = 20.0
+"""By which the paper's figure enlarges x."""
+
+SIDE_BANDS = 5
+
+SETTLED = 230.0
+"""In s: sections and spectra are taken after it."""
+
+X0_AXIS = 0.025
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw what is there."""
+    figures = {"fig11-history": draw_histories(data)} if data else {}
+    if any(words in data[engine] for engine in engines_in(data) for words in DISCS):
+        figures["fig11-section"] = draw_section(data)
+        figures["fig11-growth"] = draw_growth(data)
+    if "theory" in data:
+        figures["fig11-offset"] = draw_offsets(data)
+    return figures
+
+
+def histories(data: Mapping[str, Data], words: str) -> dict[str, FloatArray]:
+    """Return the states of the disc on that contact by who computed them."""
+    return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
+
+
+def draw_histories(data: Mapping[str, Data]) -> Figure:
+    """Draw spin and position over time as in the paper's figure, and the spin alone enlarged."""
+    figure, panels = new_figure(
+        ncols=3, nrows=2, width=13.0, height=6.0, sharex=True, sharey="row", height_ratios=(3, 2)
+    )
+    for column, words in enumerate(("six points", "the continuous ring", EXPANDED)):
+        both, alone = panels[column], panels[3 + column]
+        for rank, (name, states) in enumerate(histories(data, words).items()):
+            who = "reference" if name == "theory" else name
+            if rank == 0:
+                both.plot(TIMES, ENLARGED * states[:, 0], color=GREEN, linewidth=0.7, label=r"$20\,x$ in m")
+                both.plot(TIMES, states[:, 5], color=BLACK, linewidth=2.6, label=r"$\dot\varphi$ in rad/s")
+                alone.plot(TIMES, states[:, 5], color=BLACK, linewidth=1.6, label=who)
+                spans = data[name].get(f"{words}: rests", np.zeros(0)).reshape(-1, 2)
+                for i, time in enumerate(spans.mean(axis=1)):
+                    label = "a point rests" if i == 0 else "_"
+                    alone.plot(
+                        time, np.interp(time, TIMES, states[:, 5]), "o", color=PURPLE, zorder=5.0, label=label
+                    )
+            else:
+                sparse = slice(40 * (rank - 1), None, 80)
+                alone.plot(TIMES[sparse], states[sparse, 5], **points(who))
+        both.set_title(words[:1].upper() + words[1:] + (", reference only" if words == EXPANDED else ""))
+        alone.set(xlabel=axis("t", "s"), xlim=(0.0, TIMES[-1]))
+        if alone.lines:
+            alone.legend(loc="upper right", ncols=3, borderaxespad=0.1)
+    panels[0].set(ylabel=r"$\dot\varphi$ and $20\,x$", ylim=(-0.95, 1.95))
+    panels[3].set(ylabel=axis(r"\dot\varphi", "rad/s"), ylim=(1.36, 1.437))
+    if panels[0].lines:
+        panels[0].legend(loc="upper right", ncols=2, borderaxespad=0.1)
+    return figure
+
+
+def draw_section(data: Mapping[str, Data]) -> Figure:
+    """Draw the spectrum of the motion of the centre, and radius and spin once a turn."""
+    figure, (lines, sections) = new_figure(ncols=2, width=13.0, height=4.2)
+    draw_spectrum(lines, data)
+    if "theory" in data:
+        cycle = data["theory"]["cycle"][TIMES > SETTLED]
+        sections.plot(
+            np.hypot(cycle[:, 0], cycle[:, 1]), cycle[:, 5], **curve("theory", "whole cycle on the ring")
+        )
+        for (radius, spin), colour, label in zip(
+            data["theory"]["whirls"][[0, 2]],
+            (BLACK, PURPLE),
+            ("unstable whirl", "stable whirl by (23)"),
+            strict=True,
+        ):
+            sections.plot(radius, spin, "+", color=colour, markersize=9.0, markeredgewidth=1.8, label=label)
+    for name, states in histories(data, "the continuous ring").items():
+        sections.plot(*section(states), **points(name, f"{name}, ring", markersize=4.0))
+    for name, states in histories(data, "six points").items():
+        sections.plot(
+            *section(states), ".", color=GREY, markersize=3.0, label=f"{name}, six points", zorder=1.0
+        )
+        break
+    if "theory" in data:
+        sections.plot(
+            *section(data["theory"][EXPANDED], 0.0), ".-", color=PURPLE, markersize=2.0, linewidth=0.5
+        )
+    sections.set(
+        xlabel=axis(r"\rho", "m"),
+        ylabel=axis(r"\dot\varphi", "rad/s"),
+        title="Section $y=0$, $x>0$: once a turn",
+    )
+    if sections.lines:
+        sections.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9.0)
+    return figure
+
+
+def draw_spectrum(panel: Axes, data: Mapping[str, Data]) -> None:
+    """Draw the lines of the cycle on the ring over the spectrum of six points."""
+    floor = 1e-4
+    for name, states in histories(data, "six points").items():
+        frequency, amplitude = spectrum(states[TIMES > SETTLED])
+        panel.semilogy(
+            frequency / K, amplitude, color=GREY, linewidth=1.0, label=f"{name}, six points (Hann window)"
+        )
+        break
+    if "theory" in data:
+        period, turn = data["theory"]["modulation"][:2]
+        carrier, modulation = turn / period, 2.0 * math.pi / period
+        orders = np.arange(-SIDE_BANDS, SIDE_BANDS + 1)
+        for rank, (name, states) in enumerate(histories(data, "the continuous ring").items()):
+            heights = harmonics(states, period, carrier)
+            style = points(name, f"{name}, ring")
+            panel.semilogy((carrier + modulation * orders) / K, heights, **style)
+            if rank == 0:
+                panel.vlines(
+                    (carrier + modulation * orders) / K,
+                    floor,
+                    heights,
+                    color=engine_style(name).colour,
+                    linewidth=1.0,
+                )
+                top = float(np.max(heights))
+                panel.annotate(
+                    f"carrier {carrier / K:.4f} $k$",
+                    (carrier / K, top),
+                    (0, 26),
+                    textcoords="offset points",
+                    ha="center",
+                    fontsize=9.5,
+                )
+                panel.annotate(
+                    "",
+                    ((carrier + modulation) / K, 1.6 * top),
+                    (carrier / K, 1.6 * top),
+                    arrowprops={"arrowstyle": "<->", "linewidth": 0.8},
+                )
+                panel.annotate(
+                    rf"$2\pi/T$, $T$ = {period:.1f} s",
+                    ((carrier + 1.1 * modulation) / K, 1.5 * top),
+                    fontsize=9.5,
+                    va="center",
+                )
+    panel.set(
+        xlabel=r"frequency of $x + \mathrm{i}y$ over $k$",
+        ylabel="amplitude in m",
+        xlim=(0.83, 1.17),
+        ylim=(floor, 0.4),
+        title="Carrier and side bands",
+    )
+    if panel.lines:
+        panel.legend(loc="upper left", fontsize=9.0)
+
+
+def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return angular frequencies in rad/s and amplitudes of x + iy in m, of lines in a Hann window."""
+    window = np.hanning(len(states))
+    padded = 8 * len(states)
+    amplitude = np.abs(np.fft.fft(window * (states[:, 0] + 1j * states[:, 1]), padded)) / np.sum(window)
+    frequency = 2.0 * math.pi * np.fft.fftfreq(padded, TIMES[1])
+    order = np.argsort(frequency)
+    near = order[np.abs(frequency[order] / K - 1.0) < 0.3]
+    return frequency[near], amplitude[near]
+
+
+def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
+    """Return the amplitudes in m of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
+
+    In axes that turn with the carrier the cycle is periodic: the lines are its Fourier coefficients.
+    """
+    times = TIMES[-1] - period + period * np.arange(4096) / 4096.0
+    z = CubicSpline(TIMES, states[:, 0] + 1j * states[:, 1])(times) * np.exp(-1j * carrier * times)
+    coefficients = np.fft.fft(z) / len(z)
+    return np.abs(coefficients[np.arange(-SIDE_BANDS, SIDE_BANDS + 1)])
+
+
+def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, FloatArray]:
+    """Return radius in m and spin in rad/s whenever the centre crosses the positive x axis after ``after`` s."""
+    x, y, spin = (CubicSpline(TIMES, states[:, i]) for i in (0, 1, 5))
+    crossings = y.roots(extrapolate=False)
+    crossings = crossings[(x(crossings) > 0.0) & (crossings > after)]
+    return x(crossings), spin(crossings)
+
+
+def draw_growth(data: Mapping[str, Data]) -> Figure:
+    """Draw how a deviation grows until it is the modulated cycle, beside the exponential of the eigenvalue."""
+    figure, panels = new_figure(ncols=2, width=10.5, height=3.8, sharey=True)
+    for row, (panel, words) in enumerate(zip(panels, DISCS, strict=True)):
+        for name in engines_in(data):
+            if f"{words}: departure" in data[name]:
+                times, sizes = data[name][f"{words}: departure"].T
+                panel.semilogy(times, sizes, **curve(name))
+        if "theory" in data:
+            rate, frequency = data["theory"]["eigenvalues"][row]
+            times = np.array([0.0, 640.0 if row == 0 else 440.0])
+            panel.semilogy(
+                times,
+                5e-4 * np.exp(rate * times),
+                **curve("theory", rf"$\propto \exp({rate:.5f}\,t)$, linearised", linewidth=1.2),
+            )
+            panel.annotate(
+                rf"$\lambda = {rate:.5f} \pm {frequency:.5f}\,\mathrm{{i}}$ 1/s",
+                (0.97, 0.30),
+                xycoords="axes fraction",
+                ha="right",
+            )
+        panel.set(xlabel=axis("t", "s"), title=words[:1].upper() + words[1:], xlim=(0.0, None))
+        if panel.lines:
+            panel.legend(loc="lower right", fontsize=9.0)
+    panels[0].set_ylabel("deviation from the whirl,\nin units of its radius")
+    return figure
+
+
+def draw_offsets(data: Mapping[str, Data]) -> Figure:
+    """Draw radius and spin in the end over the offset, with the branches of whirl and equilibrium."""
+    figure, panels = new_figure(ncols=2, width=11.5, height=4.2)
+    theory = data["theory"]
+    critical, rest = float(theory["critical offset"]), float(theory["rest offset"])
+    for panel, place, top in ((panels[0], 0, 0.0475), (panels[1], 1, 1.437)):
+        for stable in (True, False):
+            dash = "-" if stable else ":"
+            offsets = theory["whirl: offset"]
+            shown = offsets >= critical if stable else offsets <= critical
+            for edge, label in ((0, "whirl" if stable else "whirl, unstable"), (1, "_")):
+                look = curve("theory", label, linewidth=1.4, linestyle=dash)
+                panel.plot(offsets[shown], theory["whirl: extents"][shown, 2 * place + edge], **look)
+        for stable in (True, False):
+            offsets = theory["rest: offset"]
+            shown = offsets >= rest if stable else offsets <= rest
+            label = "self-centred equilibrium" if stable else "the same, unstable"
+            look = curve("theory", label, color=GREY, linewidth=1.8, linestyle="-" if stable else ":")
+            panel.plot(offsets[shown], theory["rest: place"][shown, place], **look)
+        for engine in engines_in(data):
+            if "extents" in data[engine]:
+                ends = data[engine]["extents"][:, 2 * place : 2 * place + 2]
+                panel.plot(np.repeat(data[engine]["offsets"], 2), ends.ravel(), **points(engine))
+        for middle, words in (
+            (0.5 * critical, "modulated"),
+            (0.5 * (critical + rest), "steady whirl"),
+            (0.5 * (rest + X0_AXIS), "rest"),
+        ):
+            panel.annotate(words, (middle, top), ha="center", va="center", fontsize=10.5)
+        for offset in (critical, rest):
+            panel.axvline(offset, color=GREY, linewidth=0.8, linestyle="--")
+        panel.set(xlabel=axis("X_0", "m"), xlim=(0.0, X0_AXIS))
+    panels[0].set(ylabel=axis(r"\rho", "m") + ", least and greatest", ylim=(0.0, 0.05))
+    panels[1].set(ylabel=axis(r"\dot\varphi", "rad/s") + ", least and greatest", ylim=(1.325, 1.442))
+    panels[0].legend(loc="upper center", bbox_to_anchor=(0.61, 0.92), fontsize=9.0)
+    return figure

@@ -1,0 +1,77 @@
+"""Figure of the study of the free ring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compare.claims.study import Data
+from compare.figures import GREY, curve, engines_in, new_figure, points
+from compare.studies.disc.free_ring.theory import deviation
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LEAST_DEVIATION = 1e-8
+"""|ln U/W| below which an engine's tolerance is drawn and not the motion."""
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw the phase plane, the approach to the ratio 1, and the ratio over the moment of inertia."""
+    if not data:
+        return {}
+    figure, (plane, approach, ratio) = new_figure(ncols=3, width=13.2, height=4.2)
+    plane.plot([0.0, 0.7], [0.0, 0.7], color=GREY, linewidth=1.0, linestyle=":", label="ratio 1")
+    law = np.linspace(0.0, 22.0, 101)
+    approach.semilogy(law, deviation(law), **curve("theory", r"$8\,e^{-2}\exp(-A/t)$"))
+    if "theory" in data:
+        ratio.loglog(data["theory"]["inertia"], data["theory"]["ratio"], **curve("theory", "closed form"))
+    for engine in engines_in(data):
+        found = data[engine]
+        for i, (sliding, rim, place) in enumerate(
+            zip(found["sliding"], found["rim"], found["approach"], strict=True)
+        ):
+            label = None if i == 0 else "_"
+            largest = np.hypot(sliding[0], rim[0])
+            plane.plot(rim / largest, sliding / largest, **curve(engine, label))
+            away = np.abs(np.log(sliding / rim))
+            seen = (away > LEAST_DEVIATION) & (place > 0.0)
+            approach.semilogy(place[seen], away[seen], **curve(engine, label))
+        ratio.plot(found["inertia"], found["ratio"], **points(engine))
+    plane.set(
+        xlabel=r"$R\,|\dot\varphi|\,/\,v_0$",
+        ylabel=r"$|v|\,/\,v_0$",
+        aspect="equal",
+        xlim=(0.0, 1.02),
+        ylim=(0.0, 1.02),
+        title=r"Speeds of rim and centre, $J = mR^2$",
+    )
+    approach.set(
+        xlabel=r"$A\,/\,t$, $t$: time until the ring rests",
+        ylabel=r"$|\ln(|v|\,/\,R\dot\varphi)|$",
+        xlim=(0.0, 22.0),
+        ylim=(LEAST_DEVIATION, 20.0),
+        title=r"Approach to the ratio 1, $J = mR^2$",
+    )
+    ticks = [0.5, 0.7, 1.0, 1.4, 2.0]
+    ratio.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    values = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
+    ratio.set_yticks(values, [f"{value:g}" for value in values])
+    ratio.minorticks_off()
+    for limit in (0.5, 2.0):
+        ratio.axvline(limit, color=GREY, linewidth=0.9, linestyle="--")
+    ratio.annotate(r"$\infty$", (0.46, 5.0), ha="center", fontsize=13)
+    ratio.annotate("0", (2.2, 0.19), ha="center", fontsize=12)
+    ratio.set(
+        xlabel=r"$J\,/\,mR^2$",
+        ylabel=r"$|v|\,/\,R\dot\varphi$ in the end",
+        xlim=(0.42, 2.4),
+        ylim=(0.1, 10.0),
+        title="Ratio in the end",
+    )
+    plane.legend(loc="upper right")
+    approach.legend(loc="upper right")
+    ratio.legend(loc="lower left", bbox_to_anchor=(0.13, 0.05))
+    return {"free-ring": figure}

@@ -1,0 +1,1 @@
+"""Studies of a clutch in a drivetrain, which no formula of the paper covers."""

@@ -1,0 +1,159 @@
+"""Small motions of the whole drivetrain about a whirl, with the reference's law of friction.
+
+Five coordinates: x and y of the disc's centre, its angle φ, that of the engine θ and that of the vehicle ψ. The slip
+u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates; the transpose of that map puts
+friction on the disc and its whole reaction, the moment −(M + z×F), on the engine. In axes that turn with the whirl
+its state rests, so that its stability is an eigenvalue problem.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+
+from compare.studies.toolkit.common import ComplexArray
+from compare.studies.toolkit.drivetrain_bench import facings, natural_frequency
+from reference_model import Annulus
+from reference_model.steady.stability import QUARTER_TURN
+from reference_model.support import ROUNDED_UP, Support
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain
+
+ENGINE, VEHICLE, ANGLE = 0, 1, 4
+"""Places of θ, ψ and φ among the coordinates; x and y lie between them."""
+
+CENTRE = slice(2, 4)
+
+
+@dataclass(frozen=True)
+class CarWhirl:
+    """A steady whirl of the clutch disc in a car whose engine and load both give a constant torque.
+
+    Parameters
+    ----------
+    engine_speed, slip, frequency : float
+        ω, S and κ in rad/s.
+    radius : float
+        ρ in m.
+    friction_force, torque : float
+        μN of both facings in N, and what the load takes, in N m.
+    engine_torque : float
+        In N m: the engine drives the whirl too, with the moment ρ·βκρ of friction about its axis.
+
+    """
+
+    engine_speed: float
+    slip: float
+    frequency: float
+    radius: float
+    friction_force: float
+    torque: float
+    engine_torque: float
+
+    @property
+    def place(self) -> complex:
+        """Of the centre at the start, in m."""
+        return complex(self.radius)
+
+    @property
+    def velocity(self) -> complex:
+        """Of the centre at the start, in m/s."""
+        return 1j * self.frequency * self.radius
+
+
+def whirl_under_surplus(
+    car: Drivetrain, engine_speed: float, torque: float, surplus: float
+) -> CarWhirl | None:
+    """Return the whirl of a clutch pressed by a factor of 1 + ``surplus`` more than the torque needs, or None.
+
+    A centred disc under that load would lock up. The whirl takes a part of the moment of friction away: the slip of
+    the centre over that of the rim is such that M(U, S) is what the torque needs. This ratio gives the force, the
+    force the radius, ρ·β·κ(ρ) = μN·F, and that the slip: S = (ω − κ)ρ over the ratio.
+    """
+    law, support = facings(car), support_of(car)
+    needed = car.friction_radius / (1.0 + surplus)
+    ratio = _ratio_of_moment(law, needed)
+    friction = torque / needed
+    drive = friction * law.shares(ratio, 1.0).resistance
+    damping, mass = car.radial_damping, car.disc_mass
+
+    def left(radius: float) -> float:
+        return damping * math.sqrt(support.secant(radius) / mass) * radius - drive
+
+    largest = drive / (damping * natural_frequency(car)) * ROUNDED_UP
+    radius = float(brentq(left, 0.0, largest, xtol=1e-18, rtol=1e-14))
+    frequency = math.sqrt(support.secant(radius) / mass)
+    if frequency >= engine_speed:
+        return None
+    slip = (engine_speed - frequency) * radius / ratio
+    return CarWhirl(engine_speed, slip, frequency, radius, friction, torque, torque + drive * radius)
+
+
+@functools.lru_cache(maxsize=64)
+def _ratio_of_moment(law: Annulus, needed: float) -> float:
+    """Return U/S in m at which the moment per newton is ``needed`` (m)."""
+    widest = 10.0 * law.outer_radius
+    return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
+
+
+def support_of(car: Drivetrain) -> Support:
+    """Return the reference's support of the clutch disc about the engine's axis."""
+    return Support(car.radial_stiffness, 0.0, car.hardening, car.stop_gap, car.stop_stiffness)
+
+
+def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = 16) -> FloatArray:
+    """Return A of the small motions (θ, ψ, x, y, φ and rates), shape (10, 10), when the centre is on the x axis."""
+    x, omega, law = whirl.radius, whirl.engine_speed, facings(car, rings)
+    place_to_slip, rate_to_slip = np.zeros((3, 5)), np.zeros((3, 5))  # of u_x, u_y, S
+    place_to_slip[:2, CENTRE] = -omega * QUARTER_TURN
+    rate_to_slip[:2, CENTRE] = np.eye(2)
+    rate_to_slip[1, ENGINE] = -x
+    rate_to_slip[2, [ENGINE, ANGLE]] = 1.0, -1.0
+    slip = 1j * (whirl.frequency - omega) * x
+    force, _ = law.force_and_moment(slip, whirl.slip, 0.0)
+    changes = whirl.friction_force * law.jacobian(slip, whirl.slip, 0.0)[:, :3]
+    # The moment on the disc is that with which friction resists S: as a force that belongs to S it counts negative.
+    put = rate_to_slip.T @ np.diag([1.0, 1.0, -1.0])
+    stiffness, damping = -put @ changes @ place_to_slip, -put @ changes @ rate_to_slip
+    fx, fy = whirl.friction_force * force.real, whirl.friction_force * force.imag
+    stiffness[ENGINE, CENTRE] -= -fy, fx  # the arm of the force changes
+    stiffness[CENTRE, CENTRE] += support_of(car).stiffness_matrix(complex(x))
+    damping[CENTRE, CENTRE] += car.radial_damping * np.eye(2)
+    twist = np.zeros(5)
+    twist[[VEHICLE, ANGLE]] = -1.0, 1.0
+    stiffness += car.torsional_stiffness * np.outer(twist, twist)
+    damping += car.torsional_damping * np.outer(twist, twist)
+    inertias = np.array(
+        [car.engine_inertia, car.vehicle_inertia, car.disc_mass, car.disc_mass, car.disc_inertia]
+    )
+    lower = -np.hstack((stiffness, damping)) / inertias[:, None]
+    return np.vstack((np.eye(5, 10, 5), lower))
+
+
+def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
+    """Return the matrix of small motions in axes that turn with ``frequency`` (rad/s), shape (8, 8).
+
+    The state is x, y, the twist φ − ψ, which is all that matters of the angles, and the rates of θ, ψ, x, y, φ.
+    """
+    turned = matrix.copy()
+    for first in (2, 7):
+        turned[first : first + 2, first : first + 2] -= frequency * QUARTER_TURN
+    turned[ANGLE] -= turned[VEHICLE]  # nothing depends on θ, nor on ψ but through the twist
+    return turned[2:, 2:]
+
+
+def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
+    """Return the six eigenvalues in 1/s that belong neither to the free phase nor to the free speed of the car.
+
+    The one that decays slowest comes first.
+    """
+    values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
+    values = values[np.argsort(np.abs(values))[2:]]
+    return np.asarray(values[np.lexsort((-values.imag, -values.real))])

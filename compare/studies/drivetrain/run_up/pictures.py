@@ -1,0 +1,262 @@
+"""Figures of the run-up: radius and slip over speed, the spectrum of the disc's motion, and the drivetrain in 3D."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import ShortTimeFFT
+
+from compare.claims.study import Data
+from compare.figures import BLACK, BLUE, GREY, ORANGE, axis, curve, engine_style, engines_in, new_figure
+from compare.report.animation import gif
+from compare.studies.toolkit.drivetrain_bench import RPM, centre, natural_frequency, passenger_car
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MM = 1e3
+
+CYAN = "#58e0ff"
+
+TURNS, SAMPLES = 36, 16
+"""Length of a window of the spectrum in turns of the engine, and samples in each turn."""
+
+OPEN = 0.7
+"""Angle in rad at which the cut of the cover faces the viewer."""
+
+ENLARGED = 50.0
+"""By which radial motion is enlarged in three dimensions."""
+
+SHOWN = (2000.0, 3100.0, 5000.0)
+"""Turns a minute of the pictures."""
+
+FRAMES = 15
+"""Of each slow motion."""
+
+STEP = math.radians(48.0)
+"""By which the engine turns from one frame to the next."""
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw what is there."""
+    figures: dict[str, Figure] = {}
+    if engines_in(data):
+        figures["drivetrain-run-up"] = draw_run_up(data)
+        figures["drivetrain-waterfall"] = draw_waterfall(data)
+        figures["drivetrain-picture"] = draw_pictures(data)
+    return figures
+
+
+def draw_run_up(data: Mapping[str, Data]) -> Figure:
+    """Draw radius and slip over the engine's speed, with what the reference predicts at frozen speeds."""
+    figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=6.0, sharex=True, height_ratios=(3, 1))
+    car = passenger_car()
+    for engine in engines_in(data):
+        found = data[engine]
+        colour = engine_style(engine).colour
+        speed, least, largest = envelope(found, np.abs(centre(found["disc"])))
+        radius.fill_between(
+            speed,
+            MM * least,
+            MM * largest,
+            color=colour,
+            alpha=0.35,
+            lw=0.0,
+            label=f"{engine}: least to largest",
+        )
+        speed, least, largest = envelope(found, found["slip"])
+        slip.fill_between(speed, least, largest, color=colour, alpha=0.5, lw=0.0)
+    if "theory" in data:
+        theory = data["theory"]
+        speed, rest = theory["rest"].T
+        radius.plot(speed / RPM, MM * rest, **curve("theory", "reference: at rest in space", linewidth=1.4))
+        for sign, label in ((1.0, "with the unbalance"), (-1.0, "_")):
+            swing = np.abs(rest + sign * theory["unbalance"])
+            radius.plot(speed / RPM, MM * swing, **curve("theory", label, linestyle="--"))
+        speed, whirl, _ = theory["whirl"].T
+        radius.plot(speed / RPM, MM * whirl, **curve("theory", "reference: whirl", color=BLUE, linewidth=1.6))
+        for sign, label in ((1.0, "shifted by the offset"), (-1.0, "_")):
+            look = curve("theory", label, color=BLUE, linestyle="--")
+            radius.plot(speed / RPM, MM * (whirl + sign * car.offset), **look)
+        onset, k = theory["onset"] / RPM
+        for panel in (radius, slip):
+            panel.axvline(k, color=GREY, lw=0.8, ls=":")
+            panel.axvline(onset, color=GREY, lw=0.8, ls="--")
+        radius.annotate("$k$", (k, 0.9), (-3, 0), ha="right", textcoords="offset points")
+        radius.annotate("onset", (onset, 0.9), (3, 0), textcoords="offset points")
+    radius.set(ylabel="distance of the disc's centre\nfrom the engine's axis in mm", ylim=(0.0, 0.96))
+    slip.set(xlabel="engine speed in rpm", ylabel="slip in rad/s", xlim=(800.0, 6000.0))
+    radius.legend(loc="upper left", fontsize=9.0)
+    return figure
+
+
+def envelope(found: Data, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the speed in turns a minute, and least and largest value, in every second turn of the engine."""
+    angle, speed = found["engine"].T
+    starts = np.unique(np.floor(angle / (4.0 * math.pi)), return_index=True)[1]
+    middle = np.add.reduceat(speed, starts) / np.diff(np.append(starts, len(speed)))
+    return middle / RPM, np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
+
+
+def draw_waterfall(data: Mapping[str, Data]) -> Figure:
+    """Draw the spectrum of x + iy over the engine's speed; what circles backwards has a negative frequency."""
+    engine = engines_in(data)[0]
+    figure, (panel,) = new_figure(width=9.5, height=5.4)
+    speed, orders, amplitude = order_spectrum(data[engine])
+    level = 20.0 * np.log10(np.maximum(amplitude, 1e-9) / 1e-6)
+    frequency = orders[:, np.newaxis] * speed / (2.0 * math.pi)
+    mesh = panel.pcolormesh(
+        np.broadcast_to(speed / RPM, frequency.shape),
+        frequency,
+        level,
+        cmap="magma",
+        vmin=0.0,
+        vmax=58.0,
+        shading="gouraud",
+        rasterized=True,
+    )
+    figure.colorbar(mesh, label="amplitude in dB over 1 μm")
+    across = np.array([speed[0], speed[-1]]) / RPM
+    own = natural_frequency(passenger_car()) / (2.0 * math.pi)
+    light: dict[str, Any] = {"color": "white", "lw": 0.8}
+    panel.plot(across, across / 60.0, ls="--", **light)
+    panel.plot(across, across / 30.0, ls=":", **light)
+    panel.axhline(own, ls="-.", **light)
+    lines = [
+        ("engine, order 1", (2450.0, 24.0), "white"),
+        ("engine, order 2: firing", (2150.0, 107.0), "white"),
+        (r"natural frequency $k/2\pi$", (4900.0, own - 12.0), "white"),
+        ("at rest in space", (1700.0, 5.0), "white"),
+    ]
+    if "theory" in data:
+        turns, _, whirl = data["theory"]["whirl"].T
+        panel.plot(turns / RPM, whirl / (2.0 * math.pi), color=CYAN, lw=1.2)
+        lines.append(("whirl of the reference", (3000.0, 75.0), CYAN))
+    for words, where, colour in lines:
+        panel.annotate(words, where, color=colour)
+    panel.set(
+        xlabel="engine speed in rpm",
+        ylabel="frequency in Hz (negative: backwards)",
+        xlim=across,
+        ylim=(-130.0, 200.0),
+    )
+    panel.grid(visible=False)
+    return figure
+
+
+def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return speeds in rad/s (m,), orders (n,) and amplitudes of x + iy in m (n, m).
+
+    Sampled at equal angles of the engine, so that an order stays what it is while the speed rises.
+    """
+    angle, speed = found["engine"].T
+    even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
+    times = np.interp(even, angle, found["times"])
+    z = CubicSpline(found["times"], centre(found["disc"]))(times)
+    window = np.hanning(TURNS * SAMPLES)
+    transform = ShortTimeFFT(
+        window / np.sum(window),
+        2 * SAMPLES,
+        SAMPLES,
+        fft_mode="centered",
+        mfft=2 * len(window),
+        phase_shift=None,
+    )
+    first, end = transform.lower_border_end[1], transform.upper_border_begin(len(z))[1]
+    amplitude = np.abs(transform.stft(z, p0=first, p1=end))
+    middles = even[0] + 2.0 * math.pi * transform.t(len(z), first, end)
+    return np.interp(middles, angle, speed), transform.f, amplitude
+
+
+def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
+    """Return the speed in rad/s in each window and the order of what circles forwards the most, shape (m,) each.
+
+    A disc that all but rests is left out, by half an order; the top lies between the lines, on a parabola through
+    three logarithms.
+    """
+    speed, orders, amplitude = order_spectrum(found)
+    first = int(np.searchsorted(orders, 0.5))
+    top = first + np.argmax(amplitude[first:-1], axis=0)
+    low, middle, high = (np.log(np.take_along_axis(amplitude, (top + i)[None], 0)[0]) for i in (-1, 0, 1))
+    return speed, orders[top] + (orders[1] - orders[0]) * 0.5 * (low - high) / (low - 2.0 * middle + high)
+
+
+def draw_pictures(data: Mapping[str, Data]) -> Figure:
+    """Draw flywheel, disc and shaft below the onset, near it and in the whirl."""
+    from exudyn_models.drivetrain.picture import draw_drivetrain
+
+    found = data[engines_in(data)[0]]
+    figure, panels = new_figure(ncols=len(SHOWN), width=11.0, height=3.4)
+    for panel, turns in zip(panels, SHOWN, strict=True):
+        _, disc = motion_at(found, time_of(found, turns))
+        image = draw_drivetrain(
+            passenger_car(), engine_angle=OPEN, disc=disc, magnification=ENLARGED, size=(900, 760)
+        )
+        show(panel, image, f"{turns:.0f} rpm")
+    return figure
+
+
+def show(panel: Axes, image: Any, title: str) -> None:
+    """Show a picture without axes."""
+    panel.imshow(image)
+    panel.set_axis_off()
+    panel.set_title(title, loc="center")
+
+
+def time_of(found: Data, turns: float) -> float:
+    """Return when the engine reaches a speed in turns a minute, but for its ripple."""
+    angle, times = found["engine"][:, 0], found["times"]
+    smooth = np.polyfit(times, angle, 4)
+    return float(np.interp(turns * RPM, np.polyval(np.polyder(smooth), times), times))
+
+
+def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
+    """Return the engine's angle and the disc's x, y and angle at a time."""
+    near = slice(*np.searchsorted(found["times"], [time - 0.01, time + 0.01]))
+    times = found["times"][near]
+    angle = float(CubicSpline(times, found["engine"][near, 0])(time))
+    return angle, np.asarray(CubicSpline(times, found["disc"][near])(time))
+
+
+def animations(data: Mapping[str, Data]) -> dict[str, bytes]:
+    """Draw slow motions of some turns at three speeds: the drivetrain, and the orbit of the disc's centre."""
+    if not engines_in(data):
+        return {}
+    from exudyn_models.drivetrain.picture import draw_drivetrain
+
+    found = data[engines_in(data)[0]]
+    car = passenger_car()
+    figure, (picture, orbit) = new_figure(ncols=2, width=7.6, height=3.5, width_ratios=(1.15, 1))
+    around = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
+    x0 = MM * car.offset
+    stop = x0 + MM * car.stop_gap * around
+    orbit.plot(stop.real, stop.imag, color=GREY, lw=0.8, label="play")
+    orbit.plot([0.0], [0.0], "+", color=BLACK, markersize=9.0, label="engine's axis")
+    orbit.plot([x0], [0.0], "x", color=GREY, markersize=7.0, label="shaft's axis")
+    (trail,) = orbit.plot([], [], color=ORANGE, lw=1.2)
+    (dot,) = orbit.plot([], [], "o", color=ORANGE, markersize=6.0)
+    orbit.set(
+        xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", xlim=(-0.75, 0.95), ylim=(-0.85, 0.85)
+    )
+    orbit.legend(loc="lower center", ncols=3, fontsize=8.0, handlelength=1.0, columnspacing=0.8)
+    stages = [(turns, time_of(found, turns)) for turns in SHOWN]
+
+    def update(frame: int) -> None:
+        turns, start = stages[frame // FRAMES]
+        times = start + np.arange(frame % FRAMES + 1) * STEP / (turns * RPM)
+        angle, disc = motion_at(found, times[-1])
+        image = draw_drivetrain(car, engine_angle=angle, disc=disc, magnification=ENLARGED, size=(330, 280))
+        picture.clear()
+        show(picture, image, f"{turns:.0f} rpm")
+        near = (found["times"] > start) & (found["times"] <= times[-1])
+        z = MM * np.append(centre(found["disc"][near]), complex(*disc[:2]))
+        trail.set_data(z.real, z.imag)
+        dot.set_data([z[-1].real], [z[-1].imag])
+
+    return {"drivetrain-turning": gif(figure, update, FRAMES * len(SHOWN), fps=12.0)}

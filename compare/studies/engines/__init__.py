@@ -1,0 +1,1 @@
+"""Studies of the engines themselves: single motions, balances, convergence, error estimates, scale."""

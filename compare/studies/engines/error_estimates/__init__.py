@@ -1,0 +1,5 @@
+"""What the error bars of all claims are worth: true errors of random motions beside their estimates."""
+
+from compare.studies.engines.error_estimates.claims import STUDY
+
+__all__ = ["STUDY"]

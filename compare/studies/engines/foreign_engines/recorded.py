@@ -1,0 +1,52 @@
+"""What each recorded engine makes of each case: whether its motion comes to the exact one as the tolerance falls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.error_estimates import ROUNDING
+from compare.claims.study import Recorded
+from compare.foreign.cases import CASES
+from compare.foreign.records import COLUMNS, Recording
+from compare.studies.toolkit.common import parameters_of
+from reference_model.systems import FloatArray
+
+TOLERANCE, STEPS, ERROR, CHANGE = (COLUMNS.index(name) for name in ("tolerance", "steps", "error", "change"))
+
+
+def estimate(runs: FloatArray) -> float:
+    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
+
+    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
+    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
+    """
+    return float(np.nansum(runs[-2:, CHANGE]))
+
+
+def recorded_claims(recording: Recording) -> Recorded:
+    """Return the claim of each case about one setting of an engine, from its finest run."""
+    claims = []
+    for name, case in CASES.items():
+        runs = recording.runs[name]
+        rounding = ROUNDING * max(map(abs, case.start))
+        claims.append(
+            Claim(
+                case.sentence,
+                equation=case.equation,
+                kind=case.kind,
+                engine=recording.name,
+                predicted=0.0,
+                measured=runs[-1, ERROR],
+                budget=ErrorBudget(estimate(runs) + rounding, resolution=case.resolution),
+                parameters=parameters_of(case.system)
+                | {"tolerance": float(runs[-1, TOLERANCE]), "steps": float(runs[-1, STEPS])},
+                source=f"Recorded on {recording.recorded} with {recording.engine} {recording.version}, "
+                f"{recording.platform}; {case.title}",
+                unit="m",
+                note="How far the finest run is off the exact motion, the largest over time. Numerical error: what "
+                "the last two refinements of the tolerance changed. Resolution: a tenth of what another law of "
+                "friction, or a pin that lets go, would change.",
+            )
+        )
+    return Recorded(recording.engine, recording.setting, recording.version, recording.recorded, tuple(claims))

@@ -1,0 +1,5 @@
+"""Fig. 3 and eq. 3 to 5: the pin at rest in space on the semicircle, its stability, and the loss of it."""
+
+from compare.studies.pin.fig03.claims import STUDY
+
+__all__ = ["STUDY"]

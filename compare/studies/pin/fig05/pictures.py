@@ -1,0 +1,113 @@
+"""Figure and animation of the two motions of Fig. 5."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compare.claims.paper_parameters import FIG5
+from compare.claims.study import Data
+from compare.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "equilibrium": {"color": BLACK},
+    "whirl": {"color": GREEN, "linestyle": (0.0, (5.0, 1.5))},
+}
+"""As in the paper."""
+
+STUCK = PURPLE
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw both motions in the plane and over time, and the errors of their stick and release times."""
+    figure, (plane, history, errors) = new_figure(ncols=3, width=13.0)
+    for rank, engine in enumerate(engines_in(data)):
+        found = data[engine]
+        for name, look in LOOKS.items():
+            times, states = found[f"{name}: times"], found[f"{name}: states"]
+            radius = np.hypot(states[:, 0], states[:, 1])
+            if rank == 0:
+                plane.plot(states[:, 0], states[:, 1], linewidth=0.8, **look)
+                history.plot(times, radius, label=f"{name}, {engine}", linewidth=1.1, **look)
+                for start, end in found[f"{name}: sticks"].reshape(-1, 2):
+                    inside = (times >= start) & (times <= end)
+                    history.plot(times[inside], radius[inside], color=STUCK, linewidth=4.0)
+            else:
+                sparse = slice(None, None, 37)
+                label = engine if name == "equilibrium" else ""
+                plane.plot(states[sparse, 0], states[sparse, 1], **points(engine, "", markersize=3.0))
+                history.plot(times[sparse], radius[sparse], **points(engine, label, markersize=3.0))
+            events, exact = found[f"{name}: sticks"], found[f"{name}: reference sticks"]
+            if len(events) == len(exact):
+                gap = np.maximum(np.abs(events - exact), 1e-14)
+                label = engine if name == "whirl" else ""
+                fill = "full" if name == "equilibrium" else "none"
+                style = points(engine, label, linestyle=":") | {"fillstyle": fill, "markerfacecolor": None}
+                errors.semilogy(np.arange(1, len(gap) + 1), gap, **style)
+    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
+    plane.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
+    history.plot([], [], color=STUCK, linewidth=4.0, label="stick phases")
+    history.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, None))
+    history.legend(loc="upper left")
+    errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of its time in s")
+    if errors.lines:
+        errors.legend()
+    return {"fig05-motions": figure}
+
+
+def animate(data: Mapping[str, Data], until: float = 80.0) -> dict[str, bytes]:
+    """Show the first ``until`` s of both motions on the turning disc: stick phases, equilibrium and whirl."""
+    from compare.report.animation import gif
+
+    if not engines_in(data):
+        return {}
+    found = data[engines_in(data)[0]]
+    figure, panels = new_figure(ncols=2, width=7.2, height=3.9)
+    views = [_View(panel, name, found) for panel, name in zip(panels, LOOKS, strict=True)]
+    panels[0].set_ylabel(axis("y", "m"))
+    shown = np.flatnonzero(found["whirl: times"] <= until)[::4]
+
+    def frame(i: int) -> None:
+        for view in views:
+            view.show(int(shown[i]))
+
+    return {"fig05-animation": gif(figure, frame, len(shown))}
+
+
+class _View:
+    """One motion on the turning disc."""
+
+    TRAIL = 120  # samples
+
+    def __init__(self, panel: Axes, name: str, found: Data) -> None:
+        self.name = name
+        self.panel = panel
+        self.times = found[f"{name}: times"]
+        self.states = found[f"{name}: states"]
+        self.sticks: FloatArray = found[f"{name}: sticks"].reshape(-1, 2)
+        panel.set(xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), aspect="equal", xlabel=axis("x", "m"))
+        panel.grid(False)
+        self.spokes = [panel.plot([], [], color="#cccccc", linewidth=1.0)[0] for _ in range(6)]
+        (self.trail,) = panel.plot([], [], color=engine_style("reference").colour, linewidth=1.0)
+        (self.pin,) = panel.plot([], [], marker="o", color=BLACK, markersize=7.0)
+
+    def show(self, sample: int) -> None:
+        """Move everything to where it is at that sample."""
+        t = float(self.times[sample])
+        for i, spoke in enumerate(self.spokes):
+            angle = FIG5.disc_speed * t + i * math.pi / 3.0
+            spoke.set_data([0.0, 1.1 * math.cos(angle)], [0.0, 1.1 * math.sin(angle)])
+        past = self.states[max(sample - self.TRAIL, 0) : sample + 1]
+        self.trail.set_data(past[:, 0], past[:, 1])
+        self.pin.set_data(past[-1:, 0], past[-1:, 1])
+        stuck = bool(np.any((self.sticks[:, 0] <= t) & (t <= self.sticks[:, 1])))
+        self.pin.set_color(STUCK if stuck else BLACK)
+        self.panel.set_title(f"to the {self.name}, t = {t:5.1f} s, {'sticks' if stuck else 'slides'}")

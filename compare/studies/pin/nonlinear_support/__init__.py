@@ -1,0 +1,5 @@
+"""A support that hardens or has a stop: what limits the amplitude "in practical application"."""
+
+from compare.studies.pin.nonlinear_support.claims import STUDY
+
+__all__ = ["STUDY"]

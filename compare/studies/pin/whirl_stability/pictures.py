@@ -1,0 +1,146 @@
+"""Figures of the study of the whirl's stability."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from compare.claims.paper_parameters import CENTRED
+from compare.claims.study import Data
+from compare.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
+from reference_model.formulas.pin import variational_matrix
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+K = CENTRED.natural_frequency
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw what is there: the start on the circle and the deviation, the eigenvalues, and the map."""
+    figures = {"whirl-motions": draw_motions(data)} if engines_in(data) else {}
+    if "theory" in data:
+        figures["whirl-eigenvalues"] = draw_eigenvalues(data)
+        figures["whirl-map"] = draw_map(data["theory"])
+    return figures
+
+
+def draw_motions(data: Mapping[str, Data]) -> Figure:
+    """Draw the radius after a start on the circle (11), and a small deviation that decays."""
+    figure, (leaving, decay) = new_figure(ncols=2, width=9.8, height=3.6)
+    last = 0.0
+    for engine in engines_in(data):
+        found = data[engine]
+        label = engine
+        for speed, radius in zip(found["start"], found["leaving"], strict=True):
+            if engine == engines_in(data)[0] and speed < K:
+                leaving.annotate(
+                    rf"$\omega = {speed / K:g}\,k$",
+                    (found["leaving_time"][-1], radius[-1] / radius[0]),
+                    (5, 0),
+                    textcoords="offset points",
+                    va="center",
+                    fontsize=9.5,
+                )
+            leaving.plot(found["leaving_time"], radius / radius[0], **curve(engine, label))
+            label = "_"
+        decay.plot(found["history_time"], found["history"], **curve(engine))
+        last = max(last, float(found["leaving_time"][-1]))
+    above = [speed / K for engine in engines_in(data)[:1] for speed in data[engine]["start"] if speed > K]
+    if above:
+        leaving.annotate(
+            rf"$\omega = {', '.join(f'{ratio:g}' for ratio in above)}\,k$", (6.0, 1.03), fontsize=9.5
+        )
+    leaving.set(
+        xlabel=axis("t", "s"),
+        ylabel=r"$\rho\,/\,\rho_c$",
+        xlim=(0.0, last + 3.6),
+        ylim=(0.0, 1.15),
+        title="Starts on the circle (11)",
+    )
+    leaving.legend(loc="lower left")
+    if "theory" in data:
+        decay.plot(
+            data["theory"]["deviation_time"], data["theory"]["deviation"], **curve("theory", "eq. (12)")
+        )
+    times = np.linspace(0.0, 60.0, 301)
+    values, vectors = np.linalg.eig(variational_matrix(CENTRED))
+    shares = np.abs(np.linalg.solve(vectors, np.array([1.0, K, 0.0])) * vectors[0])
+    real = np.abs(values.imag) == 0.0
+    middle = shares[real] * np.exp(values[real].real * times[:, np.newaxis])
+    width = np.sum(shares[~real] * np.exp(values[~real].real * times[:, np.newaxis]), axis=1)
+    envelope: dict[str, Any] = {"color": GREY, "linewidth": 1.0}
+    decay.plot(
+        times,
+        middle,
+        **envelope,
+        linestyle="--",
+        label=rf"real eigenvalue: $\propto \exp({values[real][0].real:.3f}\,t)$",
+    )
+    for sign, label in (
+        (1.0, rf"beside it the pair: $\propto \exp({values[~real][0].real:.3f}\,t)$"),
+        (-1.0, "_"),
+    ):
+        decay.plot(times, middle[:, 0] + sign * width, **envelope, linestyle=(0.0, (1.0, 1.0)), label=label)
+    decay.set(
+        xlabel=axis("t", "s"),
+        ylabel=r"$\xi\,/\,a$",
+        xlim=(0.0, times[-1]),
+        title=rf"Small deviation of the radius, $\omega = {CENTRED.disc_speed / K:g}\,k$",
+    )
+    decay.legend(loc="upper right", fontsize=9.0)
+    return figure
+
+
+def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
+    """Draw decay rates and frequencies of the eigenvalues over the speed of the disc."""
+    figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
+    theory = data["theory"]
+    for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):
+        for which in range(3):
+            line = curve("theory", "eq. (12)" if which == 0 else "_")
+            panel.plot(theory["speed"] / K, sign * theory["eigenvalue"][:, which, part] / K, **line)
+        for engine in engines_in(data):
+            found = data[engine]
+            chosen = found["point"][:, 1] == CENTRED.damping
+            speed = np.repeat(found["point"][chosen, 0], 4)
+            panel.plot(speed / K, sign * found["eigenvalue"][chosen][..., part].ravel() / K, **points(engine))
+        panel.set(xlabel=axis(r"\omega/k"), xscale="log", xlim=(1.0, 7.2))
+        panel.set_xticks([1, 1.5, 2, 3, 4, 5, 7], ["1", "1.5", "2", "3", "4", "5", "7"])
+        panel.minorticks_off()
+    decay.set(yscale="log", ylim=(0.02, 20.0), ylabel=r"$-\mathrm{Re}\,\lambda\,/\,k$", title="Decay")
+    decay.legend()
+    oscillation.set(ylabel=r"$\mathrm{Im}\,\lambda\,/\,k$", title="Oscillation")
+    return figure
+
+
+def draw_map(theory: Data) -> Figure:
+    """Draw the largest real part of the roots of (13) over speed and damping, and the boundary (16)."""
+    from matplotlib.colors import SymLogNorm
+
+    figure, (panel,) = new_figure(width=6.4, height=4.0)
+    ratio, damping, largest = theory["ratio"], theory["damping"], theory["largest"]
+    levels = [-0.5, -0.2, -0.1, -0.05, -0.02, 0.0, 0.02, 0.1, 0.5, 2.0, 10.0, 50.0]
+    norm = SymLogNorm(linthresh=0.02, vmin=-2.0, vmax=200.0)
+    for region in (ratio < 1.0, ratio > 1.0):  # the real part jumps at ω = k
+        shades = panel.contourf(
+            ratio[region], damping, largest[:, region], levels, norm=norm, cmap="Greys", extend="both"
+        )
+        panel.contour(
+            ratio[region], damping, largest[:, region], levels, norm=norm, colors="black", linewidths=0.3
+        )
+    figure.colorbar(shades, ax=panel, label=r"$\max\,\mathrm{Re}\,\lambda\,/\,k$", format="%g", ticks=levels)
+    fine = np.geomspace(damping[0], damping[-1], 400)
+    q = (2.0 / fine) ** 2
+    bound = q / (1.0 + q + np.hypot(1.0, q))  # (16): ω/(ω − k) = −bound
+    panel.plot(bound / (1.0 + bound), fine, color=ORANGE, linewidth=2.2, label="boundary (16)")
+    panel.axvline(1.0, color=BLUE, linewidth=2.2, linestyle="--", label=r"$\omega = k$")
+    box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.25}
+    panel.annotate("the whirl exists\nand is stable", (2.0, 0.5), ha="center", fontsize=10, bbox=box)
+    panel.annotate("roots of (13) only:\nno whirl exists", (0.5, 0.06), ha="center", fontsize=10, bbox=box)
+    panel.set(xlabel=axis(r"\omega/k"), ylabel=r"$\beta\,/\,(m k)$", yscale="log", xlim=(0.01, 2.99))
+    panel.grid(visible=False)
+    panel.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)
+    return figure

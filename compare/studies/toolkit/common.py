@@ -1,0 +1,184 @@
+"""What several studies share: parameters of claims, remaining transients, eigenvalues from simulations."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Collection
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from compare.claims.error_estimates import refined
+from compare.engines import Engine
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
+
+ComplexArray = NDArray[np.complex128]
+
+DIFFERENCE = 4e-3
+"""Step of the differences that give the linearised flow, as a fraction of the slip."""
+
+BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
+"""Parameters of a support that are zero in the paper."""
+
+FLOW_TOLERANCE = 1e-11
+"""Of the simulations that are subtracted from each other."""
+
+
+def parameters_of(
+    system: System, *, without: Collection[str] = (), **changes: float
+) -> dict[str, float | str]:
+    """Return the parameters of ``system`` for a claim, but those that it sweeps; ``changes`` adds or replaces some.
+
+    A disc without contact points has "continuous ring" in their place; what no linear support has is left out.
+    """
+    parameters: dict[str, float | str] = {
+        name: "continuous ring" if value is None else value
+        for name, value in asdict(system).items()
+        if name not in BEYOND_THE_SPRING or value != 0.0
+    }
+    return {name: value for name, value in parameters.items() if name not in without} | changes
+
+
+def at_each(name: str, values: ArrayLike) -> str:
+    """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
+    return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
+
+
+def turned(states: ArrayLike, angle: ArrayLike) -> FloatArray:
+    """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) turned about the axis by ``angle`` in rad."""
+    states, angle = np.asarray(states, dtype=float), np.asarray(angle, dtype=float)
+    result = np.array(np.broadcast_to(states, np.broadcast_shapes(states.shape, (*angle.shape, 1))))
+    half = result.shape[-1] // 2
+    for x, y in ((0, 1), (half, half + 1)):
+        z = (result[..., x] + 1j * result[..., y]) * np.exp(1j * angle)
+        result[..., x], result[..., y] = z.real, z.imag
+    if half == ANGLE + 1:
+        result[..., ANGLE] += angle
+    return result
+
+
+def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
+    """Return how far ``end`` can still be from the steady state that it decays to.
+
+    A deviation a·exp(−rt) changes by a·(exp(r·delay) − 1) in the last ``delay`` seconds, a being its size at
+    the end. So the change that is seen gives what is left.
+
+    Parameters
+    ----------
+    earlier : array of shape (n, ...)
+        The quantity over a period of its oscillation that ends ``delay`` seconds before the end: the largest
+        change from there counts.
+    end : array of shape (...)
+        The quantity at the end.
+    rate : float
+        Decay rate r in 1/s of the slowest mode.
+    delay : float
+        In s.
+
+    """
+    change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
+    return np.asarray(change / np.expm1(rate * delay))
+
+
+def measured_eigenvalues(
+    engine: Engine, system: System, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
+) -> tuple[ComplexArray, float]:
+    """Return the eigenvalues in 1/s with which small deviations from a steady motion grow, and their error.
+
+    Central differences of the engine's flow over ``duration`` seconds, each column two simulations, give the
+    linearised flow; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The
+    error is the change with 2h and 4h in their place, plus what ``refined`` says of the tolerance, plus the tolerance
+    itself as an error of the states; the largest of the four eigenvalues counts for all, since one alone may be
+    right by chance.
+
+    Parameters
+    ----------
+    engine : Engine
+        The engine.
+    system : PinOnDisc or DiscOnDisc
+        The parameters. A disc is taken on a continuous ring, on which its angle drops out: it has five eigenvalues.
+    state : array of shape (4,) or (6,)
+        Of the steady motion, which slides.
+    duration : float
+        In s, short enough for |Im λ|·duration < π.
+    frame_speed : float
+        Of the axes in which the motion is steady, in rad/s.
+
+    """
+    state = np.asarray(state, dtype=float)
+    half, omega = len(state) // 2, system.disc_speed
+    (x, y), (vx, vy) = state[:2], state[half : half + 2]
+    slip = np.hypot(vx + omega * y, vy - omega * x)
+    if isinstance(system, DiscOnDisc):
+        slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
+    # Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
+    size = np.array([slip / abs(omega)] * 2 + [slip] * 2)
+    moving = [0, 1, half, half + 1]
+    if isinstance(system, DiscOnDisc):
+        size, moving = np.append(size, slip / system.contact_radius), [*moving, len(state) - 1]
+
+    @functools.cache
+    def differences(tolerance: float, step: float) -> FloatArray:
+        columns = []
+        for i, width in zip(moving, size, strict=True):
+            shift = np.zeros(len(state))
+            shift[i] = step * width
+            ends = [
+                engine.simulate(system, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
+                for sign in (1.0, -1.0)
+            ]
+            change = turned(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i])
+            columns.append(change[moving])
+        return np.column_stack(columns)
+
+    def eigenvalues(tolerance: float, step: float) -> ComplexArray:
+        fine, wide = differences(tolerance, step), differences(tolerance, 2.0 * step)
+        multipliers = np.linalg.eigvals(fine + (fine - wide) / 3.0).astype(complex)
+        return np.asarray(np.log(multipliers) / duration)
+
+    measured = eigenvalues(FLOW_TOLERANCE, DIFFERENCE)
+    bent = np.abs(matched(eigenvalues(FLOW_TOLERANCE, 2.0 * DIFFERENCE), measured) - measured)
+    _, error = refined(
+        lambda tolerance: real_and_imaginary(matched(eigenvalues(tolerance, DIFFERENCE), measured)),
+        FLOW_TOLERANCE,
+    )
+    # A small deviation from a state of rest may be within the tolerance all the time, so that it changes nothing.
+    smallest = float(np.min(np.abs(np.exp(measured * duration))))
+    unseen = (
+        FLOW_TOLERANCE
+        * float(np.max(np.abs(state)))
+        / (float(np.min(DIFFERENCE * size)) * smallest * duration)
+    )
+    return measured, float(np.max(bent) + np.max(np.hypot(*error.T)) + unseen)
+
+
+def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:
+    """Return complex ``values`` in the order in which they lie nearest to ``to``, both of shape (n,)."""
+    from scipy.optimize import linear_sum_assignment
+
+    values, to = np.asarray(values, dtype=complex), np.asarray(to, dtype=complex)
+    distance = np.abs(to[:, np.newaxis] - values)
+    _, order = linear_sum_assignment(np.where(np.isfinite(distance), distance, 1e300))
+    return np.asarray(values[order])
+
+
+def real_and_imaginary(values: Any) -> FloatArray:
+    """Return complex ``values`` (shape (...)) as real numbers, shape (..., 2), for a claim or for data."""
+    values = np.asarray(values, dtype=complex)
+    return np.stack((values.real, values.imag), axis=-1)
+
+
+def eigenvalues_with_rounding(matrices: ArrayLike) -> tuple[ComplexArray, FloatArray]:
+    """Return the eigenvalues of ``matrices`` (shape (..., n, n)) and the rounding error of each.
+
+    The error is that of a backward stable algorithm, n·ε·‖A‖, times the condition of the eigenvalue, which is
+    the product of the lengths of its right and left eigenvectors.
+    """
+    matrices = np.asarray(matrices, dtype=float)
+    values, right = np.linalg.eig(matrices)
+    left = np.linalg.inv(right)
+    condition = np.linalg.norm(right, axis=-2) * np.linalg.norm(left, axis=-1)
+    size = np.linalg.norm(matrices, axis=(-2, -1))[..., np.newaxis]
+    return values.astype(complex), np.asarray(matrices.shape[-1] * np.finfo(float).eps * size * condition)

@@ -1,0 +1,61 @@
+"""What the parts of the study of Fig. 11 share: its start, its source, and (19) as plain equations."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from compare.claims.paper_parameters import FIG11
+from reference_model.contact.contact_law import Contact, contact_of
+from reference_model.systems import DiscOnDisc, FloatArray
+
+RING = FIG11
+
+SIX = replace(FIG11, contact_points=6)
+
+DISCS = {"the continuous ring": RING, "six points": SIX}
+
+START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
+"""x, y, angle, vx, vy, spin where the radius is largest on the modulated cycle of X0 = 0, to these digits."""
+
+SOURCE = "Fig. 11, which leaves out X0"
+
+
+def rates(disc: DiscOnDisc, state: FloatArray, contact: Contact | None = None) -> list[float]:
+    """Return the right side of (19) at ``state``, shape (6,), with (20) or another law of ``contact``."""
+    x, y, angle, vx, vy, spin = state.tolist()
+    omega, load = disc.disc_speed, disc.friction_force
+    law = contact_of(disc, contact)
+    force, moment = law.force_and_moment(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
+    return [
+        vx,
+        vy,
+        spin,
+        (load * force.real - disc.damping * vx - disc.stiffness * (x - disc.offset)) / disc.mass,
+        (load * force.imag - disc.damping * vy - disc.stiffness * y) / disc.mass,
+        (load * moment - disc.shaft_damping * (spin - disc.shaft_speed)) / disc.polar_inertia,
+    ]
+
+
+@functools.cache
+def integrated(
+    disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
+) -> FloatArray:
+    """Return the states at so many times up to ``until`` s, shape (samples, 6), from (19) as it stands.
+
+    For a disc that slides all the time. Nothing of ``simulate`` is used.
+    """
+    law = contact_of(disc)
+    run = solve_ivp(
+        lambda _, state: rates(disc, state, law),
+        (0.0, until),
+        start,
+        method="DOP853",
+        t_eval=np.linspace(0.0, until, samples),
+        rtol=tolerance,
+        atol=tolerance,
+    )
+    return np.asarray(run.y.T)

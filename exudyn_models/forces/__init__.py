@@ -1,0 +1,1 @@
+"""Laws of friction, and the force between two objects that follows from one."""

@@ -1,0 +1,349 @@
+"""Coulomb friction of a pin, of points on a ring, of a ring and of an annulus, compiled for Exudyn's user functions.
+
+All are gradients of a mean slip speed. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
+and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is P(u, S). The
+friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
+
+Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
+release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
+
+- *The contact as a whole* is viscous where P < ε: force and moment are those in the same direction of (u, S) at
+  P = ε, times P/ε. As these are on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if
+  Coulomb friction could hold it.
+- *One of n points* on the way through rest, because alone it can jump. Where the slowest of them slips with v below
+  4δ/3, the others slip as if the disc turned about a place nearer to it: with their own slip less v, where v < δ, and
+  less v·(4 − 3v/δ) beyond. Its own friction is viscous below δ. So its force grows from nothing to its share of μN,
+  while the others have the directions that they have when the disc pivots about it: again those of the limit surface.
+  δ = (3/4)·ε/(1 + (4/π)/sin(π/n)) makes sure that at P = ε no two points are slower than 4δ/3: they are 2R·sin(π/n)
+  apart, and if the slip of one is v, then P <= v + (4/π)R|S|.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.slip_potential import mean_slip_gradient, mean_slip_hessian, mean_slip_of_circles
+from reference_model.systems import FloatArray
+
+CONTINUOUS = 0
+"""Number of contact points by which the compiled functions know the continuous ring or annulus."""
+
+NONE_HELD = -1
+"""In place of the number of a point: none is held."""
+
+Contact = tuple[float, int, float, float, int, float]
+"""R in m, number of points, μN in N, ε in m/s, the point held or ``NONE_HELD``, and the inner radius in m.
+
+The inner radius is R, but of an annulus, whose outer radius is R. The friction of the point held is viscous at any
+slip: it models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
+linear, and can not throw off Newton's iteration.
+"""
+
+CONTACT_SIZE = 6
+"""Numbers of a ``Contact``."""
+
+
+@compiled
+def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
+    """Return the ``Contact`` whose numbers ``parameters`` begin with, and the rest of them."""
+    radius, points, friction, epsilon, held, inner = parameters[:CONTACT_SIZE]
+    return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
+
+
+SECANT = 0.3
+"""Share of the secant in the derivatives of points that creep as a whole.
+
+F there is of degree 1 in the slip, F = K·slip with the secant K. Newton's iteration starts from the slip that the
+disc would have without acceleration, thousands of times its creep: with the derivative alone it goes round in circles
+for one load in ten on six points, one in six on three. With 0.3 of K it found all of them in 7 turns.
+"""
+
+
+@compiled
+def ring_friction(
+    dx: float,
+    dy: float,
+    angle: float,
+    dvx: float,
+    dvy: float,
+    master_spin: float,
+    disc_spin: float,
+    contact: Contact,
+) -> tuple[float, float, float, float]:
+    """Return force and moment on the disc and moment on the master: F_x, F_y (N), M, M_master (N m).
+
+    ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
+    ``angle`` (rad) is φ, the spins are in rad/s. The force on the master is −F.
+    """
+    radius, _, friction, epsilon, _, _ = contact
+    ux = dvx + master_spin * dy  # slip of the disc's centre
+    uy = dvy - master_spin * dx
+    if radius == 0.0:
+        slip = math.sqrt(ux * ux + uy * uy)
+        factor = -friction / (slip if slip > epsilon else epsilon)
+        fx = factor * ux
+        fy = factor * uy
+        return fx, fy, 0.0, dy * fx - dx * fy
+    fx, fy, moment = friction_of_slip(ux, uy, disc_spin - master_spin, angle, contact)
+    return fx, fy, moment, dy * fx - dx * fy - moment
+
+
+@compiled
+def friction_of_slip(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, float]:
+    """Return F_x, F_y (N) and M (N m) on the disc, whose centre slips with u (m/s) and which spins with φ̇ − ω."""
+    radius, points, friction, epsilon, _, inner = contact
+    if points != CONTINUOUS:
+        return _force_of_points(ux, uy, radius * spin, angle, contact)
+    fx = fy = moment = 0.0
+    speed = math.sqrt(ux * ux + uy * uy)
+    if speed > 0.0 or spin != 0.0:
+        by_speed, by_spin = mean_slip_gradient(speed, abs(spin), inner, radius)
+        mean = by_speed * speed + by_spin * abs(spin)
+        factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
+        if speed > 0.0:
+            push = factor * by_speed / speed
+            fx = push * ux
+            fy = push * uy
+        moment = math.copysign(by_spin, spin) * factor
+    return fx, fy, moment
+
+
+@compiled
+def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
+    """Return P in m/s for the arguments of ``friction_of_slip``."""
+    radius, points, _, _, _, inner = contact
+    if points == CONTINUOUS:
+        return mean_slip_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
+    mean = 0.0
+    for i in range(points):
+        mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
+    return mean
+
+
+@compiled
+def _force_of_points(
+    ux: float, uy: float, rim: float, angle: float, contact: Contact
+) -> tuple[float, float, float]:
+    """Return F_x, F_y and M."""
+    radius, points, friction, epsilon, held, _ = contact
+    share = friction / points
+    turn = complex(math.cos(2.0 * math.pi / points), math.sin(2.0 * math.pi / points))
+    arm = complex(math.cos(angle), math.sin(angle))
+    slip_of_centre = complex(ux, uy)
+    force, moment, mean, slowest, lowest = 0j, 0.0, 0.0, 0, math.inf
+    for i in range(points):
+        slip = slip_of_centre + 1j * rim * arm
+        speed = _length(slip)
+        push = slip * (-share / speed) if speed > 0.0 else 0j
+        force += push
+        moment += (arm.conjugate() * push).imag
+        mean += speed / points
+        if speed < lowest:
+            slowest, lowest = i, speed
+        arm *= turn  # on to the next point
+    delta = point_regularisation(epsilon, points)
+    if held == NONE_HELD and mean >= epsilon and lowest >= BEND * delta:
+        return force.real, force.imag, radius * moment
+    creep = min(1.0, mean / epsilon)
+    slow = slowest if held == NONE_HELD else held
+    slow_arm = complex(math.cos(angle), math.sin(angle)) * turn**slow
+    slow_slip = slip_of_centre + 1j * rim * slow_arm
+    drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
+    force, moment = 0j, 0.0
+    arm = complex(math.cos(angle), math.sin(angle))
+    for i in range(points):
+        slip = slip_of_centre + 1j * rim * arm - (drawn * slow_slip if i != slow else 0j)
+        speed = _length(slip)
+        if i == slow and viscous:
+            push = slip * (-share / delta)
+        else:
+            push = slip * (-share * creep / speed) if speed > 0.0 else 0j
+        force += push
+        moment += (arm.conjugate() * push).imag
+        arm *= turn
+    return force.real, force.imag, radius * moment
+
+
+@compiled
+def _length(vector: complex) -> float:
+    """Return |v|. abs(), which stays in range where |v|² does not, would nearly double what a point costs."""
+    return math.sqrt(vector.real * vector.real + vector.imag * vector.imag)
+
+
+BEND = 4.0 / 3.0
+"""Slip of the slowest point, over δ, from which on it acts as all others."""
+
+
+@compiled
+def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
+    """Return which part of the slowest point's slip the others lose, and whether its own friction is viscous."""
+    if held != NONE_HELD or speed <= delta:
+        return 1.0, True
+    return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
+
+
+@compiled
+def point_regularisation(epsilon: float, points: int) -> float:
+    """Return δ in m/s, below which a single point's friction is viscous."""
+    if points == 1:
+        return epsilon
+    return epsilon / BEND / (1.0 + 4.0 / (math.pi * math.sin(math.pi / points)))
+
+
+@compiled
+def ring_friction_derivatives(
+    dx: float,
+    dy: float,
+    angle: float,
+    dvx: float,
+    dvy: float,
+    master_spin: float,
+    disc_spin: float,
+    contact: Contact,
+) -> FloatArray:
+    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
+
+    For points that creep as a whole they hold a ``SECANT`` share, which lets Newton's iteration converge.
+    """
+    ux = dvx + master_spin * dy
+    uy = dvy - master_spin * dx
+    spin = disc_spin - master_spin
+    fx, fy, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
+    result = np.zeros((4, 7))
+    for i in range(3):
+        by_ux, by_uy, by_spin, by_angle = by_slip[i]
+        result[i, 0] = -master_spin * by_uy
+        result[i, 1] = master_spin * by_ux
+        result[i, 2] = by_angle
+        result[i, 3] = by_ux
+        result[i, 4] = by_uy
+        result[i, 5] = dy * by_ux - dx * by_uy - by_spin
+        result[i, 6] = by_spin
+    for j in range(7):
+        result[3, j] = dy * result[0, j] - dx * result[1, j] - result[2, j]
+    result[3, 0] -= fy
+    result[3, 1] += fx
+    return result
+
+
+@compiled
+def derivatives_by_slip(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    if contact[1] == CONTINUOUS:
+        return _derivatives_of_circles(ux, uy, spin, contact)
+    return _derivatives_of_points(ux, uy, spin, angle, contact)
+
+
+@compiled
+def _derivatives_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """As ``derivatives_by_slip``."""
+    radius, points, friction, epsilon, held, _ = contact
+    share = friction / points
+    delta = point_regularisation(epsilon, points)
+    # P and its derivatives, which count where the contact creeps as a whole, and the slowest point.
+    mean, lowest, slow = 0.0, math.inf, held
+    by_mean = np.zeros(4)
+    for i in range(points):
+        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        speed = abs(slip)
+        mean += speed / points
+        for j in range(4):
+            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
+        if held == NONE_HELD and speed < lowest:
+            slow, lowest = i, speed
+    creeps = mean < epsilon
+    creep = mean / epsilon if creeps else 1.0
+    # What the others lose of the slip of the slowest point, and its derivatives.
+    _, slow_slip, by_slow = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * slow / points, radius)
+    drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
+    loss = drawn * slow_slip
+    by_loss = np.zeros(4, dtype=np.complex128)
+    for j in range(4):
+        by_loss[j] = drawn * by_slow[j]
+        if 0.0 < drawn < 1.0:
+            growth = (by_slow[j] * slow_slip.conjugate()).real / abs(slow_slip) ** 2
+            if creeps:
+                growth -= by_mean[j] / mean
+            by_loss[j] -= abs(slow_slip) / (delta * creep) * growth / (BEND - 1.0) * slow_slip
+    force = 0j
+    result = np.zeros((3, 4))
+    for i in range(points):
+        arm, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        softly = (i == slow and viscous) or creep == 0.0
+        resistance = share / delta if softly else share / max(abs(slip) / creep, delta)
+        remaining = slip if i == slow else slip - loss
+        speed = abs(remaining)
+        if softly or speed == 0.0:
+            direction, push = 0j, -share / delta * slip
+        else:  # dF/dv = −(μN/n)·(1 − e⊗e)/|v|: only the direction changes
+            direction = remaining / speed
+            push = -share * creep * direction
+        for j in range(4):
+            if direction == 0.0:
+                change = -share / delta * by_arguments[j]
+            else:
+                by_remaining = by_arguments[j] - (by_loss[j] if i != slow else 0.0)
+                turning = (by_remaining * direction.conjugate()).imag * 1j * direction
+                change = -share * creep / speed * turning
+                if creeps:
+                    change -= share * by_mean[j] / epsilon * direction
+            if creeps and j < 3:
+                change += SECANT * (-resistance * by_arguments[j] - change)
+            result[0, j] += change.real
+            result[1, j] += change.imag
+            result[2, j] += (arm.conjugate() * change).imag
+        result[2, 3] += ((1j * arm).conjugate() * push).imag  # the arm turns with the disc
+        force += push
+    return force.real, force.imag, result
+
+
+@compiled
+def _slip_of_point(
+    ux: float, uy: float, spin: float, alpha: float, radius: float
+) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
+    """Return arm and slip of the point at ``alpha``, and the derivatives of the slip by u_x, u_y, φ̇ − ω and φ."""
+    arm = radius * complex(math.cos(alpha), math.sin(alpha))
+    return arm, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
+
+
+@compiled
+def _derivatives_of_circles(
+    ux: float, uy: float, spin: float, contact: Contact
+) -> tuple[float, float, FloatArray]:
+    """As ``derivatives_by_slip``; nothing depends on the angle here."""
+    radius, _, friction, epsilon, _, inner = contact
+    speed = math.sqrt(ux * ux + uy * uy)
+    ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
+    # At rest the slope depends on the direction in which slip starts: take one without spin.
+    size = speed if speed > 0.0 or spin != 0.0 else 1.0
+    by_speed, by_spin = mean_slip_gradient(size, abs(spin), inner, radius)
+    by_speed_twice, mixed, by_spin_twice = mean_slip_hessian(size, abs(spin), inner, radius)
+    across = by_speed / size if size > 0.0 else by_speed_twice
+    by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
+    mean = by_speed * speed + by_spin * spin
+    sliding = mean > epsilon
+    # The potential is P, or P²/(2ε) near rest; the direction of the slip counts in both.
+    factor = 1.0 if sliding else by_speed * size / epsilon if mean == 0.0 else mean / epsilon
+    tip = 0.0 if sliding else 1.0 / epsilon
+    along = -friction * (factor * by_speed_twice + tip * by_speed * by_speed)
+    turning = -friction * factor * across
+    coupling = -friction * (factor * mixed + tip * by_speed * by_spin)
+    result = np.zeros((3, 4))
+    result[0, 0] = along * ex * ex + turning * ey * ey
+    result[1, 1] = along * ey * ey + turning * ex * ex
+    result[0, 1] = result[1, 0] = (along - turning) * ex * ey
+    result[0, 2] = result[2, 0] = coupling * ex
+    result[1, 2] = result[2, 1] = coupling * ey
+    result[2, 2] = -friction * (factor * by_spin_twice + tip * by_spin * by_spin)
+    push = -friction * (1.0 if sliding else mean / epsilon) * by_speed
+    return push * ex, push * ey, result

@@ -1,0 +1,1 @@
+"""The paper's pin and disc as Exudyn models, and their simulation."""

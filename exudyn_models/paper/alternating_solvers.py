@@ -1,0 +1,350 @@
+"""A motion in turns of slip and creep, each by the solver and in the axes that suit it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
+from exudyn_models.paper.dense_output import creep_at, creep_until
+from exudyn_models.paper.models.build import build
+from exudyn_models.paper.recording import Recording
+from exudyn_models.paper.scales import RELAXATIONS, relaxation_times, time_scale
+from exudyn_models.paper.turning_axes import FIXED, Axes
+from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.solver.solver_run import FIRST_STEP, LOOK_BACK, StepCount, Steps, solve
+from reference_model.systems import DiscOnDisc, FloatArray, System
+
+CREEP_NEWTON_TOLERANCE = 1e-6
+"""Residual of Newton's iteration while creeping, relative to μN (and μN·R, where that is less).
+
+It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
+"""
+
+VISCOUS_RANGE = 2.0**40
+"""By how much the viscous part of the friction law is continued in the model of a creeping system."""
+
+CREEP_ANGLE = 0.15
+"""rad by which the ground turns in a step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
+
+SLOW = 100.0
+"""A relaxation that takes so many times as long as the fastest one is resolved by the steps of creep."""
+
+STEPS_OF_RELAXATION = 20.0
+"""Steps of creep in one slow relaxation time."""
+
+Part = int | frozenset[int]
+"""What of a contact creeps: ``WHOLE``, or some of several points by what an ``add`` takes as ``held``."""
+
+Creeping = Callable[[System, list[float], float], Part | None]
+
+
+@dataclass(frozen=True)
+class Friction:
+    """A way to put friction between two discs.
+
+    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` is a function like ``creep.creeping``: it
+    says what of the contact creeps so that a model in which it stays viscous can take over; for some of several
+    points that is made by the argument ``held`` of ``add``. Both are asked in the units and in the axes of a run.
+    """
+
+    add: Callable[..., Any]
+    creeping: Creeping
+
+
+def nothing_creeps(system: System, state: list[float], epsilon: float) -> None:
+    """Say that nothing creeps: one solver then goes through all of the motion."""
+
+
+RING_FRICTION = Friction(add_ring_friction, creeping)
+
+
+def solve_in_turns(
+    system: System,
+    state: FloatArray,
+    times: FloatArray,
+    epsilon: float,
+    *,
+    integrator: str,
+    step: float,
+    tolerance: float,
+    friction: Friction,
+    seconds: float,
+) -> Recording:
+    """Solve up to the last of ``times`` with ``integrator`` where the contact slips, generalised-α where it creeps.
+
+    There an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn with
+    the master disc what creeps rests but for its creep, which changes as the ground turns: steps of a part of a turn
+    make an error of a small part of the creep, which is what the regularisation itself makes. No step sees ω.
+
+    What creeps, all of the contact or one of several points, feels the viscous part of the law only. Meanwhile the
+    model is therefore one in which that part has no end, and Newton's iteration can not be thrown off by the bend of
+    the law. The creep ends where, between two steps, something else creeps, or nothing.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        In units in which the motion is of order one, as are all other numbers.
+    state : array of shape (4,) or (6,)
+        At the start.
+    times : array of shape (n,)
+        From 0 on.
+    epsilon : float
+        ε.
+    integrator, step, tolerance
+        Of slip, as ``solve`` takes them.
+    friction : Friction
+        Between the discs.
+    seconds : float
+        The unit of time in s, for messages.
+
+    """
+    end = float(times[-1])
+    motion = _Turns(system, epsilon, friction, Recording(system, times, epsilon), StepCount(end, seconds))
+    start, part, creep_began, first_step = 0.0, None, 0.0, FIRST_STEP
+    while not motion.recording.finished:
+        if part is None:
+            slip = _Slip(motion)
+            run = solve(
+                build(system, state, regularisation=epsilon, friction=friction.add),
+                start,
+                end,
+                integrator=integrator,
+                step=step,
+                tolerance=tolerance,
+                watch=slip,
+                first_step=first_step,
+                count=motion.count,
+            )
+            motion.recording.add(run, FIXED)
+            part = slip.settled
+            creep_began = float(run.times[-1])
+            first_step = float(run.times[-1] - run.times[-2]) if len(run.times) > 1 else FIRST_STEP
+        else:
+            run, part = motion.creep(run, part, creep_began)
+            first_step = FIRST_STEP
+        state, start = run.states[-1], float(run.times[-1])
+    return motion.recording
+
+
+@dataclass(frozen=True)
+class _Turns:
+    """A motion under way."""
+
+    system: System
+    epsilon: float
+    friction: Friction
+    recording: Recording
+    count: StepCount
+
+    def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
+        """Solve from the last of the steps ``before`` on while ``part`` creeps, and record it.
+
+        Return the steps, and ``part`` if it goes on creeping. It ``began`` to at that time. What is held until it is
+        not any more starts so gently that it has to be released in time: the steps before that become smaller.
+        """
+        state, start = before.states[-1], float(before.times[-1])
+        step, until = self._creep_step(before, part, began)
+        balanced = False
+        if part != WHOLE:
+            self.count.look_from(start)
+        while True:
+            axes = Axes(self.system.disc_speed, start)
+            seen = replace(self.system, disc_speed=0.0)  # as ``creeping`` sees it in these axes
+            run = solve(
+                self._creep_model(axes, state, part),
+                start,
+                until,
+                integrator="GeneralizedAlpha",
+                step=step,
+                tolerance=CREEP_NEWTON_TOLERANCE * self.system.friction_force * _lever(self.system),
+                quasi_static=part == WHOLE,
+                balanced=balanced,
+                watch=_Creep(self, seen, axes.start(state), part),
+                count=self.count,
+            )
+            crossing = self._end_of_creep(seen, run, part)
+            fine = self._fine_up_to(seen, run, step, crossing) if part == WHOLE else None
+            if fine is not None:
+                run = run.only(np.arange(fine + 1))
+            elif crossing is not None:
+                run = creep_until(run, crossing)
+            if len(run.times) > 1 or fine is None:
+                self.recording.add(run, axes)
+                before = axes.fixed_steps(run)
+            if fine is None:
+                return before, part if crossing is None else None
+            state, start, step = before.states[-1], float(before.times[-1]), step / REFINEMENT
+            until = min(until, start + 2.0 * REFINEMENT * step)
+            balanced = balanced or len(run.times) > 1  # only what has crept for a step is
+
+    def _fine_up_to(self, seen: System, run: Steps, step: float, crossing: float | None) -> int | None:
+        """Return the number of the step after which smaller ones are needed, None if all are fine.
+
+        They are for a release at ``crossing``, and where the load comes so near to what friction holds that the error
+        of the creep, (ωh)²/12 of it, decides whether and when it is exceeded.
+        """
+        unclear = (self.system.disc_speed * step) ** 2 > GRAZING
+        if crossing is not None:
+            last = int(np.searchsorted(run.times, crossing)) - 1
+            return last if unclear or step > self._release_step(seen, run, last) else None
+        if not unclear:
+            return None
+        grazed = _tops(seen, run, self.epsilon, 1.0 - (self.system.disc_speed * step) ** 2)
+        return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
+
+    def _release_step(self, seen: System, run: Steps, last: int) -> float:
+        """Return the step in which what is released after step ``last`` gets no faster than a part of ε."""
+        ratio = creep_ratios(seen, run.states[last : last + 2], self.epsilon)[:, WHOLE]
+        rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
+        return math.sqrt(0.12 * relaxation_times(seen, self.epsilon)[0] / rate) if rate > 0.0 else 0.0
+
+    def _creep_step(self, before: Steps, part: Part, began: float) -> tuple[float, float]:
+        """Return the step for creep from the last of the steps ``before`` on and the time up to which it holds."""
+        system, end = self.system, self.count.end
+        state, start = before.states[-1], float(before.times[-1])
+        speed = abs(system.disc_speed)
+        step = CREEP_ANGLE / speed if speed > 0.0 else CREEP_ANGLE * time_scale(system, state, end)
+        if part != WHOLE:
+            step = min(step, _pivot_step(system, before, self.epsilon))
+            return step, min(end, start + LOOK_BACK / 2 * step)
+        fast, slow = relaxation_times(system, self.epsilon)
+        slow_until = began + RELAXATIONS * slow
+        if slow > SLOW * fast and slow < STEPS_OF_RELAXATION * step and start < slow_until < end:
+            return slow / STEPS_OF_RELAXATION, slow_until
+        return step, end
+
+    def _creep_model(self, axes: Axes, state: FloatArray, part: Part) -> Any:
+        """Build the system in which ``part`` of the contact creeps without an end to the creep, in ``axes``."""
+        system, add = self.system, self.friction.add
+        viscous = 1.0
+        if part == WHOLE:
+            viscous = VISCOUS_RANGE
+            system = replace(system, friction_force=viscous * system.friction_force)
+        else:
+            add = partial(add, held=part)
+        return build(
+            system,
+            axes.start(state),
+            regularisation=viscous * self.epsilon,
+            friction=add,
+            axes_speed=axes.speed,
+        )
+
+    def _end_of_creep(self, seen: System, run: Steps, part: Part) -> float | None:
+        """Return the time at which in ``run`` something else than ``part`` creeps first, None if nothing does."""
+
+        def goes_on(time: float) -> bool:
+            return self.friction.creeping(seen, creep_at(run, time).tolist(), self.epsilon) == part
+
+        places = _suspects(seen, run, self.epsilon) if part == WHOLE else run.times[-1:]
+        first: float | None = next((time for time in places.tolist() if not goes_on(time)), None)
+        if first is None or first == run.times[0]:
+            return first
+        left = float(run.times[np.searchsorted(run.times, first) - 1])
+        while True:
+            middle = (left + first) / 2.0
+            if not left < middle < first or first - left < CROSSING * (run.times[-1] - run.times[-2]):
+                return first
+            left, first = (middle, first) if goes_on(middle) else (left, middle)
+
+
+CROSSING = 1e-9
+"""Error of the time at which a creep ends, in steps."""
+
+GRAZING = 1e-6
+"""(ωh)² of the steps that tell whether and when friction can't hold a load: that is off by 1e-7 of itself."""
+
+REFINEMENT = 16.0
+"""By how much steps become smaller, once or several times, before a release."""
+
+INSIDE = np.linspace(0.0, 1.0, 17)[1:]
+"""Places in a step at which creep that is near to its end is looked at."""
+
+
+def _tops(system: System, run: Steps, epsilon: float, above: float) -> NDArray[np.intp]:
+    """Return the numbers of the steps of ``run`` at which the creep is largest, and more than ``above``·ε.
+
+    The first and the last one may be among them: what is largest may lie shortly after or before it.
+    """
+    ratio = np.pad(
+        creep_ratios(system, run.states, epsilon)[:, WHOLE], 1, mode="constant", constant_values=-np.inf
+    )
+    return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
+
+
+def _suspects(system: System, run: Steps, epsilon: float) -> FloatArray:
+    """Return times in ``run`` at which the creep may have ended: the last, and those about its maxima near ε."""
+    steps = _tops(system, run, epsilon, 0.99)
+    steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
+    inside = run.times[steps, None] + np.diff(run.times)[steps, None] * INSIDE
+    return np.append(inside.ravel(), run.times[-1])
+
+
+class _Slip:
+    """Watches whether what slips comes to creep and has settled to that, and ends a run in time to look back."""
+
+    def __init__(self, motion: _Turns) -> None:
+        self.motion, self.settled = motion, None
+        fast, slow = relaxation_times(motion.system, motion.epsilon)
+        self._settling = RELAXATIONS * (slow if slow <= SLOW * fast else fast)
+        self._since, self._part, self._steps = math.inf, None, 0
+
+    settled: Part | None
+    _part: Part | None
+
+    def __call__(self, t: float, state: list[float]) -> bool:
+        self._steps += 1
+        now = self.motion.friction.creeping(self.motion.system, state, self.motion.epsilon)
+        if now != self._part:
+            self._since, self._part = (math.inf if now is None else t), now
+        if t - self._since >= self._settling:
+            self.settled = now
+            return False
+        return self._steps < LOOK_BACK or now is not None
+
+
+class _Creep:
+    """Watches whether ``part`` goes on creeping, and at much the same speed of the pivoting disc if it is a point."""
+
+    def __init__(self, motion: _Turns, seen: System, state: FloatArray, part: Part) -> None:
+        self.motion, self.seen, self.part = motion, seen, part
+        self._speed, self._steps = self._mean_slip(state), 0
+
+    def __call__(self, t: float, state: list[float]) -> bool:
+        self._steps += 1
+        if self.motion.friction.creeping(self.seen, state, self.motion.epsilon) != self.part:
+            return False
+        if self._steps == LOOK_BACK:
+            return False
+        return self.part == WHOLE or 0.5 < self._mean_slip(np.array(state)) / self._speed < 2.0
+
+    def _mean_slip(self, state: FloatArray) -> float:
+        return float(creep_ratios(self.seen, state[None, :], self.motion.epsilon)[0, WHOLE])
+
+
+def _pivot_step(system: System, steps: Steps, epsilon: float) -> float:
+    """Return the step for a disc on points that pivots about one of them, from the last of ``steps``.
+
+    Its centre goes about the point at the distance R with its spin over the master disc. Either turns, the ground
+    with the speed of the master, and the slip P changes in a time P/|dP/dt|.
+    """
+    ratio = creep_ratios(system, steps.states[-1:], epsilon)[0, WHOLE]
+    rate = creep_ratio_rates(system, steps.states[-1], steps.accelerations[-1], epsilon)[WHOLE]
+    jerk = epsilon * rate**2 / ratio
+    if isinstance(system, DiscOnDisc):
+        spin, growth = abs(steps.states[-1, 5] - system.disc_speed), abs(steps.accelerations[-1, 2])
+        fastest = spin + abs(system.disc_speed)
+        jerk += system.contact_radius * fastest * (growth + spin * fastest)
+    return math.sqrt(0.12 * epsilon / jerk)
+
+
+def _lever(system: System) -> float:
+    """Return the length by which a residual moment counts as a force: R, or 1 if that is less."""
+    return min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0

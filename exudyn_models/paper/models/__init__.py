@@ -1,0 +1,1 @@
+"""The pin and the disc, built of bodies, support and friction."""

@@ -1,0 +1,34 @@
+"""The multibody model of either system."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from exudyn_models.paper.models.disc_on_disc import build_disc_on_disc
+from exudyn_models.paper.models.pin_on_disc import build_pin_on_disc
+from exudyn_models.paper.models.supported_body import Model
+from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
+from reference_model.systems import DiscOnDisc, FloatArray, System
+
+
+def build(
+    system: System,
+    initial_state: FloatArray,
+    *,
+    regularisation: float,
+    friction: AddFriction = add_ring_friction,
+    axes_speed: float = 0.0,
+) -> Model:
+    """Build ``system``, starting in ``initial_state``, with what ``friction`` adds between the discs.
+
+    In axes that turn with ``axes_speed`` (rad/s) it is the same model, in which the ground turns the other way, as
+    ``supported_body`` adds it. ``initial_state`` is one in these axes.
+    """
+    options: dict[str, Any] = {
+        "regularisation": regularisation,
+        "friction": friction,
+        "axes_speed": axes_speed,
+    }
+    if isinstance(system, DiscOnDisc):
+        return build_disc_on_disc(system, initial_state, **options)
+    return build_pin_on_disc(system, initial_state, **options)

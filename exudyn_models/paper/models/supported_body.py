@@ -1,0 +1,121 @@
+"""What pin and friction disc share in Exudyn: the master disc, the body on its support, what is recorded of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+
+from exudyn_models.parts.radial_support import add_radial_support
+from reference_model.systems import FloatArray, System
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+MASTER_INERTIA = 1e30
+"""kg m². The master disc's speed is prescribed: it is a body that no torque of the contact can slow down.
+
+With this inertia a torque of 1 N m changes ω by 1e-30 rad/s in a second, so that ω stays what it is to the last bit.
+Constraints would do the same for implicit solvers only; explicit ones ignore them without a word.
+"""
+
+
+@dataclass(frozen=True)
+class Model:
+    """An assembled model of a system, of which the state of one body is recorded.
+
+    Parameters
+    ----------
+    container, mbs : SystemContainer, MainSystem
+        ``container`` owns ``mbs`` and must live as long.
+    first, size : int
+        The body's coordinates that belong to the state: ``mbs``'s coordinates first, ..., first + size − 1.
+    sensors : tuple
+        They store the coordinates of the body's node and their first and second time derivatives at every step.
+
+    """
+
+    container: Any
+    mbs: Any
+    first: int
+    size: int
+    sensors: tuple[Any, Any, Any]
+
+
+def add_master(mbs: Any, speed: float) -> Any:
+    """Add the master disc, which turns about (0, 0) with ``speed`` (rad/s) for good; return its ``NodeIndex``."""
+    node = mbs.AddNode(
+        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
+    )
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=MASTER_INERTIA))
+    return node
+
+
+def add_supported_body(
+    mbs: Any, system: System, initial_state: FloatArray, polar_inertia: float, axes_speed: float = 0.0
+) -> Any:
+    """Add a planar body on springs and dampers to a support at (X0, 0); return its ``NodeIndex``.
+
+    ``initial_state`` is a state of ``system``; the body of a pin starts at the angle 0 without spin. In axes that
+    turn with ``axes_speed`` (rad/s) the ground with its support is a body that turns the other way.
+    """
+    position, velocity = initial_state.reshape(2, -1).tolist()
+    turn = [0.0] * (3 - len(position))
+    node = mbs.AddNode(
+        items.NodeRigidBody2D(
+            referenceCoordinates=[0.0, 0.0, 0.0],
+            initialCoordinates=position + turn,
+            initialVelocities=velocity + turn,
+        )
+    )
+    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=polar_inertia))
+    add_radial_support(
+        mbs,
+        None if axes_speed == 0.0 else add_master(mbs, -axes_speed),
+        node,
+        stiffness=system.stiffness,
+        damping=system.damping,
+        hardening=system.hardening,
+        stop_gap=system.stop_gap,
+        stop_stiffness=system.stop_stiffness,
+        offset=(system.offset, 0.0),
+    )
+    if axes_speed != 0.0:
+        _add_inertia_forces(mbs, node, system.mass, axes_speed)
+    return node
+
+
+def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
+    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r on a body, in axes that turn with ``speed``."""
+    coriolis = 2.0 * mass * speed
+    mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=[node],
+            massMatrix=np.zeros((3, 3)),
+            stiffnessMatrix=np.diag([-mass * speed**2, -mass * speed**2, 0.0]),
+            dampingMatrix=np.array([[0.0, -coriolis, 0.0], [coriolis, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+        )
+    )
+
+
+def assembled(container: Any, mbs: Any, node: Any, system: System) -> Model:
+    """Assemble ``mbs`` so that the motion of ``node`` is recorded as that of ``system``."""
+    variables = exu.OutputVariableType
+    position, velocity, acceleration = (
+        mbs.AddSensor(
+            items.SensorNode(
+                nodeNumber=node, outputVariableType=variable, storeInternal=True, writeToFile=False
+            )
+        )
+        for variable in (variables.Coordinates, variables.Coordinates_t, variables.Coordinates_tt)
+    )
+    mbs.Assemble()
+    return Model(
+        container,
+        mbs,
+        mbs.GetNodeODE2Index(node),
+        system.state_size // 2,
+        (position, velocity, acceleration),
+    )

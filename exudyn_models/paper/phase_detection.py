@@ -1,0 +1,163 @@
+"""When the contact slips and when it sticks, read from the motion under the regularised law."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, load_ratios
+from exudyn_models.paper.dense_output import states_at
+from exudyn_models.paper.scales import settling_time
+from exudyn_models.solver.solver_run import Steps
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Phase
+
+NOTHING = -1
+"""In place of the part of the contact that creeps."""
+
+
+def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, ...]:
+    """Return the phases from the first to the last step, without gaps.
+
+    Under the regularised law what sticks creeps, with less than ε as long as Coulomb friction can hold it. While the
+    contact creeps as a whole, the system sticks; while one of several points does, the disc pivots about it.
+    It does not where friction can't hold the load, which is slip that passes through zero; where a point's creep ends
+    before it has settled; and after a release until the slip speed has reached 2ε, because it stays near ε for a
+    while and may pass it several times by the errors of single steps.
+
+    A phase *starts* where the slip speed, which falls linearly until it is ε, would be zero if it went on falling
+    like that. Sticking *ends* where the load reaches what friction can hold, and a pivot where the slip speed of the
+    point reaches its δ. All these times have errors of first order in ε.
+    """
+    ratios, creeping = _creeping_parts(system, steps, regularisation)
+    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
+    settling = settling_time(system, regularisation)
+    released = 0
+    for first, beyond in _runs(creeping):
+        if creeping[first] == NOTHING:
+            continue
+        settled = steps.times[min(beyond, len(creeping) - 1)] - steps.times[first] > settling
+        if creeping[first] == WHOLE:
+            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
+            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
+        else:
+            kept = settled
+        if kept:
+            if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
+                creeping[released:first] = (
+                    WHOLE  # slip that comes back before it has got anywhere is no release
+                )
+            released = beyond
+        else:
+            creeping[first:beyond] = NOTHING
+    last = float(steps.times[-1])
+    runs_before = {beyond: first for first, beyond in _runs(creeping)[:-1]}
+    changes = list(runs_before)
+    times = [float(steps.times[0])]
+    for i in changes:
+        before, after = creeping[i - 1], creeping[i]
+        if before == WHOLE:
+            time = _release(steps.times, load - 1.0, runs_before[i], i)
+        elif after == NOTHING:
+            time = _crossing(steps.times, ratios[:, before] - 1.0, i - 1)
+        else:
+            time = _time_of_rest(system, steps, ratios[:, after], after, i - 1, regularisation)
+        times.append(min(max(time, times[-1]), last))
+    found: list[Phase] = []
+    part_before = None
+    for i, start, end in zip([0, *changes], times, [*times[1:], last], strict=True):
+        if start == end < last:
+            continue
+        if found and (start == end or creeping[i] == part_before):
+            found[-1] = replace(found[-1], end=end)
+        else:
+            found.append(Phase(_kind(creeping[i]), start, end, states_at(steps, np.array([start]))[0]))
+        part_before = creeping[i]
+    return tuple(found)
+
+
+NEIGHBOURS = 100
+"""Steps at both ends of a run with nothing new that are kept: the time of rest lies a few of them after its start."""
+
+
+def essential(system: System, steps: Steps, regularisation: float) -> NDArray[np.bool_]:
+    """Return which of ``steps`` are to be kept so that ``phases`` finds the same without the others, shape (n,).
+
+    Of each run in which the same part creeps, or nothing: its ends, where its slip is largest, where the load is
+    last one that friction holds, and where it is held most clearly.
+    """
+    ratios, creeping = _creeping_parts(system, steps, regularisation)
+    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
+    whole = ratios[:, WHOLE]
+    grip = np.where(whole > 0.0, whole + np.abs(load - whole), np.inf)
+    kept = np.zeros(len(creeping), dtype=bool)
+    for first, beyond in _runs(creeping):
+        kept[first : first + NEIGHBOURS] = kept[max(first, beyond - NEIGHBOURS) : beyond] = True
+        kept[first + int(np.argmax(whole[first:beyond]))] = True
+        kept[first + int(np.argmin(grip[first:beyond]))] = True
+        held = np.flatnonzero(load[first:beyond] < 1.0)
+        kept[first + held[-1:]] = kept[np.minimum(first + held[-1:] + 1, len(kept) - 1)] = True
+    return kept
+
+
+def _creeping_parts(
+    system: System, steps: Steps, regularisation: float
+) -> tuple[FloatArray, NDArray[np.int_]]:
+    """Return the creep ratios at all steps and what creeps there, a column of them or ``NOTHING``."""
+    ratios = creep_ratios(system, steps.states, regularisation)
+    below = ratios < 1.0
+    return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
+
+
+def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
+    """Return the kind of phase in which ``part`` of the contact creeps."""
+    return "slip" if part == NOTHING else "stick" if part == WHOLE else "pivot"
+
+
+def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
+    """Return the first index of every run of equal values and the one beyond its last."""
+    edges = [0, *(np.flatnonzero(values[1:] != values[:-1]) + 1).tolist(), len(values)]
+    return list(itertools.pairwise(edges))
+
+
+def _time_of_rest(
+    system: System, steps: Steps, ratio: FloatArray, part: int, left: int, regularisation: float
+) -> float:
+    """Return the time at which the slip of ``part`` would be zero if it went on falling as at step ``left``.
+
+    ``ratio`` is its creep ratio. Without such a fall the contact rests since the next step.
+    """
+    start, end = steps.times[left], steps.times[left + 1]
+    rates = creep_ratio_rates(system, steps.states[left], steps.accelerations[left], regularisation)
+    falls = rates[part] < 0.0 and ratio[left] > ratio[left + 1]
+    return float(start - ratio[left] / rates[part]) if falls else float(end)
+
+
+def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
+    """Return whether friction is able to hold a system that creeps, by all steps but those of perfect rest.
+
+    On the way through zero the load is first against the slip, then along it; either way it is that which counts
+    together with the friction.
+    """
+    moving = ratio > 0.0
+    if not np.any(moving):
+        return len(load) > 1
+    return bool(np.any((ratio + np.abs(load - ratio))[moving] < 1.0))
+
+
+def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
+    """Return the time at which ``excess`` of load passes zero for the last time between two steps."""
+    held = np.flatnonzero(excess[first:beyond] < 0.0)
+    return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
+
+
+def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
+    """Return the time between steps ``left`` and ``left + 1`` at which ``values`` pass zero, at the latest."""
+    if values[left] >= 0.0 or values[left + 1] <= 0.0:
+        return float(times[left + 1])
+    share = values[left] / (values[left] - values[left + 1])
+    return float(times[left] + share * (times[left + 1] - times[left]))

@@ -1,0 +1,70 @@
+"""What is kept of a motion that runs: the states that were asked for, and the steps that tell its phases."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_models.paper.dense_output import states_at
+from exudyn_models.paper.phase_detection import essential, phases
+from exudyn_models.paper.turning_axes import Axes
+from exudyn_models.solver.solver_run import Steps
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Phase
+
+MOST_KEPT = 50_000
+"""Steps that are kept until those that tell nothing of phases are left out."""
+
+
+class Recording:
+    """Takes the runs of a motion of ``system`` one after the other, and keeps what is asked for.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    times : array of shape (n,)
+        Those that were asked for, the first of them the start.
+    regularisation : float
+        ε.
+
+    """
+
+    def __init__(self, system: System, times: FloatArray, regularisation: float) -> None:
+        self.times, self.states = times, np.empty((len(times), system.state_size))
+        self.steps = self.evaluations = 0
+        self._system, self._regularisation = system, regularisation
+        self._recorded = 0
+        self._kept: list[Steps] = []
+
+    @property
+    def finished(self) -> bool:
+        """Whether all times are recorded."""
+        return self._recorded == len(self.times)
+
+    def add(self, run: Steps, axes: Axes) -> None:
+        """Record a run in ``axes``, which starts where the one before it ends."""
+        stop = int(np.searchsorted(self.times, run.times[-1], side="right"))
+        asked = slice(self._recorded, stop)
+        self.states[asked] = axes.fixed_states(self.times[asked], states_at(run, self.times[asked]))
+        self._recorded = max(stop, self._recorded)
+        self.steps += len(run.times) - 1
+        self.evaluations += run.evaluations
+        self._kept.append(axes.fixed_steps(run))
+        if sum(len(kept.times) for kept in self._kept) > MOST_KEPT:
+            whole = _joined(self._kept)
+            self._kept = [whole.only(essential(self._system, whole, self._regularisation))]
+
+    def phases(self) -> tuple[Phase, ...]:
+        """Return the phases from the first to the last step."""
+        return phases(self._system, _joined(self._kept), self._regularisation)
+
+
+def _joined(runs: list[Steps]) -> Steps:
+    """Return consecutive runs as one; each starts with the state with which the one before it ends."""
+    first, *rest = runs
+    return Steps(
+        np.concatenate([first.times, *(run.times[1:] for run in rest)]),
+        np.concatenate([first.states, *(run.states[1:] for run in rest)]),
+        np.concatenate([first.accelerations, *(run.accelerations[1:] for run in rest)]),
+        sum(run.evaluations for run in runs),
+    )

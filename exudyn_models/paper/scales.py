@@ -1,0 +1,110 @@
+"""How fast, how far and how hard a system moves: what steps and tolerances are measured by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_models.parts.radial_support import Law, potential, secant_stiffness
+from reference_model.systems import DiscOnDisc, FloatArray, System
+
+
+def time_scale(system: System, state: FloatArray, span: float) -> float:
+    """Return the time in s in which the motion changes: the shortest of 1/k, 1/|ω|, m/β, or all of ``span``.
+
+    A disc adds its spin, that of its shaft and J/b. Of a support that hardens k is that at the largest deflection
+    that the energy at the start allows; friction may make it grow further, until the whirl turns with ω. A stop
+    counts as if it were touched.
+    """
+    stiffest = hardened_stiffness(system, state) + system.stop_stiffness
+    rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]
+    if isinstance(system, DiscOnDisc):
+        rates += [abs(system.shaft_speed), abs(state[5]), system.shaft_damping / system.polar_inertia]
+    rate = max(rates)
+    return min(1.0 / rate, span) if rate > 0.0 else span
+
+
+def hardened_stiffness(system: System, state: FloatArray) -> float:
+    """Return the largest stiffness in N/m that the springs reach by the energy at the start."""
+    # C·d²/2 + C₃·d⁴/4 = E has the solution C₃·d² = √(C² + 4·C₃·E) − C.
+    root = math.sqrt(system.stiffness**2 + 4.0 * system.hardening * support_energy(system, state))
+    return system.stiffness + 3.0 * (root - system.stiffness)
+
+
+def support_energy(system: System, state: FloatArray) -> float:
+    """Return the energy in J of the centre's motion and of its support, from the place where that is relaxed."""
+    position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
+    return system.mass * abs(velocity) ** 2 / 2.0 + potential(
+        abs(position - system.offset) ** 2, _law_of(system)
+    )
+
+
+def motion_scale(system: System, state: FloatArray) -> float:
+    """Return the number by which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
+
+    A disc adds its spin and those of shaft and master, but not its angle, whose origin is arbitrary.
+    """
+    position, velocity = state.reshape(2, -1)
+    sizes = [1.0, math.hypot(*position[:2]), abs(system.offset), math.hypot(*velocity[:2])]
+    if isinstance(system, DiscOnDisc):
+        sizes += [abs(velocity[2]), abs(system.disc_speed), abs(system.shaft_speed)]
+    return float(max(sizes))
+
+
+def angle_rounding(system: System, state: FloatArray, span: float) -> float:
+    """Return the rounding error in rad of the angle that a disc may have after ``span`` (s); 0 for a pin."""
+    if not isinstance(system, DiscOnDisc):
+        return 0.0
+    spin = max(abs(state[5]), abs(system.disc_speed), abs(system.shaft_speed))
+    return float(np.spacing(abs(state[2]) + spin * span))
+
+
+def force_scale(system: System, state: FloatArray) -> float:
+    """Return the size in N of the forces on the body, or in N m that of the moments where it is smaller; > 0."""
+    position, velocity = state.reshape(2, -1)
+    deflection = math.hypot(*position[:2]) + abs(system.offset)
+    spring = secant_stiffness(deflection**2, _law_of(system)) * deflection
+    force = system.friction_force + spring + system.damping * math.hypot(*velocity[:2])
+    moment = 0.0
+    if isinstance(system, DiscOnDisc):
+        moment = system.friction_force * system.contact_radius + system.shaft_damping * abs(
+            system.shaft_speed - velocity[2]
+        )
+    return float(min((size for size in (force, moment) if size > 0.0), default=system.mass))
+
+
+def _law_of(system: System) -> Law:
+    return (
+        system.stiffness,
+        system.hardening,
+        system.stop_gap,
+        system.stop_stiffness,
+        system.damping,
+    )
+
+
+RELAXATIONS = 40.0
+"""What comes to rest settles to its creep like exp(−t/relaxation time); after 40 times that nothing is left of it."""
+
+
+def settling_time(system: System, epsilon: float) -> float:
+    """Return the time in s after which slip below ε has settled to its creep but for slow relaxations."""
+    return RELAXATIONS * relaxation_times(system, epsilon)[0]
+
+
+def relaxation_times(system: System, epsilon: float) -> tuple[float, float]:
+    """Return the times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
+
+    The viscous part of the law resists slip of a pin with μN/ε per m/s; that of a disc and of its rim on a continuous
+    ring with half of that or more, and on one of n points that rests alone with the n-th part. The inertia of the
+    rim, J/R², may be far larger than the mass. Without friction both are infinite.
+    """
+    if system.friction_force == 0.0:
+        return math.inf, math.inf
+    inertias, share = [system.mass], 1
+    if isinstance(system, DiscOnDisc):
+        inertias.append(system.polar_inertia / system.contact_radius**2)
+        share = system.contact_points or 2
+    times = sorted(share * inertia * epsilon / system.friction_force for inertia in inertias)
+    return times[0], times[-1]

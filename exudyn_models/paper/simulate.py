@@ -1,0 +1,243 @@
+"""simulate(): the same call and the same result as the reference, computed by Exudyn."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Literal
+
+from numpy.typing import ArrayLike
+
+from exudyn_models.paper.alternating_solvers import RING_FRICTION, Friction, nothing_creeps, solve_in_turns
+from exudyn_models.paper.nondimensional import Units
+from exudyn_models.paper.scales import angle_rounding, force_scale, motion_scale, time_scale
+from exudyn_models.parts.ring_friction import add_ring_friction, checked_regularisation
+from exudyn_models.solver.solver_run import FIXED_STEP
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    System,
+    checked_state,
+    checked_times,
+    checked_tolerance,
+    finite_number,
+)
+from reference_model.trajectory import Solution, Trajectory, phases_of
+
+REGULARISATION_PER_TOLERANCE = 100.0
+"""ε = 100·tolerance in the motion's own unit of speed (study in ``benchmarks/exudyn_contact.py``)."""
+
+STEP_TOLERANCE = 1e-2
+"""Tolerance of DOPRI5 relative to the one asked for: thousands of steps add up."""
+
+DISC_STEP_TOLERANCE = 1e-3
+"""The same for a disc: where U = W the ring's friction has an infinite slope, and the spin remembers the error."""
+
+STOP_STEP_TOLERANCE = 1e-4
+"""The same for a support with a stop: its force has a bend, and what bounces on it passes that many times."""
+
+SMALLEST_STEP_TOLERANCE = 1e-13
+"""Below it rounding makes DOPRI5's error estimate useless, and its step collapses."""
+
+LARGEST_STEP = 6.0
+"""DOPRI5's largest step is 6·tolerance^(1/5) time scales: its order is 5, so errors fall where that binds too."""
+
+NEWTON_TOLERANCE = 1e-9
+"""Residual at which Newton's iteration ends, relative to the forces at the start."""
+
+Solver = Literal["explicit", "implicit"]
+
+
+def simulate(
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+    regularisation: float | None = None,
+    solver: Solver = "explicit",
+    friction: Friction = RING_FRICTION,
+) -> Trajectory:
+    """Return the motion of ``system`` from ``initial_state`` at ``times[0]`` at all ``times``.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    initial_state : array of shape (4,) or (6,)
+        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
+    times : array of shape (n,)
+        Increasing, in s. States are interpolated between the solver's own steps, which do not depend on ``times``
+        apart from the first and the last.
+    tolerance : float
+        The accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``: it means the
+        same in any units. While the contact slips, "explicit" keeps the error near it. What sticking and pivoting add
+        is of first order in the regularisation.
+    regularisation : float, optional
+        ε in m/s below which friction is viscous; 100·tolerance of the motion's own speed if not given. It should stay
+        well above the tolerance. ``solution.regularisation`` of the result says it in m/s.
+    solver : "explicit" or "implicit"
+        "explicit" is DOPRI5, and generalised-α only while the contact, or one of several points, sticks: there the
+        regularised law is stiff. Axes that turn with the master disc let it stick in some 40 steps a turn; to pivot
+        about a point takes steps ~ √ε.
+        "implicit" is generalised-α throughout: second order, with a step ~ √tolerance, an error that falls like
+        the tolerance but is some thousand times larger.
+    friction : Friction, optional
+        What adds the friction between the discs to the model, which is built in the motion's own units.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    SimulationError
+        If Exudyn can not compute the motion, or would take more than some millions of steps.
+
+    """
+    state = checked_state(system, initial_state)
+    grid = checked_times(times)
+    tolerance = checked_tolerance(tolerance)
+    if solver not in ("explicit", "implicit"):
+        raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
+    problem = _Problem.of(system, state, grid, regularisation, tolerance)
+    scale = time_scale(problem.system, problem.state, problem.span)
+    if solver == "explicit":
+        method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
+        step = LARGEST_STEP * tolerance**0.2 * scale
+        local = max(_step_tolerance(system) * tolerance, SMALLEST_STEP_TOLERANCE)
+        local *= motion_scale(problem.system, problem.state)
+        # The same for large angles.
+        local = max(local, 2.0 * angle_rounding(problem.system, problem.state, problem.span))
+    else:
+        method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"
+        step = 100.0 * math.sqrt(tolerance) * scale
+        local = NEWTON_TOLERANCE * force_scale(problem.system, problem.state)
+    return problem.solved(
+        method, tolerance, integrator=integrator, step=step, local_tolerance=local, friction=friction
+    )
+
+
+def simulate_fixed_step(
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    integrator: str = "RK44",
+    step: float,
+    regularisation: float = 1e-6,
+) -> Trajectory:
+    """Return the motion computed by one Exudyn integrator with steps of ``step`` (s) throughout.
+
+    For studies of convergence. ``integrator`` is one of "RK44", "RK67" (explicit, order 4 and 6),
+    "GeneralizedAlpha", "TrapezoidalIndex2" (implicit, order 2). An explicit integrator needs a step below about
+    2·mε/μN wherever the pin sticks. ``solution.tolerance`` is nan. Raises as ``simulate`` does.
+    """
+    state = checked_state(system, initial_state)
+    grid = checked_times(times)
+    epsilon = checked_regularisation(regularisation)
+    step = finite_number("step", step)
+    if step <= 0.0:
+        raise ValueError(f"step = {step:g} s: it must be > 0")
+    if integrator not in FIXED_STEP:
+        raise ValueError(f"integrator = {integrator!r}: it must be one of {', '.join(FIXED_STEP)}")
+    problem = _Problem.of(system, state, grid, epsilon, math.nan)
+    return problem.solved(
+        f"Exudyn {integrator}, step {step:.3g} s",
+        math.nan,
+        integrator=integrator,
+        step=step / problem.units.time,
+        local_tolerance=NEWTON_TOLERANCE * force_scale(problem.system, problem.state),
+        friction=Friction(add_ring_friction, nothing_creeps),
+    )
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """A motion to compute, from the time 0 on and in units in which it is of order one.
+
+    Exudyn takes no negative times, large ones cost digits, and its tolerances are absolute.
+    """
+
+    units: Units
+    given: tuple[System, FloatArray, FloatArray]  # system, initial state and times as they were given
+    system: System
+    state: FloatArray
+    times: FloatArray
+    epsilon: float
+    began: float
+
+    @classmethod
+    def of(
+        cls,
+        system: System,
+        state: FloatArray,
+        times: FloatArray,
+        regularisation: float | None,
+        tolerance: float,
+    ) -> _Problem:
+        """Return the problem for ε in m/s; that which goes with ``tolerance`` if it is None."""
+        began = time.perf_counter()
+        units = Units.of(system, state)
+        return cls(
+            units,
+            (system, state, times),
+            units.of_system(system),
+            state / units.of_states(len(state)),
+            (times - times[0]) / units.time,
+            REGULARISATION_PER_TOLERANCE * tolerance
+            if regularisation is None
+            else checked_regularisation(regularisation) / units.speed,
+            began,
+        )
+
+    @property
+    def span(self) -> float:
+        """From the first time to the last."""
+        return float(self.times[-1])
+
+    def solved(
+        self,
+        method: str,
+        tolerance: float,
+        *,
+        integrator: str,
+        step: float,
+        local_tolerance: float,
+        friction: Friction,
+    ) -> Trajectory:
+        """Return the motion in SI units; ``step`` and ``local_tolerance`` are in those of the problem."""
+        found = solve_in_turns(
+            self.system,
+            self.state,
+            self.times,
+            self.epsilon,
+            integrator=integrator,
+            step=step,
+            tolerance=local_tolerance,
+            friction=friction,
+            seconds=self.units.time,
+        )
+        system, state, times = self.given
+        unit = self.units.of_states(len(state))
+        states = found.states * unit
+        states[0] = state
+        begun = [
+            (phase.kind, float(times[0]) + phase.start * self.units.time, phase.initial_state * unit)
+            for phase in found.phases()
+        ]
+        solution = Solution(
+            method=method,
+            tolerance=tolerance,
+            evaluations=found.evaluations,
+            steps=found.steps,
+            wall_time=time.perf_counter() - self.began,
+            regularisation=self.epsilon * self.units.speed,
+        )
+        return Trajectory(system, times, states, phases_of(begun, float(times[-1])), solution)
+
+
+def _step_tolerance(system: System) -> float:
+    """Return the tolerance of DOPRI5 relative to the one asked for."""
+    if system.stop_stiffness > 0.0:
+        return STOP_STEP_TOLERANCE
+    return DISC_STEP_TOLERANCE if isinstance(system, DiscOnDisc) else STEP_TOLERANCE

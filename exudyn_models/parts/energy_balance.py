@@ -1,0 +1,191 @@
+"""Where the energy of a model goes: a check of any run, without a reference solution.
+
+What is put in is what is taken out plus what is stored, at every time of every right run, whatever the bodies and the
+laws between them. Works are integrals of powers that the solver integrates with all other coordinates, so that
+they are as exact as its motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+
+from exudyn_models.solver.solver_run import quiet
+from reference_model.systems import FloatArray, finite_number
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+Power: TypeAlias = Callable[[Any, float], float]
+"""Takes the ``mbs`` and the time in s, and returns a power in W of the current motion."""
+
+Energy: TypeAlias = Callable[[Any], float]
+"""Takes the ``mbs`` and returns an energy in J of the current motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyBalance:
+    """Energies of a model at the times at which its sensors write, all in J and of shape (n,).
+
+    Parameters
+    ----------
+    times : array
+        In s.
+    gains, losses : dict of arrays
+        What each source has put in and each sink has taken out since the start.
+    stored : array
+        Kinetic energy and that of the springs, itself, not since the start.
+
+    """
+
+    times: FloatArray
+    gains: dict[str, FloatArray]
+    losses: dict[str, FloatArray]
+    stored: FloatArray
+
+    @property
+    def residual(self) -> FloatArray:
+        """Gains less losses and the growth of what is stored: zero for the right motion."""
+        put_in, taken_out = (
+            sum(parts.values(), np.zeros(len(self.times))) for parts in (self.gains, self.losses)
+        )
+        return np.asarray(put_in - taken_out - (self.stored - self.stored[0]))
+
+    @property
+    def turnover(self) -> float:
+        """The energy turned over: the largest of all works, and of the changes of what is stored."""
+        parts = [*self.gains.values(), *self.losses.values(), self.stored - self.stored[0]]
+        return float(max(np.max(np.abs(part)) for part in parts))
+
+
+def add_energy_balance(
+    mbs: Any,
+    *,
+    gains: Mapping[str, Power],
+    losses: Mapping[str, Power],
+    stored: Sequence[Energy] = (),
+    unit: float = 1.0,
+) -> Callable[[], EnergyBalance]:
+    """Add an energy balance to ``mbs``; return a function that reads it after a run.
+
+    Kinetic energy of all bodies is counted without being named. Native connectors with an output ``PotentialEnergy``
+    are counted by ``spring_energy``.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        With all its bodies, not yet assembled.
+    gains, losses : dict of Power
+        By their names: drives, loads; friction (``RingFriction.power``), dampers.
+    stored : sequence of Energy
+        Of all springs.
+    unit : float
+        J to a unit of the coordinates that the works are: DOPRI5 weighs their errors with those of all others.
+
+    Raises
+    ------
+    ValueError
+        If ``unit`` is no positive number, a name is a gain and a loss, or a ``spring_energy`` is that of an object
+        without potential energy. Exudyn tells that of a model that can be assembled: of any other the run tells it.
+
+    """
+    unit = finite_number("unit", unit)
+    if unit <= 0.0:
+        raise ValueError(f"unit = {unit:g} J: it must be > 0")
+    for name in gains:
+        if name in losses:
+            raise ValueError(f"{name!r} is among gains and losses: it must be one of them")
+    _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
+    powers = [*gains.values(), *losses.values()]
+    bodies: list[int] = []
+
+    def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
+        return [power(mbs, t) / unit for power in powers]
+
+    def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
+        if not bodies:  # an object tells only once the model is assembled
+            bodies.extend(_bodies(mbs))
+        return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
+
+    internal = {"storeInternal": True, "writeToFile": False}
+    node = mbs.AddNode(
+        items.NodeGenericODE1(
+            referenceCoordinates=[0.0] * len(powers),
+            initialCoordinates=[0.0] * len(powers),
+            numberOfODE1Coordinates=len(powers),
+        )
+    )
+    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
+    works_sensor = mbs.AddSensor(
+        items.SensorNode(nodeNumber=node, outputVariableType=exu.OutputVariableType.Coordinates, **internal)
+    )
+    energy_sensor = mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **internal))
+
+    def read() -> EnergyBalance:
+        times, *works = mbs.GetSensorStoredData(works_sensor).T
+        parts = dict(zip((*gains, *losses), (unit * work for work in works), strict=True))
+        return EnergyBalance(
+            times,
+            {name: parts[name] for name in gains},
+            {name: parts[name] for name in losses},
+            mbs.GetSensorStoredData(energy_sensor)[:, 1],
+        )
+
+    return read
+
+
+def spring_energy(connector: Any) -> Energy:
+    """Return the energy of a native connector with springs, from its ``ObjectIndex``."""
+    return _SpringEnergy(connector)
+
+
+@dataclass(frozen=True)
+class _SpringEnergy:
+    connector: Any
+
+    def __call__(self, mbs: Any) -> float:
+        return float(mbs.GetObjectOutput(self.connector, exu.OutputVariableType.PotentialEnergy))
+
+
+def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
+    """Raise ``ValueError`` if one of ``springs`` has no energy; what belongs to it may still be missing."""
+    for spring in springs:
+        try:
+            kind = mbs.GetObject(spring.connector)["objectType"]
+        except exu.ExudynError:
+            raise ValueError(
+                f"spring_energy({spring.connector!r}): it must be the ObjectIndex of an object of this model"
+            ) from None
+        with quiet():
+            try:
+                mbs.Assemble()
+            except exu.ExudynError:
+                return
+            try:
+                spring(mbs)
+            except exu.ExudynError:
+                raise ValueError(
+                    f"spring_energy of object {int(spring.connector)}: this {kind} tells no potential energy; take "
+                    "a spring of Exudyn without a function of yours, or a function of mbs that returns the energy"
+                ) from None
+
+
+def _bodies(mbs: Any) -> list[int]:
+    """Return the numbers of all objects that have kinetic energy."""
+    found = []
+    for item in range(mbs.systemData.NumberOfObjects()):
+        try:
+            _kinetic_energy(mbs, item)
+        except exu.ExudynError:  # grounds and connectors
+            continue
+        found.append(item)
+    return found
+
+
+def _kinetic_energy(mbs: Any, body: int) -> float:
+    """Return the kinetic energy of a body in J."""
+    return float(mbs.GetObjectOutputBody(body, exu.OutputVariableType.KineticEnergy))

@@ -1,0 +1,176 @@
+"""What is to be known of a friction contact in a model: its sensors, and the handle that adds them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Literal, cast, get_args
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+
+from exudyn_models.forces.any_pair import functions_of_pair
+from exudyn_models.forces.friction_laws import friction_of_slip, mean_slip_speed
+from exudyn_models.forces.load_and_coefficient import NumberOrFunction, Strength
+from exudyn_models.forces.slip_kinematics import SIZES, Kinds, friction_on_nodes, radius_of_disc, slip_map
+from reference_model.systems import FloatArray
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+Quantity = Literal["transmitted_moment", "radial_force", "centre_slip", "rim_slip", "power", "heat"]
+
+
+@dataclass(frozen=True, eq=False)
+class RingFriction:
+    """Friction that ``add_ring_friction`` has added to a model.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        The model.
+    item : ObjectIndex
+        Of the connector.
+    nodes : tuple of NodeIndex
+        Of master and disc.
+
+    """
+
+    mbs: Any
+    item: Any
+    nodes: tuple[Any, Any]
+    _kinds: Kinds = field(repr=False)
+    _reference: FloatArray = field(repr=False)
+    _strength: Strength = field(repr=False)
+
+    def change(
+        self,
+        *,
+        friction_coefficient: NumberOrFunction | None = None,
+        normal_load: NumberOrFunction | None = None,
+    ) -> None:
+        """Replace coefficient or load from now on, as ``add_ring_friction`` takes them; None keeps what there is.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of its range; both then stay as they were.
+
+        """
+        strength = self._strength
+        strength.change(
+            strength.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            strength.normal_load if normal_load is None else normal_load,
+        )
+        functions = functions_of_pair(self._kinds, self._reference, strength)
+        for name, function in zip(("force", "jacobian"), functions, strict=True):
+            self.mbs.SetObjectParameter(self.item, f"{name}UserFunction", function)
+
+    def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
+        """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
+
+        - ``"transmitted_moment"``: M on the disc about its own node, along the master's axis, in N m.
+        - ``"radial_force"``: F on the disc in N, three components in global axes.
+        - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
+        - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
+        - ``"power"``: what friction turns into heat, in W.
+        - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
+
+        ``options`` are those of Exudyn's sensors. Without any the sensor stores its values for
+        ``mbs.GetSensorStoredData`` and writes no file.
+
+        Raises
+        ------
+        ValueError
+            If there is no such quantity.
+
+        """
+        if quantity not in get_args(Quantity):
+            raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
+        options = {"storeInternal": True, "writeToFile": False} | options
+        if quantity == "heat":
+            return self._add_heat(options)
+        return self.mbs.AddSensor(
+            items.SensorUserFunction(sensorUserFunction=self._sensor_function(quantity), **options)
+        )
+
+    def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
+        asked = False
+
+        # Slip is found without the load, so that a load may depend on a sensor of it.
+        def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
+            nonlocal asked
+            slip, angle, radius, axes = self._slip(mbs, configuration)
+            if quantity == "centre_slip":
+                return [math.hypot(slip[0], slip[1])]
+            if quantity == "rim_slip":
+                return [self._strength.contact_radius * slip[2]]
+            if asked:
+                raise ValueError(
+                    f"normal_load or friction_coefficient depends on the sensor {quantity!r} of the same contact, "
+                    "which depends on them; they may depend on centre_slip, rim_slip and heat"
+                )
+            asked = True
+            try:
+                friction = self._friction(t, slip, angle, radius)
+            finally:
+                asked = False
+            if quantity == "transmitted_moment":
+                return [float(friction[2])]
+            if quantity == "power":
+                return [-float(friction @ slip)]
+            return cast(list[float], (axes[:, :2] @ friction[:2]).tolist())
+
+        return values
+
+    def power(self, mbs: Any, t: float) -> float:
+        """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
+        coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
+        contact = self._strength.contact or self._strength.contact_at(t)
+        forces, radius, slip_speed = friction_on_nodes(self._kinds, coordinates, velocities, contact)
+        power = -float(forces @ velocities)
+        return (
+            power * self._strength.friction(t, radius, slip_speed)
+            if self._strength.depends_on_motion
+            else power
+        )
+
+    def _add_heat(self, options: dict[str, Any]) -> Any:
+        def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
+            return [self.power(mbs, t)]
+
+        node = self.mbs.AddNode(
+            items.NodeGenericODE1(
+                referenceCoordinates=[0.0], initialCoordinates=[0.0], numberOfODE1Coordinates=1
+            )
+        )
+        self.mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rate))
+        variable = exu.OutputVariableType.Coordinates
+        return self.mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **options))
+
+    def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, FloatArray]:
+        """Return u_x, u_y (m/s) and S (rad/s), the disc's angle and radius, all in the master's axes, and these."""
+        coordinates, velocities = self._motion(mbs, configuration)
+        to_slip, axes, (cosine, sine) = slip_map(self._kinds, coordinates)
+        radius = float(radius_of_disc(self._kinds, coordinates, axes))
+        return to_slip @ velocities, math.atan2(sine, cosine), radius, axes
+
+    def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
+        """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
+        data = mbs.systemData
+        starts = [mbs.GetNodeODE2Index(node) for node in self.nodes]
+        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, self._kinds, strict=True)]
+        q, q_t = (
+            np.concatenate([values[place] for place in places])  # half the cost of the nodes' own outputs
+            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
+        )
+        return self._reference + q, q_t
+
+    def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
+        """Return F_x, F_y (N) in the master's axes and M (N m)."""
+        arguments = (*slip.tolist(), angle, self._strength.contact_at(t))
+        friction = np.array(friction_of_slip(*arguments))
+        if self._strength.depends_on_motion:
+            friction *= self._strength.friction(t, radius, mean_slip_speed(*arguments))
+        return friction

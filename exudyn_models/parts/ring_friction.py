@@ -1,0 +1,207 @@
+"""Dry friction between two bodies on a ring or at points of it: one connector for pins, discs and drivetrains.
+
+The connector is an ``ObjectGenericODE2`` without mass over the nodes of *both* bodies, so that it puts the full
+reaction on the master: the force −F and the moment −d×F of a force F that acts at a distance d from the
+master's own reference point. Exudyn's marker connectors leave that moment out, which is no longer an exchange of
+momentum between two free bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import exudyn.itemInterface
+import numpy as np
+
+from exudyn_models.forces.any_pair import functions_of_pair
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
+from exudyn_models.forces.load_and_coefficient import NumberOrFunction, Strength
+from exudyn_models.forces.slip_kinematics import KINDS
+from exudyn_models.parts.friction_sensors import RingFriction
+from reference_model.systems import finite_number
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+
+class AddFriction(Protocol):
+    """Adds friction between two discs to a model, as ``add_ring_friction`` does."""
+
+    def __call__(
+        self,
+        mbs: Any,
+        master_node: Any,
+        disc_node: Any,
+        *,
+        contact_radius: float,
+        friction_coefficient: float,
+        normal_load: float,
+        regularisation: float,
+        contact_points: int | None = None,
+    ) -> Any:
+        """Add the connector or connectors."""
+        ...
+
+
+def add_ring_friction(
+    mbs: Any,
+    master_node: Any,
+    disc_node: Any,
+    *,
+    contact_radius: float | None = None,
+    inner_radius: float | None = None,
+    outer_radius: float | None = None,
+    friction_coefficient: NumberOrFunction,
+    normal_load: NumberOrFunction,
+    regularisation: float,
+    contact_points: int | None = None,
+    held: int | None = None,
+) -> RingFriction:
+    """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
+
+    The contact is a circle of ``contact_radius`` about the origin of the disc's node, or ``contact_points`` points on
+    it that turn with the disc: point i at the angle φ + 2πi/n. The points share the normal load N alike. Or it is the
+    annulus between ``inner_radius`` and ``outer_radius`` under uniform pressure. The law is that of
+    ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
+
+    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
+    ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The plane of contact goes through the disc's node across the
+    z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load presses
+    nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False, because the
+    nodes are shared with their bodies; Exudyn says so.
+
+    Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
+
+    - ``time`` in s,
+    - ``radius`` in m, the distance of the disc's node from the master's axis,
+    - ``slip_speed`` in m/s, the mean slip speed P of the contact,
+
+    as ``lambda time: ...`` or ``lambda radius, slip_speed: ...``. They may read sensors of ``mbs``, as a controller
+    does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by radius and
+    slip speed, not what comes by way of sensors.
+
+    A static solver keeps the velocities with which the nodes start, so that it finds the equilibrium of a disc on a
+    master that turns.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Not yet assembled, with both nodes.
+    master_node, disc_node : NodeIndex
+        Of the two bodies, in ``mbs``: an index of a node in another model is that of the node that has it here.
+    contact_radius : float
+        R in m, >= 0; the contact is a pin if it is 0.
+    inner_radius, outer_radius : float
+        In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
+    friction_coefficient : float or callable
+        μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one.
+    normal_load : float or callable
+        N in N of the whole contact, >= 0, or a function that returns it.
+    regularisation : float
+        ε in m/s, > 0.
+    contact_points : int or None
+        n >= 1, or None for the whole circle or annulus.
+    held : int, optional
+        i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, a function takes other arguments, or a node is none of ``mbs`` or of a kind
+        that can't be used. Where a function returns such a number in a run, Exudyn ends it with an ``ExudynError``
+        that tells it with its time and arguments.
+
+    """
+    if inner_radius is None and outer_radius is None:
+        radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+        inner = radius
+    else:
+        inner, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
+        points, epsilon = CONTINUOUS, checked_regularisation(regularisation)
+    if held is not None and held not in range(1, 1 + points):
+        raise ValueError(
+            f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
+        )
+    unit = (radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner)
+    strength = Strength(unit, friction_coefficient, normal_load)
+    kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
+    if int(master_node) == int(disc_node):
+        raise ValueError(f"disc_node {int(disc_node)} is the master_node too: friction takes two bodies")
+    reference = np.hstack(
+        [mbs.GetNodeParameter(node, "referenceCoordinates") for node in (master_node, disc_node)]
+    )
+    force, jacobian = functions_of_pair(kinds, reference, strength)
+    size = len(reference)
+    item = mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=[master_node, disc_node],
+            massMatrix=np.zeros((size, size)),
+            forceUserFunction=force,
+            jacobianUserFunction=jacobian,
+        )
+    )
+    return RingFriction(mbs, item, (master_node, disc_node), kinds, reference, strength)
+
+
+def checked_contact(
+    regularisation: float, contact_radius: float | None, contact_points: int | None
+) -> tuple[float, int, float]:
+    """Return R, number of points and ε; raise ``ValueError`` if one is out of its range."""
+    radius = finite_number("contact_radius", contact_radius)
+    if radius < 0.0:
+        raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
+    if contact_points is not None and (
+        isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1
+    ):
+        raise ValueError(
+            f"contact_points = {contact_points}: it must be a whole number >= 1, or None for the continuous ring"
+        )
+    epsilon = checked_regularisation(regularisation)
+    if radius == 0.0:  # a pin, of however many points
+        return radius, 1, epsilon
+    return radius, int(contact_points or CONTINUOUS), epsilon
+
+
+def _checked_annulus(
+    inner_radius: float | None,
+    outer_radius: float | None,
+    contact_radius: float | None,
+    contact_points: int | None,
+) -> tuple[float, float]:
+    """Return both radii in m; raise ``ValueError`` if there is no such annulus."""
+    for name, value in (("contact_radius", contact_radius), ("contact_points", contact_points)):
+        if value is not None:
+            raise ValueError(f"{name} = {value}: it must be left out for an annulus with its two radii")
+    inner, outer = finite_number("inner_radius", inner_radius), finite_number("outer_radius", outer_radius)
+    if inner < 0.0:
+        raise ValueError(f"inner_radius = {inner:g} m: it must be >= 0")
+    if outer <= inner:
+        raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
+    return inner, outer
+
+
+def checked_regularisation(value: float) -> float:
+    """Return ε in m/s as a float; raise ``ValueError`` if it is not a finite number > 0."""
+    epsilon = finite_number("regularisation", value)
+    if epsilon <= 0.0:
+        raise ValueError(f"regularisation = {epsilon:g} m/s: it must be > 0")
+    return epsilon
+
+
+def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
+    """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
+    try:
+        kind = mbs.GetNode(node)["nodeType"]
+    except exudyn.ExudynIndexError:
+        count = mbs.systemData.NumberOfNodes()
+        raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
+    except exudyn.ExudynTypeError:
+        raise ValueError(
+            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex, as AddNode returns it"
+        ) from None
+    if KINDS.get(kind) in allowed:
+        return KINDS[kind]
+    names = [f"Node{key}" for key, value in KINDS.items() if value in allowed]
+    raise ValueError(
+        f"{name} {int(node)} is a Node{kind}: it must be a {' or '.join(', '.join(names).rsplit(', ', 1))}"
+    )

@@ -1,0 +1,89 @@
+"""``mbs.SolveDynamic`` for models of one's own, checked for what Exudyn itself lets pass."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import exudyn as exu
+
+from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
+from exudyn_models.solver.step_limit import StepCheck
+from reference_model.trajectory import SimulationError
+
+IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
+
+
+def solve_dynamic(
+    mbs: Any, simulationSettings: Any, solverType: Any = None, updateInitialValues: bool = False
+) -> None:
+    """Run ``mbs.SolveDynamic`` with the same arguments, and raise what it does not tell.
+
+    Exudyn's explicit solvers ignore algebraic constraints, or lose their order where they eliminate them, and they go
+    on with a state that is not finite and report success. A look at every step, which costs about 1.5 μs, ends the
+    run there; the model's own function after a step is called besides.
+
+    A step beyond what is stable where contacts stick gives a run that looks like any other: before a run with a fixed
+    step a ``RuntimeWarning`` tells of it, see ``largest_stable_step``. It sees the contacts of ``add_ring_friction``,
+    whether they will stick or not, and all dampers at the initial values. Loads and coefficients that are functions
+    are looked at at the start and at a hundred times of the run, where the warning may come too: they are never asked
+    about a time or a motion that is not the run's.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        The model.
+    simulationSettings : exudyn SimulationSettings
+        Of the run.
+    solverType : exudyn DynamicSolverType, optional
+        In place of that of the settings.
+    updateInitialValues : bool
+        Let the next run go on from where this one ends.
+
+    Raises
+    ------
+    ValueError
+        If the solver is explicit and the model has algebraic constraints.
+    SimulationError
+        If a step does not converge, a matrix is singular or a state is not finite.
+    exudyn.ExudynError
+        What else Exudyn finds; an error in a function of a friction contact arrives as its ``__cause__``.
+
+    """
+    solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
+    data = mbs.systemData
+    constraints = data.AEsize()
+    if solver not in IMPLICIT and constraints > 0:
+        raise ValueError(
+            f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
+            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs"
+        )
+    start = reached = simulationSettings.timeIntegration.startTime
+    finite = True
+    check = StepCheck(mbs, solver.name, simulationSettings.timeIntegration)
+    check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
+
+    def look(mbs: Any, t: float) -> bool:
+        nonlocal reached, finite
+        reached = t
+        if t >= check.next_time:
+            check.warn(t, data.GetODE2Coordinates())
+        state = (data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE1Coordinates())
+        finite = math.isfinite(sum(sum(part.tolist()) for part in state))
+        return finite
+
+    try:
+        with after_every_step(mbs, look):
+            mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
+    except exu.ExudynError as error:
+        raise_interrupt(error)
+        if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
+            raise error.__cause__ from None
+        if isinstance(error, (exu.SolverError, exu.InternalError)):
+            what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
+            raise SimulationError(advice(solver.name, reached - start, what)) from error
+        raise
+    if not finite:
+        raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))

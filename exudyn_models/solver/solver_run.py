@@ -1,0 +1,298 @@
+"""One call of an Exudyn solver: quiet, without files, and checked for what Exudyn itself lets pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import NDArray
+
+from exudyn_models.paper.models.supported_body import Model
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+EXPLICIT = ("RK44", "RK67", "DOPRI5")
+FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The states at the start and after every step of a solver.
+
+    Parameters
+    ----------
+    times : array of shape (n,)
+        In s.
+    states : array of shape (n, 2d)
+        The d coordinates of the system (m, rad) and their d velocities (m/s, rad/s).
+    accelerations : array of shape (n, d)
+        In m/s², rad/s².
+    evaluations : int
+        Evaluations of the equations of motion.
+
+    """
+
+    times: FloatArray
+    states: FloatArray
+    accelerations: FloatArray
+    evaluations: int
+
+    def only(self, chosen: NDArray[Any]) -> Steps:
+        """Return those of the steps that an array of indices or of yes and no has ``chosen``."""
+        return replace(
+            self,
+            times=self.times[chosen],
+            states=self.states[chosen],
+            accelerations=self.accelerations[chosen],
+        )
+
+
+NOT_FINITE = "the state is not finite any more"
+"""Where Exudyn itself would go on and report success."""
+
+MOST_STEPS = 5_000_000
+"""Some minutes' work; a motion that takes more is hardly meant."""
+
+LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
+"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
+
+FIRST_STEP = 1e-6
+"""Of DOPRI5, in units of time of the model; it finds the size of the others by itself."""
+
+
+@dataclass
+class StepCount:
+    """Counts the steps of a motion from 0 to ``end``, of whose units of time each is ``seconds`` s."""
+
+    end: float
+    seconds: float = 1.0
+    steps: int = 0
+    _looked_back: tuple[float, int] = (0.0, 0)
+
+    def look_from(self, t: float) -> None:
+        """Judge the pace from the time ``t`` on: what went before, or comes now, is slow for a short while only."""
+        self._looked_back = t, self.steps
+
+    def expect(self, start: float, steps: float) -> None:
+        """Raise ``SimulationError`` if ``steps`` from the time ``start`` on are too many to begin with."""
+        if steps > MOST_AHEAD:
+            raise SimulationError(self._too_many(f"more than {MOST_AHEAD:,} steps ahead", start))
+
+    def count(self, t: float) -> str:
+        """Count one step more, to the time ``t``; return what is wrong if there are, or will be, too many."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            return self._too_many(f"more than {MOST_STEPS:,} steps", t)
+        since, counted = self._looked_back
+        if self.steps == counted + LOOK_BACK:
+            self.look_from(t)
+            if (self.end - t) * LOOK_BACK > MOST_AHEAD * (t - since):
+                return self._too_many(f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}", t)
+        return ""
+
+    def _too_many(self, steps: str, t: float) -> str:
+        return (
+            f"{steps} at {t * self.seconds:g} s after the start: the parameters are very stiff, or the motion is "
+            "very long; simulate it in parts, or with a larger tolerance or regularisation"
+        )
+
+
+Watch = Callable[[float, list[float]], bool]
+"""Called with time (s) and state after every step; returns False to end the run there."""
+
+
+def solve(
+    model: Model,
+    start: float,
+    end: float,
+    *,
+    integrator: str,
+    step: float,
+    tolerance: float,
+    watch: Watch | None = None,
+    first_step: float = FIRST_STEP,
+    quasi_static: bool = False,
+    balanced: bool = False,
+    count: StepCount | None = None,
+) -> Steps:
+    """Run ``model`` from its initial values at ``start`` (s) to ``end`` or to where ``watch`` ends it.
+
+    Parameters
+    ----------
+    model : Model
+        Assembled.
+    start, end : float
+        In s, start <= end.
+    integrator : str
+        One of ``EXPLICIT`` or ``FIXED_STEP``.
+    step : float
+        In s: the step, for DOPRI5 the largest one.
+    tolerance : float
+        Of DOPRI5's local error, absolute; for the implicit solvers the residual force in N.
+    watch : callable, optional
+        Looks at every step.
+    first_step : float
+        Of DOPRI5, in s.
+    quasi_static : bool
+        Whether generalised-α goes through a motion without inertia: the forces are in balance at the end of each
+        step, and accelerations are those of the velocities, because the balance has them only to its own residual.
+    balanced : bool
+        Whether such a motion starts in balance too, so that its forces give the first acceleration; else that is 0.
+    count : StepCount, optional
+        Of the whole motion, of which this is a part. If the model is not one in SI units, it tells how long a second
+        is.
+
+    Raises
+    ------
+    SimulationError
+        If a state is not finite, the Newton iteration fails, the step falls below what time resolves, or there are
+        too many steps.
+
+    """
+    data = model.mbs.systemData
+    own = slice(model.first, model.first + model.size)
+    if start == end:
+        initial = [
+            values(configuration=exu.ConfigurationType.Initial)[own]
+            for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
+        ]
+        return Steps(np.array([start]), np.hstack(initial)[None, :], np.zeros((1, model.size)), 0)
+    count = StepCount(end) if count is None else count
+    count.expect(start, (end - start) / step)
+    # A step below the resolution of time leaves it where it is.
+    smallest = 8.0 * float(np.spacing(max(abs(start), abs(end))))
+    settings = _settings(start, end, integrator, step, tolerance, first_step)
+    if quasi_static:
+        settings.timeIntegration.generalizedAlpha.spectralRadius = 0.0
+        settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = balanced
+    settings.timeIntegration.minimumStepSize = smallest
+    explicit = integrator in EXPLICIT
+    solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
+    failure = too_many = ""
+    stopped = False
+    previous = start
+
+    def after_step(mbs: Any, t: float) -> bool:
+        nonlocal failure, too_many, stopped, previous
+        state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
+        if not math.isfinite(sum(state)):
+            failure = NOT_FINITE
+        elif start < t < end and t - previous <= smallest:
+            failure = f"the step fell to {(t - previous) * count.seconds:.1g} s"
+        previous = t
+        too_many = count.count(t)
+        stopped = bool(failure or too_many) or not (watch is None or watch(t, state))
+        return not stopped
+
+    with quiet():
+        try:
+            if explicit:
+                first_acceleration = _initial_acceleration(model, start)
+            with after_every_step(model.mbs, after_step):
+                success = solver.SolveSystem(model.mbs, settings)
+        except exu.ExudynError as error:
+            raise_interrupt(error)
+            time = solver.it.currentTime * count.seconds
+            raise SimulationError(advice(integrator, time, str(error))) from error
+    if too_many:
+        raise SimulationError(too_many)
+    if failure or not success:
+        time = solver.it.currentTime * count.seconds
+        raise SimulationError(advice(integrator, time, failure or "the solver gave up"))
+    recorded = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
+    times = recorded[0][:, 0]
+    if not stopped:  # what fixed steps add up to may differ from it in the last digits
+        times[-1] = end
+    positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in recorded)
+    if quasi_static:
+        accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
+    if explicit:
+        accelerations[0] = first_acceleration
+        steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
+        evaluations = steps * (solver.GetNumberOfStages() + 1)
+    else:
+        evaluations = solver.it.newtonStepsCount + solver.it.currentStepIndex
+    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
+
+
+def _settings(
+    start: float, end: float, integrator: str, step: float, tolerance: float, first_step: float = FIRST_STEP
+) -> Any:
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0  # at every step
+    options = settings.timeIntegration
+    options.verboseMode = 0
+    options.startTime, options.endTime = start, end
+    options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
+    options.solverType = getattr(exu.DynamicSolverType, integrator)
+    if integrator in EXPLICIT:
+        # Exudyn 1.13 weighs the error with absolute + relative·y for y of either sign: with both tolerances alike
+        # the step would collapse wherever a coordinate passes −1.
+        options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
+        options.initialStepSize = min(first_step, end - start) if integrator == "DOPRI5" else 0.0
+    else:
+        options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, tolerance
+        options.newton.useModifiedNewton = False
+        trapezoidal = integrator == "TrapezoidalIndex2"
+        options.generalizedAlpha.useNewmark = options.generalizedAlpha.useIndex2Constraints = trapezoidal
+    return settings
+
+
+def _initial_acceleration(model: Model, start: float) -> FloatArray:
+    """Return the accelerations at the start in m/s², rad/s², shape (d,).
+
+    Explicit solvers of Exudyn report zero there; the implicit ones compute it.
+    """
+    span = 1e-9 * max(1.0, abs(start))
+    settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
+    solver: Any = exu.MainSolverImplicitSecondOrder()
+    if not solver.SolveSystem(model.mbs, settings):
+        raise SimulationError(advice("GeneralizedAlpha", start, "no initial acceleration"))
+    return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1 : 1 + model.size]
+
+
+@contextmanager
+def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> Iterator[None]:
+    """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
+    before = mbs.GetPostStepUserFunction()
+    own: Any = before["function"] if before else 0
+
+    def both(mbs: Any, t: float) -> bool:
+        return function(mbs, t) and bool(own(mbs, t))
+
+    mbs.SetPostStepUserFunction(both if own else function)
+    try:
+        yield
+    finally:
+        mbs.SetPostStepUserFunction(own)
+
+
+def raise_interrupt(error: exu.ExudynError) -> None:
+    """Raise the ``KeyboardInterrupt`` that arrived while Exudyn was in a user function, if ``error`` is that."""
+    if "KeyboardInterrupt" in str(error):
+        raise KeyboardInterrupt from error
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep Exudyn from printing, and from warnings that Python functions allocate memory."""
+    before = exu.config.printToConsole, exu.config.suppressWarnings
+    exu.config.printToConsole, exu.config.suppressWarnings = False, True
+    try:
+        yield
+    finally:
+        exu.config.printToConsole, exu.config.suppressWarnings = before
+
+
+def advice(integrator: str, time: float, what: str) -> str:
+    """Return a sentence on a run that failed at ``time`` (s after its start)."""
+    return (
+        f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
+        "take a smaller step, a larger tolerance or a larger regularisation, or the other solver"
+    )

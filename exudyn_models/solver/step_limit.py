@@ -1,0 +1,194 @@
+"""The largest step with which an explicit solver is stable while contacts stick.
+
+Contacts that stick are dampers between their bodies, see ``stick_dampers``. They add up with those of the rest of the
+model, and the fastest decay is the largest eigenvalue λ of M⁻¹·D: the step must stay below Z/λ, with Z the
+``INTERVALS`` of the solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_models.forces.any_pair import stick_dampers_of
+from exudyn_models.forces.stick_dampers import StickDampers
+from exudyn_models.paper.linearisation import matrices_of_model
+from exudyn_models.solver.solver_run import raise_interrupt
+from reference_model.systems import FloatArray
+
+INTERVALS = {
+    "ExplicitEuler": 2.0,
+    "ExplicitMidpoint": 2.0,
+    "RK33": 2.5127453,
+    "RK44": 2.7852935,
+    "RK67": 2.8656205,
+    "VelocityVerlet": 2.0,  # as Exudyn has it, with velocities that lag behind in dampers
+}
+"""Z of the solvers with a fixed step: ẋ = −λx decays while λ·step < Z. All others choose their step themselves."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelInStick:
+    """A model as it would be if all of its contacts stuck, linear about its initial values.
+
+    Parameters
+    ----------
+    mass, damping : array of shape (n, n)
+        Of its n coordinates of second order; ``damping`` is that of all that is no contact.
+    contacts : tuple
+        Which coordinates each contact has, and its dampers.
+
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    contacts: tuple[tuple[Any, StickDampers], ...]
+
+    @classmethod
+    def of(cls, mbs: Any, t: float) -> ModelInStick | None:
+        """Return that of an assembled model at the time t (s), None if it has no contact.
+
+        Raises what functions of the model raise.
+        """
+        found = _contacts(mbs)
+        if not found:
+            return None
+        mass, _, damping = matrices_of_model(mbs, t)
+        data, initial = mbs.systemData, exu.ConfigurationType.Initial
+        q, q_t = data.GetODE2Coordinates(initial), data.GetODE2Coordinates_t(initial)
+        contacts = []
+        for item, dampers, jacobian in found:
+            places = np.array(data.GetObjectLTGODE2(item))
+            now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
+            damping[np.ix_(places, places)] -= now  # that of the slip with which the model starts
+            contacts.append((places, dampers))
+        return cls(mass, damping, tuple(contacts))
+
+    @property
+    def varies(self) -> bool:
+        """Whether a load or coefficient is a function."""
+        return any(dampers.vary for _, dampers in self.contacts)
+
+    def decay(self, t: float, coordinates: FloatArray) -> float:
+        """Return λ in 1/s of the fastest decay at the time t (s) and the model's ``coordinates``, shape (n,)."""
+        own = [
+            (np.ix_(places, places), dampers.at(t, coordinates[places])) for places, dampers in self.contacts
+        ]
+        total = self.damping.copy()
+        for places, (creeping, *_) in own:
+            total[places] += creeping
+        cases = [total]
+        for places, (creeping, *alone) in own:
+            for point in alone:
+                cases.append(total.copy())
+                cases[-1][places] += point - creeping
+        return float(np.linalg.eigvals(np.linalg.solve(self.mass, np.array(cases))).real.max())
+
+
+def largest_stable_step(mbs: Any, solver_type: Any) -> float:
+    """Return the largest step in s with which an explicit solver is stable while all contacts of a model stick.
+
+    It is that of its initial values, with loads and coefficients that are functions as they are at the time 0, and
+    infinite without contacts. A disc that creeps about a place on its own circle of contact or near to it chatters
+    from a quarter of it on, at half of it by less than 7 % of its creep.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Is assembled if it is not.
+    solver_type : exudyn DynamicSolverType
+        One with a fixed step: ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67``,
+        ``VelocityVerlet``.
+
+    Raises
+    ------
+    ValueError
+        For any other solver.
+
+    """
+    if solver_type.name not in INTERVALS:
+        raise ValueError(
+            f"solver_type = {solver_type.name}: it must be one with a fixed step, {', '.join(INTERVALS)}"
+        )
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
+    model = ModelInStick.of(mbs, 0.0)
+    if model is None:
+        return math.inf
+    decay = model.decay(0.0, mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial))
+    return INTERVALS[solver_type.name] / decay if decay > 0.0 else math.inf
+
+
+LOOKS = 100
+"""Times of a run at which loads and coefficients that are functions are looked at, besides its start."""
+
+
+class StepCheck:
+    """Warns of a fixed step that is too large for stick, once.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Assembled.
+    solver : str
+        The name of its type.
+    options : exudyn TimeIntegrationSettings
+        Of the run.
+
+    """
+
+    def __init__(self, mbs: Any, solver: str, options: Any) -> None:
+        self._solver, self._span = solver, options.endTime - options.startTime
+        self._step = self._span / options.numberOfSteps
+        #: In s: when to call ``warn`` again.
+        self.next_time = math.inf
+        self._model = _in_stick(mbs, options.startTime) if solver in INTERVALS else None
+
+    def warn(self, t: float, coordinates: FloatArray) -> None:
+        """Warn if the step is too large for friction as it is at the time t (s) and the model's ``coordinates``."""
+        if self._model is None:
+            return
+        self.next_time = t + self._span / LOOKS if self._model.varies else math.inf
+        try:
+            decay = self._model.decay(t, coordinates)
+        except Exception:  # a body without mass, an error in a load: the run will tell, and at which time
+            return
+        limit = INTERVALS[self._solver] / decay if decay > 0.0 else math.inf
+        if self._step <= limit:
+            return
+        self.next_time = math.inf
+        warnings.warn(
+            f"{self._solver} is not stable with steps of {self._step:.3g} s where the contacts of this model stick, "
+            f"with their friction at t = {t:.6g} s, but below {limit:.3g} s: take numberOfSteps >= "
+            f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5, which finds its step by itself, or "
+            "an implicit solver",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
+def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
+    """Return the model in stick, None if that can't be found."""
+    try:
+        return ModelInStick.of(mbs, t)
+    except Exception as error:  # an error in a function of the model: the run will tell, and at which time
+        if isinstance(error, exu.ExudynError):
+            raise_interrupt(error)
+        return None
+
+
+def _contacts(mbs: Any) -> list[tuple[int, StickDampers, Any]]:
+    """Return number, dampers and Jacobian of all contacts of a model."""
+    found = []
+    for item in range(mbs.systemData.NumberOfObjects()):
+        entry = mbs.GetObject(item)
+        force = entry.get("forceUserFunction")
+        dampers = stick_dampers_of(force["function"]) if isinstance(force, dict) else None
+        if dampers is not None:
+            found.append((item, dampers, entry["jacobianUserFunction"]["function"]))
+    return found

@@ -1,0 +1,330 @@
+"""Coulomb friction between two discs: of a pin, of a ring, of points on a ring, and of the expansion (22).
+
+All laws answer the same question: which force and moment act on the disc while its centre slips with u over the
+master disc and the master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the
+centre slips with u − i·S·r·exp(iα) (21). Plane vectors are complex numbers, and forces are shares of μN: a force
+in N per N, a moment in m.
+
+Friction has no inner time, so that all laws depend on the ratio of u and S only (degree 0). The laws of circles
+are *isotropic* besides: the force is opposite to u, and neither its size nor the moment depends on the direction of
+u or on the angle φ.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Integral
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from reference_model.contact.elliptic import mean_curvatures, mean_directions
+from reference_model.systems import (
+    MOST_POINTS,
+    DiscOnDisc,
+    FloatArray,
+    PinOnDisc,
+    System,
+    finite_number,
+    require_system,
+)
+
+
+class Contact(Protocol):
+    """A law of friction between two discs."""
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """Return force (N per N of μN) and moment (m) on the disc.
+
+        Parameters
+        ----------
+        slip : complex
+            u of the disc's centre, (ẋ + ωy) + i(ẏ − ωx), in m/s.
+        relative_spin : float
+            S = ω − φ̇ in rad/s.
+        angle : float
+            φ of the disc in rad.
+
+        """
+        ...
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """Return the derivatives of (F_x, F_y, M) by (u_x, u_y, S, φ), shape (3, 4).
+
+        Raises ``ValueError`` where a point of the contact is at rest, because there friction has no derivative.
+        """
+        ...
+
+
+class Shares(NamedTuple):
+    """Resistance to slip of the centre (N per N) and moment about it (m), per newton of μN."""
+
+    resistance: float
+    moment: float
+
+
+class Slopes(NamedTuple):
+    """Derivatives of :class:`Shares` by slip speed U (m/s) and relative spin S (rad/s)."""
+
+    resistance_by_slip: float
+    resistance_by_spin: float
+    moment_by_slip: float
+    moment_by_spin: float
+
+
+class IsotropicContact(ABC):
+    """A law that looks the same from all directions: −F(U, S)·u/U and M(U, S), with U = |u|."""
+
+    @abstractmethod
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """Return F and M for U >= 0 and S of either sign, not both zero; F is zero at U = 0."""
+
+    @abstractmethod
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """Return the derivatives of F and M, at U = 0 those from the side U > 0.
+
+        Raises ``ValueError`` where the law has no derivative.
+        """
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """As :meth:`Contact.force_and_moment`; at rest, where friction is set-valued, zero."""
+        speed = abs(slip)
+        if speed == 0.0 and relative_spin == 0.0:
+            return 0j, 0.0
+        resistance, moment = self.shares(speed, relative_spin)
+        return (-resistance * (slip / speed) if speed > 0.0 else 0j), moment
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """As :meth:`Contact.jacobian`.
+
+        Slip across its direction turns the force, so that it acts like a damper F/U; along it the slope counts. At
+        U = 0 the two are the same.
+        """
+        speed = abs(slip)
+        slopes = self.slopes(speed, relative_spin)
+        direction = slip / speed if speed > 0.0 else 1.0 + 0j
+        along = np.array((direction.real, direction.imag))
+        across = np.array((-direction.imag, direction.real))
+        turning = (
+            self.shares(speed, relative_spin).resistance / speed if speed > 0.0 else slopes.resistance_by_slip
+        )
+        result = np.zeros((3, 4))
+        result[:2, :2] = -slopes.resistance_by_slip * np.outer(along, along) - turning * np.outer(
+            across, across
+        )
+        if speed > 0.0:
+            result[:2, 2] = -slopes.resistance_by_spin * along
+            result[2, :2] = slopes.moment_by_slip * along
+        result[2, 2] = slopes.moment_by_spin
+        return result
+
+
+@dataclass(frozen=True)
+class Pin(IsotropicContact):
+    """Contact in one point, the centre (1): full friction against slip, no moment."""
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`: none but at rest, where there is no derivative."""
+        if slip_speed == 0.0:
+            raise ValueError("slip = 0 m/s: the pin is at rest, where friction has no derivative")
+        return Slopes(0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class _OnCircle:
+    radius: float
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size."""
+        radius = finite_number("radius", self.radius)
+        if radius <= 0.0:
+            raise ValueError(f"radius = {radius:g} m: it must be > 0")
+        object.__setattr__(self, "radius", radius)
+
+
+@dataclass(frozen=True)
+class Ring(_OnCircle, IsotropicContact):
+    """Contact on the whole circle of radius R (20), in closed form.
+
+    With the mean slip speed P(U, W) on the circle, W = R·|S|, it is F = ∂P/∂U and M = R·∂P/∂W·sign(S): see
+    :mod:`reference_model.contact.elliptic`. Both are accurate to rounding for all ratios of U and W.
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+
+    """
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        rim = self.radius * relative_spin
+        along_slip, along_rim = mean_directions(slip_speed, abs(rim))
+        return Shares(along_slip, math.copysign(self.radius * along_rim, rim))
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`; there are none where U = W."""
+        rim = abs(self.radius * relative_spin)
+        if slip_speed == rim:
+            raise ValueError(
+                f"slip = {slip_speed:g} m/s = radius·|relative spin|: one point of the ring is at rest, "
+                "where friction has no derivative"
+            )
+        by_slip, mixed, by_rim = mean_curvatures(slip_speed, rim)
+        mixed *= math.copysign(self.radius, relative_spin)
+        return Slopes(by_slip, mixed, mixed, self.radius**2 * by_rim)
+
+
+@dataclass(frozen=True)
+class ThreeTermRing(_OnCircle, IsotropicContact):
+    """The paper's approximation (23) of the ring: three terms of the expansion (22) of ν̄/|ν_r|.
+
+    With U = ν̄·cos α and R·S = ν̄·sin α it is F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and
+    M = R·sin α·(1 − ½cos²α + ¾cos²α·sin²α). Like the ring's they have a potential, ν̄·P(α) with
+    P = 1 − ¼cos²α·sin²α: the mean slip speed up to the same order. It is convex, so that the approximation never
+    puts in power. Off by up to 0.10 near U = 0.77·R|S| (force) and at its reciprocal (moment).
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+
+    """
+
+    def shares(self, slip_speed: float, relative_spin: float) -> Shares:
+        """As :meth:`IsotropicContact.shares`."""
+        _, c, s = self._polar(slip_speed, relative_spin)
+        both = 0.75 * (c * s) ** 2
+        return Shares(c * (1.0 - 0.5 * s**2 + both), self.radius * s * (1.0 - 0.5 * c**2 + both))
+
+    def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
+        """As :meth:`IsotropicContact.slopes`."""
+        speed, c, s = self._polar(slip_speed, relative_spin)
+        curvature = (0.5 + 3.75 * (c * s) ** 2) / speed  # P + d²P/dα² over ν̄
+        mixed = -self.radius * c * s * curvature
+        return Slopes(s**2 * curvature, mixed, mixed, (self.radius * c) ** 2 * curvature)
+
+    def _polar(self, slip_speed: float, relative_spin: float) -> tuple[float, float, float]:
+        """Return ν̄ of (22), cos α and sin α."""
+        rim = self.radius * relative_spin
+        speed = math.hypot(slip_speed, rim)
+        if speed == 0.0:
+            raise ValueError("slip = 0 m/s and relative spin = 0 rad/s: the disc is at rest")
+        return speed, slip_speed / speed, rim / speed
+
+
+@dataclass(frozen=True)
+class PointsOnRing(_OnCircle):
+    """Contact in n points on a circle, each with 1/n of the load: the paper's own discretisation with n = 6.
+
+    Point i is at φ + 2πi/n, so that the law keeps the angle.
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+    points : int
+        n, from 3 to 1000.
+
+    """
+
+    points: int
+
+    def __post_init__(self) -> None:
+        """Refuse a circle of no size and what is no number of points."""
+        super().__post_init__()
+        require_whole("points", self.points, least=3, most=MOST_POINTS)
+
+    @cached_property
+    def _around(self) -> tuple[complex, ...]:
+        """The points on the unit circle at φ = 0."""
+        return tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
+
+    def arms(self, angle: float) -> list[complex]:
+        """Return the positions of the points relative to the centre, in m."""
+        turn = self.radius * cmath.exp(1j * angle)
+        return [turn * point for point in self._around]
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """As :meth:`Contact.force_and_moment`; a point at rest, where friction is set-valued, gives nothing."""
+        force, moment = 0j, 0.0
+        for arm in self.arms(angle):
+            velocity = slip - 1j * relative_spin * arm
+            speed = abs(velocity)
+            if speed > 0.0:
+                friction = -velocity / speed
+                force += friction
+                moment += (arm.conjugate() * friction).imag
+        return force / self.points, moment / self.points
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """As :meth:`Contact.jacobian`."""
+        result = np.zeros((3, 4))
+        for arm in self.arms(angle):
+            velocity = slip - 1j * relative_spin * arm
+            speed = abs(velocity)
+            if speed == 0.0:
+                raise ValueError(
+                    f"angle = {angle:g} rad: a point is at rest, where friction has no derivative"
+                )
+            direction = velocity / speed
+            across = 1j * direction
+            # Slip of the point by u_x, u_y, S, φ; friction changes with its part across the direction only.
+            by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
+            turning = -((by_unknowns * across.conjugate()).real / speed)
+            friction = turning * across
+            result[0] += friction.real
+            result[1] += friction.imag
+            result[2] += (arm.conjugate() * friction).imag
+            result[2, 3] += ((1j * arm).conjugate() * -direction).imag  # the arm turns too
+        return result / self.points
+
+
+def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | PointsOnRing:
+    """Return ``contact``, or the law of friction that the parameters of ``system`` stand for without it.
+
+    Raises ``ValueError`` for a law that the system can't have.
+    """
+    require_system(system)
+    if isinstance(system, PinOnDisc):
+        if contact is not None:
+            raise ValueError(f"contact = {contact}: a pin touches in one point, only a disc takes other laws")
+        return Pin()
+    if contact is None:
+        if system.contact_points is None:
+            return Ring(system.contact_radius)
+        return PointsOnRing(system.contact_radius, system.contact_points)
+    if not isinstance(contact, IsotropicContact | PointsOnRing):
+        raise ValueError(
+            f"contact = {contact}: it must be an isotropic law, like Ring(radius), or PointsOnRing(radius, points)"
+        )
+    return contact
+
+
+def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` if that is of points, naming ``what``."""
+    require_system(system, DiscOnDisc)
+    law = contact_of(system, contact)
+    if not isinstance(law, IsotropicContact):
+        given = f"contact_points = {system.contact_points}" if contact is None else f"contact = {contact}"
+        raise ValueError(
+            f"{given}: {what} can't be had for a disc on single points, whose friction depends on its angle; take "
+            "the continuous ring, contact_points = None"
+        )
+    return law
+
+
+def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
+    """Raise ``ValueError`` naming ``value`` unless it is an integer from ``least`` to ``most``."""
+    whole = isinstance(value, Integral) and not isinstance(value, bool)
+    if not (whole and least <= value <= most):
+        allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
+        raise ValueError(f"{name} = {value!r}: it must be a whole number {allowed}")

@@ -1,0 +1,125 @@
+"""Friction of a ring and of points on a ring as straight-line code, which lanes take over whole.
+
+Both are shares of μN for the slip u of the disc's centre and the velocity W·t of the rim, W = R·(φ̇ − ω) of either
+sign: a resistance to slip of the centre and one to slip of the rim (the moment over R). Times the two speeds they are
+the mean slip speed on the circle, which is the power that friction takes per newton.
+
+The ring's are complete elliptic integrals by the arithmetic-geometric mean. With k the smaller over the larger of
+U = |u| and |W|, with a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
+
+    ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
+
+where A is the mean (DLMF 19.8(i)). Nothing cancels but what is of the order of 1/A, a logarithm, where U = |W|.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba.extending import overload
+
+from reference_model.ensemble.core.jit import inlined
+
+LEAST = 1e-300
+"""Stands for a speed of zero where something is divided by it."""
+
+NEAREST = 1e-16
+"""Relative distance from U = |W| below which it makes no difference."""
+
+SMALL = 1e-4
+"""k² below which what follows c₁² in the sum over k² is less than rounding, and its own rounding would be seen."""
+
+HALVINGS = 7
+"""Means of a and g: they agree to rounding from k = 0 to the nearest that k comes to one."""
+
+QUARTER = (
+    float.fromhex("0x1.921fb54400000p+0"),
+    float.fromhex("0x1.0b4611a600000p-34"),
+    2.02226624871116645580e-21,
+)
+"""π/2 in three parts, the first two of 33 bits."""
+
+SINE = tuple((-1.0) ** n / math.factorial(2 * n + 1) for n in range(8, -1, -1))
+COSINE = tuple((-1.0) ** n / math.factorial(2 * n) for n in range(8, -1, -1))
+"""Taylor's series in the square of the angle, the highest power first."""
+
+
+@inlined
+def ring_shares(slip: float, rim: float) -> Any:
+    """Return ∂P/∂U and ∂P/∂W of a ring for U, W >= 0."""
+    more = slip >= rim
+    larger = slip if more else rim
+    smaller = rim if more else slip
+    larger = larger if larger > LEAST else LEAST
+    k = smaller / larger
+    apart = (larger - smaller) / larger  # 1 − k, all of whose digits count here
+    apart = apart if apart > NEAREST else NEAREST
+    m = k * k
+    a, g = 1.0, math.sqrt(apart * (1.0 + k))
+    a, g = 0.5 * (a + g), math.sqrt(a * g)
+    first = m / (8.0 * a * a)  # 2·c₁²/k², with c₁ = k²/(4·a₁)
+    rest, weight = 0.0, 1.0
+    for _ in range(HALVINGS - 1):
+        c = a - g
+        rest += weight * c * c
+        weight *= 2.0
+        a, g = 0.5 * (a + g), math.sqrt(a * g)
+    total = first + (rest / m if m > SMALL else 0.0)
+    by_larger = (1.0 - 0.5 * m * (1.0 + total)) / a
+    by_smaller = k * (0.5 - 0.5 * total) / a
+    return (by_larger if more else by_smaller), (by_smaller if more else by_larger)
+
+
+def points_shares(ux: float, uy: float, rim: float, around: Any) -> tuple[float, float, float, float]:
+    """Return the resistance along x and y, that of the rim, and the mean slip speed of points on a ring.
+
+    ``around`` holds the unit vectors to the points, (cos, sin) of each, one after the other: a tuple, which says how
+    many there are, so that the sum is written out. A point at rest gives nothing. Compiled code only.
+    """
+    raise NotImplementedError
+
+
+@overload(points_shares, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any]:
+    lines = ["def shares(ux, uy, rim, around):", "    fx = fy = moment = power = 0.0"]
+    for i in range(0, len(around), 2):
+        lines += [
+            f"    vx, vy = ux - rim * around[{i + 1}], uy + rim * around[{i}]",
+            "    speed = math.sqrt(vx * vx + vy * vy)",
+            "    inverse = 1.0 / max(speed, LEAST)",
+            "    vx, vy = vx * inverse, vy * inverse",
+            "    fx, fy, power = fx + vx, fy + vy, power + speed",
+            f"    moment = moment + around[{i}] * vy - around[{i + 1}] * vx",
+        ]
+    share = 1.0 / (len(around) // 2)
+    lines.append(f"    return {share!r} * fx, {share!r} * fy, {share!r} * moment, {share!r} * power")
+    namespace: dict[str, Any] = {"math": math, "LEAST": LEAST}
+    exec("\n".join(lines), namespace)
+    function: Callable[..., Any] = namespace["shares"]
+    return function
+
+
+@inlined
+def turned(angle: float) -> Any:
+    """Return cosine and sine of an angle of up to some 1e6 rad, to rounding, without a branch.
+
+    Quarter turns are taken off in three parts, each but the last with zeros at its end (Cody and Waite), and Taylor's
+    series do for what is left, below π/4.
+    """
+    quarters = np.rint(angle * (2.0 / math.pi))
+    x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]
+    m = x * x
+    sine, cosine = SINE[0], COSINE[0]
+    for coefficient in SINE[1:]:
+        sine = sine * m + coefficient
+    for coefficient in COSINE[1:]:
+        cosine = cosine * m + coefficient
+    sine *= x
+    turn = quarters - 4.0 * np.rint(0.25 * quarters)  # -2 to 2
+    odd = abs(turn) == 1.0
+    c = sine if odd else cosine
+    s = cosine if odd else sine
+    return (-c if turn == 1.0 or abs(turn) == 2.0 else c), (-s if turn == -1.0 or abs(turn) == 2.0 else s)

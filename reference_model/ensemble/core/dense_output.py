@@ -1,0 +1,172 @@
+"""The motion inside of a step: a polynomial through place, velocity, acceleration and jerk at both ends."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from reference_model.ensemble.core.jit import inlined, scalar
+
+GAUSS = (
+    (0.06943184420297371, 0.17392742256872692),
+    (0.33000947820757187, 0.32607257743127307),
+    (0.6699905217924281, 0.32607257743127307),
+    (0.9305681557970263, 0.17392742256872692),
+)
+"""Places and weights of Gauss's quadrature with four points on (0, 1)."""
+
+MOST_STEPS_TO_ROOT, CLOSE = 60, 1e-5
+"""Of the search for a root in an arc, and the change of u that is the last one: what it leaves is far smaller."""
+
+
+class Polynomial(NamedTuple):
+    """Σ cᵢuⁱ + u⁴·Σ dᵢ(u − 1)ⁱ."""
+
+    c0: float
+    c1: float
+    c2: float
+    c3: float
+    d0: float
+    d1: float
+    d2: float
+    d3: float
+
+
+class Arc(NamedTuple):
+    """x and y over a step of length ``span`` in time, u from 0 to 1."""
+
+    x: Polynomial
+    y: Polynomial
+    span: float
+
+
+@inlined
+def size_of(z: complex) -> float:
+    """Return |z|, faster than ``abs``, which minds overflow."""
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+class Motion(NamedTuple):
+    """Place, velocity, acceleration and jerk at one time."""
+
+    place: complex
+    velocity: complex
+    acceleration: complex
+    jerk: complex
+
+
+@scalar
+def arc_between(span: float, first: Motion, last: Motion) -> Arc:
+    """Return the arc of length ``span`` in time from one motion to another."""
+    v0, a0, j0 = first.velocity * span, first.acceleration * span**2, first.jerk * span**3
+    v1, a1, j1 = last.velocity * span, last.acceleration * span**2, last.jerk * span**3
+    z0, z1 = first.place, last.place
+    return Arc(
+        _between(z0.real, v0.real, a0.real, j0.real, z1.real, v1.real, a1.real, j1.real),
+        _between(z0.imag, v0.imag, a0.imag, j0.imag, z1.imag, v1.imag, a1.imag, j1.imag),
+        span,
+    )
+
+
+@inlined
+def _between(
+    f0: float, f1: float, f2: float, f3: float, g0: float, g1: float, g2: float, g3: float
+) -> Polynomial:
+    """Return the polynomial with the value f0 and the derivatives f1, f2, f3 at 0 and g0 to g3 at 1."""
+    c2, c3 = f2 / 2.0, f3 / 6.0
+    # What Taylor's polynomial at the start leaves over at the end, and its derivatives.
+    e0, e1 = g0 - (f0 + f1 + c2 + c3), g1 - (f1 + f2 + 3.0 * c3)
+    e2, e3 = g2 - (f2 + f3), g3 - f3
+    d2 = (e2 - 8.0 * e1 + 20.0 * e0) / 2.0
+    d3 = (e3 - 12.0 * e2 + 60.0 * e1 - 120.0 * e0) / 6.0
+    return Polynomial(f0, f1, c2, c3, e0, e1 - 4.0 * e0, d2, d3)
+
+
+@inlined
+def _value(p: Polynomial, u: float) -> float:
+    r = u - 1.0
+    beyond = p.d0 + r * (p.d1 + r * (p.d2 + r * p.d3))
+    return p.c0 + u * (p.c1 + u * (p.c2 + u * (p.c3 + u * beyond)))
+
+
+@inlined
+def _slope(p: Polynomial, u: float) -> float:
+    r = u - 1.0
+    beyond = p.d0 + r * (p.d1 + r * (p.d2 + r * p.d3))
+    change = p.d1 + r * (2.0 * p.d2 + 3.0 * r * p.d3)
+    return p.c1 + u * (2.0 * p.c2 + u * (3.0 * p.c3 + u * (4.0 * beyond + u * change)))
+
+
+@inlined
+def place_on(arc: Arc, u: float) -> complex:
+    """Return z(u)."""
+    return complex(_value(arc.x, u), _value(arc.y, u))
+
+
+@inlined
+def velocity_on(arc: Arc, u: float) -> complex:
+    """Return ż(u)."""
+    return complex(_slope(arc.x, u), _slope(arc.y, u)) / arc.span
+
+
+@inlined
+def rightward(arc: Arc, u: float) -> float:
+    """Return what is zero where x is largest: ẋ(u), times the length of the arc."""
+    return _slope(arc.x, u)
+
+
+@inlined
+def outward(arc: Arc, u: float) -> float:
+    """Return what is zero where the radius is largest or smallest: ρρ̇, times the length of the arc."""
+    return _value(arc.x, u) * _slope(arc.x, u) + _value(arc.y, u) * _slope(arc.y, u)
+
+
+@scalar
+def where_rightmost(arc: Arc) -> float:
+    """Return u at which x is largest; its rate changes its sign between the ends."""
+    return _zero_of(rightward, arc)
+
+
+@scalar
+def where_radius_turns(arc: Arc) -> float:
+    """Return u at which the radius is largest or smallest, and inf if it only rises or only falls."""
+    if (outward(arc, 0.0) > 0.0) == (outward(arc, 1.0) > 0.0):
+        return math.inf
+    return _zero_of(outward, arc)
+
+
+@inlined
+def _zero_of(measure: Any, arc: Arc) -> float:
+    """Return u at which ``measure`` of the arc is zero; it changes its sign between the ends.
+
+    By inverse quadratic interpolation, kept inside of the bracket.
+    """
+    low, high = 0.0, 1.0
+    at_low, at_high = measure(arc, low), measure(arc, high)
+    if at_low == at_high:
+        return low
+    u: float = at_low / (at_low - at_high)
+    for _ in range(MOST_STEPS_TO_ROOT):
+        at = measure(arc, u)
+        a, b, c = at_low - at_high, at_low - at, at_high - at
+        new = low * at_high * at / (a * b) - high * at_low * at / (a * c) + u * at_low * at_high / (b * c)
+        if (at > 0.0) == (at_low > 0.0):
+            low, at_low = u, at
+        else:
+            high, at_high = u, at
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        change, u = abs(new - u), new
+        if change < CLOSE:
+            break
+    return u
+
+
+@scalar
+def way_along(arc: Arc, u: float, disc_speed: float) -> float:
+    """Return ∫|ż − iωz|dt from the start of the arc to u: how far the pin slips over the disc."""
+    total: float = 0.0
+    for place, weight in GAUSS:
+        at = u * place
+        total += weight * size_of(velocity_on(arc, at) - complex(0.0, disc_speed) * place_on(arc, at))
+    return total * u * arc.span

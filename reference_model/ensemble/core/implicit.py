@@ -1,0 +1,312 @@
+"""Implicit steps of slip for compiled code: Radau IIA through all nodes of a step at once, as in ``growth``.
+
+Slip that creeps draws its direction to that of the pull at the rate g/s, a strong damper draws the velocity to zero
+at β/m: an explicit step is limited by these rates long after what they rule has died out. This method is not (Hairer
+and Wanner, Solving Ordinary Differential Equations II, IV.5).
+
+Unknowns of Newton's method are the components of slip at the nodes: (u_x, u_y) of a pin, and r besides of a disc. The
+place of the centre, which goes by slip alone, is linear in them. Friction is the gradient of a mean slip speed P, so
+that its derivative −g·P'' is symmetric and gives nothing along the slip: differences, in which that would be lost in
+rounding, are freed of it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.linear import solve
+from reference_model.ensemble.disc.slip import points_friction, pull, ring_friction
+from reference_model.motion.slip.breakaway import MOST_ITERATIONS
+from reference_model.numerics import collocation
+from reference_model.numerics.collocation import NODES
+
+INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
+PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
+"""As in :mod:`reference_model.numerics.collocation`, with the places of the nodes in 0..1."""
+
+APART = 1e-7
+"""Change of slip, relative to it, by which friction is differentiated."""
+
+SHARE = 1e-3
+"""Error of slip, relative to it, that is allowed at most: it must not change its sense."""
+
+ROUNDED = 1e-15
+"""Error of slip, in units, that is rounding."""
+
+WORTH = 10.0
+"""So many explicit steps, in time, an implicit one must be worth."""
+
+FIRST_SPAN = 0.1
+"""Of the first one, in units of time, or twice what it must be worth."""
+
+PATIENCE, MOST_FAILURES = 100.0, 3.0
+"""So many more short steps are made where no implicit one was worth it, and twice as many after each failure more,
+up to the last."""
+
+GROWTH, CAUTION = 4.0, 0.8
+"""By how much the next step may differ from this one at most, and below what the error estimate would allow."""
+
+
+@written_out
+def collocate_with(
+    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any, friction: Any
+) -> float:
+    """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
+
+    Also for its rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start`` are where the
+    step begins, ``law`` is that of a disc, and ``friction`` as ``disc_slip.ring_friction``. Return how fast friction
+    draws slip to its direction at the end, or -1 if there is no convergence.
+    """
+    d = len(start)
+    size = d * NODES
+    matrix, residual = np.empty((size, size)), np.empty(size)
+    slopes = np.empty((NODES, d, d))
+    by_place = -law.stiffness - (law.damping + 1j * law.disc_speed) * 1j * law.disc_speed
+    by_slip = -(law.damping + 1j * law.disc_speed)
+    turns = np.empty(NODES, dtype=np.complex128)  # of the master disc up to the nodes
+    for j in range(NODES):
+        turn = law.disc_speed * step * PLACES[j]
+        turns[j] = complex(math.cos(turn), math.sin(turn))
+    reach = np.empty((NODES, NODES), dtype=np.complex128)  # of slip at a node on the pull at another
+    for i in range(NODES):
+        for k in range(NODES):
+            total = 0j
+            for j in range(NODES):
+                total += INTEGRAL[i, j] * INTEGRAL[j, k] * turns[j]
+            reach[i, k] = step * step * by_place * total * turns[k].conjugate()
+    for _ in range(MOST_ITERATIONS):
+        for j in range(NODES):
+            ux, uy = w[j, 0], w[j, 1]
+            r = w[j, 2] if d == 3 else 0.0
+            turned = angle + law.disc_speed * step * PLACES[j]
+            if d == 3:
+                for k in range(NODES):
+                    turned += law.curling * step * INTEGRAL[j, k] * w[k, 2]
+            s = math.sqrt(ux * ux + uy * uy + r * r)
+            apart = APART * s
+            fx, fy, fr, power[j] = friction(ux, uy, r, turned, law)
+            a = pull(_place(z, w, step, j, turns), complex(ux, uy), law) + law.friction * complex(fx, fy)
+            f[j, 0], f[j, 1] = a.real, a.imag
+            if d == 3:
+                f[j, 2] = -law.shaft_rate * (r + law.lag) + law.friction * fr
+            for k in range(d):
+                moved = friction(
+                    ux + apart * (k == 0), uy + apart * (k == 1), r + apart * (k == 2), turned, law
+                )
+                slopes[j, 0, k] = law.friction * (moved[0] - fx) / apart
+                slopes[j, 1, k] = law.friction * (moved[1] - fy) / apart
+                if d == 3:
+                    slopes[j, 2, k] = law.friction * (moved[2] - fr) / apart
+            _free_of(slopes[j], w[j], s)
+            slopes[j, 0, 0] += by_slip.real
+            slopes[j, 0, 1] -= by_slip.imag
+            slopes[j, 1, 0] += by_slip.imag
+            slopes[j, 1, 1] += by_slip.real
+            if d == 3:
+                slopes[j, 2, 2] -= law.shaft_rate
+        for i in range(NODES):
+            for a_ in range(d):
+                rest = w[i, a_] - start[a_]
+                for j in range(NODES):
+                    rest -= step * INTEGRAL[i, j] * f[j, a_]
+                    for b in range(d):
+                        same = 1.0 if i == j and a_ == b else 0.0
+                        matrix[d * i + a_, d * j + b] = same - step * INTEGRAL[i, j] * slopes[j, a_, b]
+                residual[d * i + a_] = rest
+            for j in range(NODES):
+                matrix[d * i, d * j] -= reach[i, j].real
+                matrix[d * i, d * j + 1] += reach[i, j].imag
+                matrix[d * i + 1, d * j] -= reach[i, j].imag
+                matrix[d * i + 1, d * j + 1] -= reach[i, j].real
+        if not solve(matrix, residual):
+            return -1.0
+        converged = True
+        for i in range(NODES):
+            change = length_of(residual[d * i : d * i + d])
+            for k in range(d):
+                w[i, k] -= residual[d * i + k]
+            s = length_of(w[i])
+            converged = converged and change < 1e-9 * s + 1e-15 * step and change < 1e-13 * (1.0 + s)
+        if converged:
+            return _size_of(slopes[-1])
+    return -1.0
+
+
+@inlined
+def pin_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+    """Return what ``disc_slip.ring_friction`` does, of a pin, which does not spin."""
+    s = math.sqrt(ux * ux + uy * uy)
+    return -ux / s, -uy / s, 0.0, s
+
+
+@scalar
+def collocate_pin(
+    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+) -> float:
+    """Do as :func:`collocate_with` of a pin."""
+    return float(collocate_with(z, angle, start, step, law, w, f, power, pin_friction))
+
+
+@scalar
+def collocate_ring(
+    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+) -> float:
+    """Do as :func:`collocate_with` of a disc on a ring."""
+    return float(collocate_with(z, angle, start, step, law, w, f, power, ring_friction))
+
+
+@scalar
+def collocate_points(
+    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+) -> float:
+    """Do as :func:`collocate_with` of a disc on points."""
+    return float(collocate_with(z, angle, start, step, law, w, f, power, points_friction))
+
+
+@written_out
+def stride_with(
+    z: complex, angle: float, start: Any, guess: Any, span: float, least: float, tolerance: float, law: Any,
+    collocate: Any,
+) -> Any:  # fmt: skip
+    """Make an implicit step of ``span``, or shorter where its error asks for that, but not shorter than ``least``.
+
+    ``start`` (2 or 3,) is the slip at its beginning, and ``guess`` what it may soon be.
+    Return place, the components of slip, angle, how long the step was, the way slipped and how long the next may be.
+    Of no length: not worth it.
+    """
+    d = len(start)
+    w, f, power = np.zeros((NODES, d)), np.zeros((NODES, d)), np.zeros(NODES)
+    s = length_of(start)
+    while span >= least:
+        carried = (
+            law.disc_speed if law.friction * span > s else 0.0
+        )  # slow slip turns with the pull, and that does
+        for i in range(NODES):
+            turn = carried * span * PLACES[i]
+            along = complex(math.cos(turn), math.sin(turn)) * complex(guess[0], guess[1])
+            w[i, 0], w[i, 1] = along.real, along.imag
+            if d == 3:
+                w[i, 2] = guess[2]
+        if collocate(z, angle, start, span, law, w, f, power) < 0.0 or _turns_back(w):
+            span *= 0.25
+            continue
+        allowed = max(min(tolerance, SHARE * min(s, length_of(w[NODES - 1]))), ROUNDED)
+        error = _last_term(w)
+        factor = CAUTION * (allowed / max(error, 1e-30)) ** (1.0 / (NODES - 1))
+        if error > allowed:
+            span *= max(factor, 0.25)
+            continue
+        turned, way = angle + law.disc_speed * span, 0.0
+        for j in range(NODES):
+            way += span * INTEGRAL[NODES - 1, j] * power[j]
+            if d == 3:
+                turned += law.curling * span * INTEGRAL[NODES - 1, j] * w[j, 2]
+        last = w[NODES - 1]
+        r = last[2] if d == 3 else 0.0
+        there = place_after(z, w, span, law)
+        return there, last[0], last[1], r, turned, span, way, span * min(factor, GROWTH)
+    return z, 0.0, 0.0, 0.0, angle, 0.0, 0.0, span
+
+
+@inlined
+def first_try(planned: float, least: float, left: float) -> float:
+    """Return how long a step is tried, if ``planned``, how long it may be, is known: > 0."""
+    return min(planned if planned > 0.0 else max(FIRST_SPAN, 2.0 * least), left)
+
+
+@inlined
+def failed(planned: float) -> float:
+    """Return what stands for ``planned`` after a failure: minus the number of those in a row."""
+    return max(min(planned, 0.0) - 1.0, -MOST_FAILURES)
+
+
+@inlined
+def patience(planned: float) -> float:
+    """Return how many more short steps are made after failures."""
+    steps: float = PATIENCE * 2.0**-planned
+    return steps
+
+
+@scalar
+def place_after(z: complex, w: Any, step: float, law: Any) -> complex:
+    """Return where the centre is at the end of a step: in the frame of the master disc it goes by the slip alone."""
+    turns = np.empty(NODES, dtype=np.complex128)
+    for j in range(NODES):
+        turn = law.disc_speed * step * PLACES[j]
+        turns[j] = complex(math.cos(turn), math.sin(turn))
+    return _place(z, w, step, NODES - 1, turns)
+
+
+@inlined
+def _place(z: complex, w: Any, step: float, node: int, turns: Any) -> complex:
+    """Return where the centre is at a node; ``turns`` are those of the master disc up to the nodes, e^(iωt)."""
+    way = 0j
+    for j in range(NODES):
+        way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])
+    place: complex = turns[node] * (z + step * way)
+    return place
+
+
+@scalar
+def length_of(vector: Any) -> float:
+    """Return the Euclidean norm."""
+    total = 0.0
+    for value in vector:
+        total += value * value
+    return math.sqrt(total)
+
+
+@inlined
+def _free_of(matrix: Any, along: Any, size: float) -> None:
+    """Take the direction ``along`` out of a symmetric matrix, from both sides; ``size`` is the length of that."""
+    d = len(along)
+    for i in range(d):
+        part = 0.0
+        for k in range(d):
+            part += matrix[i, k] * along[k]
+        for k in range(d):
+            matrix[i, k] -= part * along[k] / (size * size)
+    for k in range(d):
+        part = 0.0
+        for i in range(d):
+            part += matrix[i, k] * along[i]
+        for i in range(d):
+            matrix[i, k] -= part * along[i] / (size * size)
+
+
+@scalar
+def _size_of(matrix: Any) -> float:
+    """Return the Frobenius norm."""
+    total = 0.0
+    for row in matrix:
+        for value in row:
+            total += value * value
+    return math.sqrt(total)
+
+
+@scalar
+def _turns_back(w: Any) -> bool:
+    """Tell whether slip turns by more than a right angle from one node to the next: then it came to rest between."""
+    for i in range(1, NODES):
+        along = 0.0
+        for k in range(w.shape[1]):
+            along += w[i, k] * w[i - 1, k]
+        if not along > 0.0:
+            return True
+    return False
+
+
+@scalar
+def _last_term(w: Any) -> float:
+    """Return the largest of the last coefficients of the polynomials through the slip at the nodes."""
+    largest = 0.0
+    for k in range(w.shape[1]):
+        term = 0.0
+        for j in range(NODES):
+            term += SERIES[NODES - 1, j] * w[j, k]
+        largest = max(largest, abs(term))
+    return largest

@@ -1,0 +1,63 @@
+"""Linear algebra of a few unknowns, compiled: NumPy's would take longer to compile than all that is done with it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from reference_model.ensemble.core.jit import scalar
+
+SQUARINGS = 40
+VANISHED, GROWN = 1e-6, 1e6
+"""Largest entries of a power at which it is judged."""
+
+
+@scalar
+def solve(matrix: Any, right: Any) -> bool:
+    """Solve a linear system in place, by elimination with pivots; tell whether that went."""
+    n = len(right)
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
+                pivot = i
+        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
+            return False
+        for j in range(k, n):
+            matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+        right[k], right[pivot] = right[pivot], right[k]
+        for i in range(k + 1, n):
+            factor = matrix[i, k] / matrix[k, k]
+            for j in range(k + 1, n):
+                matrix[i, j] -= factor * matrix[k, j]
+            right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+    return True
+
+
+@scalar
+def powers_vanish(matrix: Any) -> bool:
+    """Tell whether the powers of a square matrix vanish: whether all its eigenvalues are below 1 in size.
+
+    It is squared until they do, or grow.
+    """
+    n = len(matrix)
+    power, square = matrix.copy(), np.empty((n, n))
+    for _ in range(SQUARINGS):
+        largest = 0.0
+        for i in range(n):
+            for j in range(n):
+                total = 0.0
+                for k in range(n):
+                    total += power[i, k] * power[k, j]
+                square[i, j] = total
+                largest = max(largest, abs(total))
+        power, square = square, power
+        if not VANISHED < largest < GROWN:
+            return largest <= VANISHED
+    return False

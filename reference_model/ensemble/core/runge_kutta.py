@@ -1,0 +1,130 @@
+"""One step of the eighth-order Runge–Kutta method of Dormand and Prince, for any number of unknowns.
+
+The coefficients are those of Hairer's DOP853, as SciPy has them. The unknowns are a tuple of numbers and the step is
+straight-line code without a branch, so that a loop over lanes that calls it is vectorised as a whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from numba.extending import overload
+from scipy.integrate import DOP853
+
+from reference_model.ensemble.core.jit import inlined
+from reference_model.motion.stepper import TIGHTEST
+
+Tuple = tuple[float, ...]
+
+
+def _without_zeros(row: Sequence[float]) -> Tuple:
+    return tuple(float(value) for value in row if value != 0.0)
+
+
+A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12 = (_without_zeros(DOP853.A[i, :i]) for i in range(1, 12))
+B = _without_zeros(DOP853.B)
+E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
+"""Weights of the step, and of its differences from the embedded methods of third and fifth order, at the stages 1, 6
+to 12."""
+
+LOCAL = 0.1
+"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs alike."""
+
+SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
+"""By how much the next step may differ from this one, and the factor below what the error estimate would allow."""
+
+
+def tolerance_of_steps(tolerance: float) -> float:
+    """Return the tolerance of each step of a motion that is to be accurate to ``tolerance``."""
+    return max(LOCAL * tolerance, TIGHTEST)
+
+
+def weighted(weights: Tuple, rates: tuple[Tuple, ...]) -> Tuple:
+    """Return Σ weights[j]·rates[j], of every unknown; compiled code only."""
+    raise NotImplementedError
+
+
+def moved(y: Tuple, h: float, weights: Tuple, rates: tuple[Tuple, ...]) -> Tuple:
+    """Return y + h·Σ weights[j]·rates[j]; rates may be longer than y; compiled code only."""
+    raise NotImplementedError
+
+
+# Sums over tuples are written out for their lengths: loops over tuples would not become straight-line code.
+
+
+@overload(weighted, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+def _weighted(weights: Any, rates: Any) -> Callable[..., Any]:
+    return _written_out("weights, rates", [_sum_of(len(weights), v) for v in range(len(rates[0]))])
+
+
+@overload(moved, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+def _moved(y: Any, h: Any, weights: Any, rates: Any) -> Callable[..., Any]:
+    terms = [f"y[{v}] + h * ({_sum_of(len(weights), v)})" for v in range(len(y))]
+    return _written_out("y, h, weights, rates", terms)
+
+
+def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
+    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,) over the unknowns; compiled code only."""
+    raise NotImplementedError
+
+
+@overload(squares, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+def _squares(differences: Any, before: Any, after: Any) -> Callable[..., Any]:
+    terms = [
+        f"(differences[{v}] / (1.0 + max(abs(before[{v}]), abs(after[{v}])))) ** 2"
+        for v in range(len(before))
+    ]
+    return _written_out("differences, before, after", [" + ".join(terms)])
+
+
+def _sum_of(stages: int, unknown: int) -> str:
+    return " + ".join(f"weights[{j}] * rates[{j}][{unknown}]" for j in range(stages))
+
+
+def _written_out(arguments: str, terms: list[str]) -> Callable[..., Any]:
+    namespace: dict[str, Any] = {}
+    exec(f"def sums({arguments}):\n    return ({', '.join(terms)},)", namespace)
+    function: Callable[..., Any] = namespace["sums"]
+    return function
+
+
+@inlined
+def step(rates: Any, law: Any, y: Any, k1: Any, h: float) -> Any:
+    """Return the mean rates over a step of ``h`` from ``y``, and what they differ by from those of lower order.
+
+    ``rates(y, law)`` returns the rates of ``y``, and possibly more that no rate depends on; ``k1`` are those at
+    ``y``. The means and differences are tuples as long as what ``rates`` returns.
+    """
+    k2 = rates(moved(y, h, A2, (k1,)), law)
+    k3 = rates(moved(y, h, A3, (k1, k2)), law)
+    k4 = rates(moved(y, h, A4, (k1, k3)), law)
+    k5 = rates(moved(y, h, A5, (k1, k3, k4)), law)
+    k6 = rates(moved(y, h, A6, (k1, k4, k5)), law)
+    k7 = rates(moved(y, h, A7, (k1, k4, k5, k6)), law)
+    k8 = rates(moved(y, h, A8, (k1, k4, k5, k6, k7)), law)
+    k9 = rates(moved(y, h, A9, (k1, k4, k5, k6, k7, k8)), law)
+    k10 = rates(moved(y, h, A10, (k1, k4, k5, k6, k7, k8, k9)), law)
+    k11 = rates(moved(y, h, A11, (k1, k4, k5, k6, k7, k8, k9, k10)), law)
+    k12 = rates(moved(y, h, A12, (k1, k4, k5, k6, k7, k8, k9, k10, k11)), law)
+    ks = (k1, k6, k7, k8, k9, k10, k11, k12)
+    return weighted(B, ks), weighted(E3, ks), weighted(E5, ks)
+
+
+@inlined
+def error_of(y: Any, new: Any, h: float, third: Any, fifth: Any, tolerance: float) -> float:
+    """Return the error of a step as a multiple of what is allowed, as Hairer estimates it from both differences.
+
+    Of unknowns that are below 1 the absolute error counts and of the others the relative one.
+    """
+    high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
+    return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
+
+
+@inlined
+def factor_of(error: float) -> float:
+    """Return by what to multiply the step: error^(−1/8) within bounds; the smallest if the error is no number."""
+    root = math.sqrt(math.sqrt(math.sqrt(max(error, 1e-30))))
+    factor = min(max(CAUTION / root, SMALLEST_FACTOR), LARGEST_FACTOR)
+    return factor if error < 1e300 else SMALLEST_FACTOR

@@ -1,0 +1,87 @@
+"""How slip of a disc begins from rest, as :mod:`reference_model.motion.slip.breakaway` has it.
+
+Slip grows like ½κt² with its direction slaved to the pull, which is stiff; but the motion is a smooth function of
+time, and an implicit method through all nodes of a step at once (:mod:`implicit`) follows it until an explicit one
+can.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from reference_model.ensemble.core.implicit import (
+    INTEGRAL,
+    PLACES,
+    SERIES,
+    collocate_ring,
+    length_of,
+    place_after,
+)
+from reference_model.ensemble.core.jit import scalar
+from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
+from reference_model.numerics.collocation import NODES
+
+ACCURACY = 1e-12
+"""Of what the last terms of the polynomials contribute, in units in which motion is of order one."""
+
+
+@scalar
+def grown(z: complex, n: complex, turning: float, first: float, longest: float, law: Any) -> Any:
+    """Return place, slip, turn, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
+
+    Up to where an explicit method can go on, but for no longer than ``longest``. ``first`` is the rate at which slip
+    begins; the turn is that beyond the one of the master disc, times κ; the work that of friction per newton. A
+    duration of zero tells that the motion could not be resolved.
+    """
+    carried = 1j * law.disc_speed
+    change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time
+    gain = (n.conjugate() * change).real
+    along = np.array((n.real, n.imag, turning))
+    start, rate = np.zeros(3), np.zeros(3)
+    for k in range(3):
+        rate[k] = first * along[k]
+    w, f, power = np.zeros((NODES, 3)), np.zeros((NODES, 3)), np.zeros(NODES)
+    t = turn = work = 0.0
+    step = FIRST_STEP
+    while t < longest:
+        step = min(step, longest - t)
+        for i in range(NODES):
+            delay = step * PLACES[i]
+            for k in range(3):
+                w[i, k] = start[k] + delay * (rate[k] + 0.5 * delay * gain * along[k])
+        stiffness = collocate_ring(z, 0.0, start, step, law, w, f, power)
+        error = step * _last_terms(f) if stiffness >= 0.0 else math.inf
+        if not error < ACCURACY:
+            step *= max(0.25, 0.8 * (ACCURACY / error) ** (1.0 / NODES))
+            if step < LEAST_STEP:
+                return z, 0j, 0.0, 0.0, 0.0, 0.0
+            continue
+        z = place_after(z, w, step, law)
+        for j in range(NODES):
+            turn += step * INTEGRAL[-1, j] * w[j, 2]
+            work += step * INTEGRAL[-1, j] * power[j]
+        t += step
+        s, rising = length_of(w[-1]), 0.0
+        for k in range(3):
+            start[k], rate[k], along[k] = w[-1, k], f[-1, k], w[-1, k] / s
+            rising += along[k] * rate[k]
+        if rising <= 0.0 or step * stiffness < STIFF:
+            break
+        step *= min(4.0, 0.8 * (ACCURACY / max(error, 1e-30)) ** (1.0 / NODES))
+    return z, complex(start[0], start[1]), start[2], t, turn, work
+
+
+@scalar
+def _last_terms(f: Any) -> float:
+    """Return the largest of the last two coefficients of the polynomials through ``f``."""
+    largest = 0.0
+    for row in (NODES - 2, NODES - 1):
+        for k in range(3):
+            term = 0.0
+            for j in range(NODES):
+                term += SERIES[row, j] * f[j, k]
+            largest = max(largest, abs(term))
+    return largest

@@ -1,0 +1,177 @@
+"""An ensemble of discs, and a single one: from parameters to results.
+
+What compiled code does not follow, points of contact that come to rest, it hands over: the plain reference takes such
+a trajectory on until all of them slip, and gives it back.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from reference_model.ensemble.chunks import in_chunks
+from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
+from reference_model.ensemble.disc.kernel import (
+    PARAMETERS,
+    STUCK,
+    UNDECIDED,
+    DiscAims,
+    DiscTask,
+    run_points,
+    run_rings,
+)
+from reference_model.ensemble.disc.trapping import REGION, known_regions
+from reference_model.ensemble.end_states import HANDED_OVER, Ensemble, Results
+from reference_model.ensemble.parameters import parameter_table
+from reference_model.ensemble.recording import ROUNDED, Recording
+from reference_model.motion.exact import simulate
+from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.trajectory import Trajectory
+
+LEAST_SPAN = 0.1
+"""Turns of the master disc, or of the free centre, that the reference takes a trajectory through at least."""
+
+NOTHING_KNOWN = np.zeros((0, REGION))
+
+
+def simulate_discs(
+    disc: DiscOnDisc,
+    starts: FloatArray,
+    duration: float,
+    tolerance: float,
+    varied: Mapping[str, FloatArray],
+    early_end: bool,
+    n: int,
+    threads: int,
+) -> Ensemble:
+    """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` discs."""
+    table = parameter_table(disc, PARAMETERS, varied)
+    aims = _aims(disc, tolerance, early_end, NOTHING_KNOWN if varied else known_regions(disc))
+    results = Results.empty(n, disc.state_size)
+    _run_through(
+        disc, DiscTask(table, starts, np.full(1, duration)), aims, results, varied, tolerance, threads
+    )
+    return results.ensemble(varied.get("friction_force", disc.friction_force))
+
+
+def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
+    """Record the motion of a disc from ``state`` on."""
+    table = parameter_table(disc, PARAMETERS)
+    aims = _aims(disc, tolerance, False, NOTHING_KNOWN)
+
+    def one(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
+        results = Results.empty(1, disc.state_size)._replace(notes=notes)
+        _run(DiscTask(table, starts, durations), aims, results)
+        return results
+
+    def many(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
+        results = Results.empty(len(starts), disc.state_size)
+        _run_through(disc, DiscTask(table, starts, durations), aims, results, {}, tolerance)
+        return results
+
+    t = 0.0
+    while t < recording.duration:
+        end = recording.follow(one, many, state, t)
+        t, state = t + float(end.times[0]), end.states[0]
+        if end.ends[0] != HANDED_OVER:
+            break
+        for motion, _ in _through_rest(disc, state, t, recording.duration, tolerance, recording.times):
+            recording.take(motion)
+            t, state = float(motion.times[-1]), motion.at_end
+
+
+def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, known: FloatArray) -> DiscAims:
+    points = disc.contact_points or 0
+    around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
+    return DiscAims(tolerance_of_steps(tolerance), early_end, around, known)
+
+
+def _run(task: DiscTask, aims: DiscAims, results: Results, threads: int = 1) -> None:
+    """Run all trajectories as far as compiled code goes."""
+    kernel = run_points if aims.around else run_rings
+    in_chunks(lambda first, last: kernel(task, aims, results, first, last), len(results.ends), threads)
+
+
+def _run_through(
+    disc: DiscOnDisc,
+    task: DiscTask,
+    aims: DiscAims,
+    results: Results,
+    varied: Mapping[str, FloatArray],
+    tolerance: float,
+    threads: int = 1,
+) -> None:
+    """Run all trajectories to their ends, those handed over by the plain reference in between."""
+    _run(task, aims, results, threads)
+    durations = np.broadcast_to(task.durations, results.times.shape)
+    handed = np.flatnonzero(results.ends == HANDED_OVER)
+    while handed.size:
+        for i in handed:
+            one = replace(disc, **{name: float(values[i]) for name, values in varied.items()})  # type: ignore[arg-type]
+            _take_on(one, results, int(i), float(durations[i]), tolerance, aims.early)
+        handed = handed[results.ends[handed] == HANDED_OVER]
+        if handed.size:
+            again = Results.empty(len(handed), disc.state_size)
+            left = durations[handed] - results.times[handed]
+            table = task.parameters[handed] if varied else task.parameters
+            _run(DiscTask(table, results.states[handed], left), aims, again, threads)
+            again.times[:] += results.times[handed]
+            again.steps[:] += results.steps[handed]
+            results.ends[handed], results.times[handed] = again.ends, again.times
+            results.states[handed], results.measures[handed] = again.states, again.measures
+            results.steps[handed] = again.steps
+            handed = handed[again.ends == HANDED_OVER]
+    at_end = results.times > durations * (1.0 - ROUNDED)
+    results.times[at_end] = durations[at_end]
+
+
+def _take_on(
+    disc: DiscOnDisc, results: Results, i: int, duration: float, tolerance: float, early_end: bool
+) -> None:
+    """Take a trajectory on with the plain reference to where all slips again, or to its end."""
+    state, t = results.states[i], float(results.times[i])
+    for motion, stuck in _through_rest(disc, state, t, duration, tolerance):
+        results.steps[i] += motion.solution.steps
+        state, t = motion.at_end, float(motion.times[-1])
+        if stuck:
+            radius = math.hypot(*state[:2])
+            results.ends[i], results.measures[i] = STUCK, (radius, radius, 0.0)
+            if early_end:
+                break
+    if t == duration and results.ends[i] == HANDED_OVER:
+        results.ends[i], results.measures[i] = UNDECIDED, math.nan
+    results.states[i], results.times[i] = state, t
+
+
+def _through_rest(
+    disc: DiscOnDisc,
+    state: FloatArray,
+    t: float,
+    duration: float,
+    tolerance: float,
+    times: FloatArray | tuple[()] = (),
+) -> Iterator[tuple[Trajectory, bool]]:
+    """Yield the motion from ``state`` at ``t`` to where all slips again, or to the end, in parts, by the reference.
+
+    Of a part those of ``times`` that lie within, too; and whether the disc is stuck for ever, which it is once it has
+    been for a turn of the master disc.
+    """
+    rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
+    turn = 2.0 * math.pi / min(rates) if rates else duration
+    asked, span = np.asarray(times), LEAST_SPAN * turn
+    while t < duration:
+        end = t + span if duration - (t + span) > ROUNDED * duration else duration
+        inside = asked[(asked > t) & (asked < end)]
+        motion = simulate(disc, state, [t, *inside, end], tolerance=tolerance)
+        t, state, last = end, motion.at_end, motion.phases[-1]
+        stuck = last.kind == "stick" and last.end - last.start >= turn
+        yield motion, stuck
+        if last.kind == "slip":
+            break
+        if stuck:
+            span = duration
+        elif last.kind == "stick":
+            span = LEAST_SPAN * turn + turn

@@ -1,0 +1,178 @@
+"""A disc's slip, for lanes: eq. 19 to 21 in stretched time, and how it comes to rest, rests and begins again.
+
+Unknowns are x, y, the slip velocity u of the centre, r = κ(φ̇ − ω) with κ = √(J/m), and the angle φ. For (u, r)
+friction is the gradient of −g·P, the mean slip speed P(u, ηr) with η = R/κ, see
+:mod:`reference_model.motion.disc_equations`. In the stretched time dτ = dt·(s + s₀)/s, s² = |u|² + r², the
+equations are smooth and not stiff down to s = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.pin.slip import PinLaw, release_delay
+
+
+class DiscLaw(NamedTuple):
+    """The constants of a disc in units in which motion is of order one; the first seven as of a pin.
+
+    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω), ``curling`` 1/κ, and ``around`` the unit vectors to
+    the points of contact, (cos, sin) of each, one after the other; none for the ring.
+    """
+
+    stiffness: float
+    damping: float
+    friction: float
+    disc_speed: float
+    offset: float
+    stretching: float
+    free: float
+    leverage: float
+    shaft_rate: float
+    lag: float
+    curling: float
+    around: tuple[float, ...]
+
+
+HALVINGS = 60
+"""Of an interval of order one: what is left is rounding."""
+
+ANGLES = 64
+"""Parts of a half turn in which the direction of slip is looked for."""
+
+
+@inlined
+def ring_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+    """Return −∂P/∂u_x, −∂P/∂u_y, −∂P/∂r and P of a ring."""
+    u, rim = math.sqrt(ux * ux + uy * uy), law.leverage * abs(r)
+    by_slip, by_rim = ring_shares(u, rim)
+    centre = by_slip / max(u, LEAST)
+    turning = by_rim * law.leverage * law.leverage / max(rim, LEAST)
+    return -centre * ux, -centre * uy, -turning * r, by_slip * u + by_rim * rim
+
+
+@inlined
+def points_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+    """Return what :func:`ring_friction` does, of points: in the frame of the disc they always stand alike."""
+    c, s = turned(angle)
+    fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
+    return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
+
+
+@inlined
+def _rates(y: Any, law: Any, friction: Any) -> Any:
+    x, y_, ux, uy, r, _ = y
+    fx, fy, fr, power = friction
+    s = math.sqrt(ux * ux + uy * uy + r * r)
+    share = (s + law.free) / (s + law.stretching)
+    g, spin = law.friction, law.disc_speed + law.curling * r
+    vx, vy = ux - law.disc_speed * y_, uy + law.disc_speed * x
+    ax = -law.stiffness * (x - law.offset) - law.damping * vx + law.disc_speed * vy + g * fx
+    ay = -law.stiffness * y_ - law.damping * vy - law.disc_speed * vx + g * fy
+    ar = -law.shaft_rate * (r + law.lag) + g * fr
+    return share * vx, share * vy, share * ax, share * ay, share * ar, share * spin, share, share * power
+
+
+@inlined
+def ring_rates(y: Any, law: Any) -> Any:
+    """Return the rates of the unknowns of a disc on a ring by stretched time; then dt/dτ, and P times that."""
+    return _rates(y, law, ring_friction(y[2], y[3], y[4], y[5], law))
+
+
+@inlined
+def points_rates(y: Any, law: Any) -> Any:
+    """Do as :func:`ring_rates` for points on a ring."""
+    return _rates(y, law, points_friction(y[2], y[3], y[4], y[5], law))
+
+
+@inlined
+def ring_edge(y: Any, rates: Any, law: Any) -> Any:
+    """Return U − η|r| and its rate: where it is zero a point of the ring rests, and friction has infinite slopes."""
+    _, _, ux, uy, r, _ = y
+    u, w = math.sqrt(ux * ux + uy * uy), abs(r)
+    rate = (ux * rates[2] + uy * rates[3]) / max(u, LEAST) - law.leverage * r * rates[4] / max(w, LEAST)
+    return u - law.leverage * w, rate
+
+
+@inlined
+def no_edge(y: Any, rates: Any, law: Any) -> Any:
+    """Return what :func:`ring_edge` does where friction is smooth but at rest."""
+    return 1.0, 0.0
+
+
+@inlined
+def pull(z: complex, u: complex, law: Any) -> complex:
+    """Return the relative acceleration of the centre without friction."""
+    v = u + 1j * law.disc_speed * z
+    acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
+    return acceleration
+
+
+@scalar
+def held_friction(law: Any) -> float:
+    """Return the force that friction of a ring can hold beside the moment of the shaft, < 0 where not even that.
+
+    As ``sticking.stuck_centre``: force and moment of the limit surface are those of slip with all ratios of U and W.
+    """
+    asked = law.shaft_rate * abs(law.lag)
+    most = law.friction * law.leverage
+    if asked > most:
+        return -1.0
+    low, high = 0.0, 0.5 * math.pi
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if most * ring_shares(math.cos(middle), math.sin(middle))[1] < asked:
+            low = middle
+        else:
+            high = middle
+    share: float = law.friction * ring_shares(math.cos(high), math.sin(high))[0]
+    return share
+
+
+@scalar
+def stuck_for(z: complex, held: float, law: Any) -> float:
+    """Return how long a disc on a ring rests at ``z`` whose centre friction can hold with ``held``."""
+    if held < 0.0 or abs(pull(z, 0j, law)) > held:
+        return 0.0
+    return release_delay(z, PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0))
+
+
+@scalar
+def direction(z: complex, law: Any) -> Any:
+    """Return (n_u, n_r), along which slip begins, how fast it does, and what friction takes of that.
+
+    As ``sticking.slip_direction``.
+    """
+    towards = pull(z, 0j, law)
+    strength = abs(towards)
+    best, fastest = 0.0, -math.inf
+    for i in range(ANGLES + 1):
+        beta = math.pi * (i / ANGLES - 0.5)
+        along = _growth(beta, strength, law)[0]
+        if along > fastest:
+            best, fastest = beta, along
+    low, high = max(best - math.pi / ANGLES, -0.5 * math.pi), min(best + math.pi / ANGLES, 0.5 * math.pi)
+    if _growth(low, strength, law)[1] > 0.0 > _growth(high, strength, law)[1]:
+        for _ in range(HALVINGS):
+            best = 0.5 * (low + high)
+            if _growth(best, strength, law)[1] > 0.0:
+                low = best
+            else:
+                high = best
+    along, _, taken = _growth(best, strength, law)
+    if strength == 0.0:
+        return complex(math.cos(best)), math.sin(best), along, taken
+    return (math.cos(best) / strength) * towards, math.sin(best), along, taken
+
+
+@scalar
+def _growth(beta: float, strength: float, law: Any) -> Any:
+    """Return the parts of a − g∇P along n and across it for n = (cos β along the pull, sin β), and g·P(n)."""
+    c, s = math.cos(beta), math.sin(beta)
+    fx, _, fr, power = ring_friction(c, 0.0, s, 0.0, law)
+    force = strength + law.friction * fx
+    moment = -law.shaft_rate * law.lag + law.friction * fr
+    return force * c + moment * s, moment * c - force * s, law.friction * power

@@ -1,0 +1,70 @@
+"""Whether a steady motion of a disc attracts, told in compiled code without eigenvalues.
+
+With the derivative A of the rates at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane in which eigenvalues decay
+to the inside of the unit circle. So its powers vanish if all do.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reference_model.ensemble.core.contact_shares import LEAST
+from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.linear import powers_vanish, solve
+from reference_model.ensemble.disc.slip import DiscLaw, pull, ring_friction
+
+APART = 1e-5
+"""Differences, in units of the motion, by which rates are differentiated."""
+
+DIMENSION = 5
+
+
+@scalar
+def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
+    """Tell whether the equilibrium or the circle attracts in which a disc on a ring has z, v and r."""
+    if circle:
+        radius = max(abs(z), LEAST)
+        along = (1.0 / radius) * v * z.conjugate()
+        y = np.array((radius, along.real, along.imag, r, 0.0))
+    else:
+        y = np.array((z.real, z.imag, v.real, v.imag, r))
+    slopes, power = np.empty((DIMENSION, DIMENSION)), np.empty((DIMENSION, DIMENSION))
+    matrix, column = np.empty((DIMENSION, DIMENSION)), np.empty(DIMENSION)
+    for j in range(DIMENSION):
+        y[j] += APART
+        more = _rates(y, law, circle)
+        y[j] -= 2.0 * APART
+        less = _rates(y, law, circle)
+        y[j] += APART
+        for i in range(DIMENSION):
+            slopes[i, j] = (more[i] - less[i]) / (2.0 * APART)
+    for j in range(DIMENSION):
+        for i in range(DIMENSION):
+            column[i] = slopes[i, j]
+            for k in range(DIMENSION):
+                matrix[i, k] = -slopes[i, k]
+            matrix[i, i] += 1.0
+        column[j] += 1.0
+        if not solve(matrix, column):
+            return False
+        for i in range(DIMENSION):
+            power[i, j] = column[i]
+    return powers_vanish(power)
+
+
+@scalar
+def _rates(y: Any, law: DiscLaw, circle: bool) -> Any:
+    """Return the rates of x, y, vx, vy, r or, as what turns with the centre, of ρ, v along and across, r, and 0."""
+    if circle:
+        z, v, r = complex(y[0]), complex(y[1], y[2]), y[3]
+    else:
+        z, v, r = complex(y[0], y[1]), complex(y[2], y[3]), y[4]
+    u = v - 1j * law.disc_speed * z
+    fx, fy, fr, _ = ring_friction(u.real, u.imag, r, 0.0, law)
+    a = pull(z, u, law) + law.friction * complex(fx, fy) + 1j * law.disc_speed * v
+    spin_up = -law.shaft_rate * (r + law.lag) + law.friction * fr
+    if circle:
+        return y[1], a.real + y[2] * y[2] / y[0], a.imag - y[1] * y[2] / y[0], spin_up, -y[4]
+    return v.real, v.imag, a.real, a.imag, spin_up

@@ -1,0 +1,168 @@
+"""Neighbourhoods of a disc's equilibria and whirls that no motion leaves: what comes into one is decided.
+
+About a motion at which all eigenvalues λ decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear
+motion. How far out it falls along the motion itself is seen on a fan of directions through the space of (x, y, vx,
+vy, r); about the circle of a whirl without offset, of (ρ, v along and across the radius, r), which turn with the
+centre. Where a sphere of V is crossed inwards everywhere, and so are those inside of it, all motion goes to the
+centre. Because the fan has gaps, half of V is taken.
+
+Friction of single points depends on the angle: a disc on points goes to and fro about what the ring would do. There
+the spheres must be crossed inwards at all angles from INNER of the size on, so that the motion ends inside of that.
+
+With an offset a whirl is no circle, and shows itself only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from scipy.special import ellipe, ellipkm1
+
+from reference_model.contact.limit_surface import ComplexArray
+from reference_model.ensemble.disc.kernel import CIRCLE
+from reference_model.steady.steady_states import self_centred_equilibria, whirls
+from reference_model.systems import DiscOnDisc, FloatArray
+
+REGION = 25
+"""Numbers of a region: kind; centre (5); matrix, its upper triangle row by row (15); level of V; least and largest
+radius in m and slip speed in m/s of the motion in it."""
+
+DIRECTIONS, LEVELS = 4000, 60
+SMALLEST, LARGEST = 1e-4, 30.0
+"""Sizes of deviations that are looked at, in units of the motion."""
+
+APART = 1e-6
+"""Differences by which the motion is linearised, in these units."""
+
+INNER = 0.3
+"""Share of the size of a region inside of which a disc on points may stay."""
+
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Multiples of it are spread evenly over 0..1."""
+
+SAFE = 0.5
+"""Share of V taken of what the fan shows."""
+
+
+@lru_cache(maxsize=64)
+def known_regions(disc: DiscOnDisc) -> FloatArray:
+    """Return what is known of the stable motions of ``disc``, shape (m, REGION)."""
+    ring = replace(disc, contact_points=None)
+    rows = []
+    try:
+        for point in self_centred_equilibria(ring):
+            if point.stable:
+                centre = np.array(
+                    [point.x, point.y, 0.0, 0.0, _gyration(disc) * (point.spin - disc.disc_speed)]
+                )
+                radius = math.hypot(point.x, point.y)
+                rows.append(_region(disc, 0.0, centre, radius, _at_rest))
+        for whirl in whirls(ring) if disc.offset == 0.0 else ():
+            if whirl.stable:
+                turning = _gyration(disc) * (whirl.spin - disc.disc_speed)
+                centre = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, turning])
+                rows.append(_region(disc, CIRCLE, centre, whirl.radius, _turning))
+    except ValueError:
+        return np.zeros((0, REGION))  # a point of the ring rests there, and nothing can be linearised
+    return np.array([row for row in rows if row[21] > 0.0]).reshape(-1, REGION)
+
+
+def _gyration(disc: DiscOnDisc) -> float:
+    return math.sqrt(disc.polar_inertia / disc.mass)
+
+
+def _accelerations(
+    disc: DiscOnDisc, z: ComplexArray, v: ComplexArray, r: FloatArray
+) -> tuple[ComplexArray, FloatArray, FloatArray]:
+    """Return v̇, ṙ and the mean slip speed, by eq. 19 and 20, with points at angles that differ from row to row."""
+    kappa, g = _gyration(disc), disc.friction_force / disc.mass
+    u, w = v - 1j * disc.disc_speed * z, disc.contact_radius / kappa * r
+    if disc.contact_points is None:
+        tiny = 1e-12 * (np.max(np.abs(u)) + np.max(np.abs(w)) + 1e-300)
+        U, W = np.maximum(np.abs(u), tiny), np.maximum(np.abs(w), tiny)
+        rest = np.maximum(((U - W) / (U + W)) ** 2, 1e-30)
+        E, K = ellipe(1.0 - rest), ellipkm1(rest)
+        force = ((U + W) * E + (U - W) * K) / (math.pi * U) * u / U
+        moment = ((U + W) * E - (U - W) * K) / (math.pi * W) * np.sign(w)
+    else:
+        places = np.arange(disc.contact_points) + GOLDEN * np.arange(len(u))[:, np.newaxis]
+        arms = np.exp(2j * math.pi / disc.contact_points * places)
+        slip = u[:, np.newaxis] + 1j * w[:, np.newaxis] * arms
+        directions = slip / np.maximum(np.abs(slip), 1e-300)
+        force, moment = directions.mean(axis=1), (arms.conj() * directions).imag.mean(axis=1)
+    a = -disc.stiffness / disc.mass * (z - disc.offset) - disc.damping / disc.mass * v - g * force
+    lag = kappa * (disc.disc_speed - disc.shaft_speed)
+    spin_up = -disc.shaft_damping / disc.polar_inertia * (r + lag) - g * disc.contact_radius / kappa * moment
+    return a, spin_up, (force.conj() * u).real + moment * w
+
+
+def _at_rest(disc: DiscOnDisc, states: FloatArray) -> FloatArray:
+    """Return the rates of (x, y, vx, vy, r), shape (n, 5)."""
+    v = states[:, 2] + 1j * states[:, 3]
+    a, spin_up, _ = _accelerations(disc, states[:, 0] + 1j * states[:, 1], v, states[:, 4])
+    return np.column_stack((v.real, v.imag, a.real, a.imag, spin_up))
+
+
+def _turning(disc: DiscOnDisc, states: FloatArray) -> FloatArray:
+    """Return the rates of (ρ, v along, v across, r), shape (n, 4)."""
+    radius, along, across, r = states.T
+    a, spin_up, _ = _accelerations(disc, radius + 0j, along + 1j * across, r)
+    return np.column_stack((along, a.real + across**2 / radius, a.imag - along * across / radius, spin_up))
+
+
+def _region(
+    disc: DiscOnDisc,
+    kind: float,
+    centre: FloatArray,
+    radius: float,
+    rates: Callable[[DiscOnDisc, FloatArray], FloatArray],
+) -> FloatArray:
+    """Return the region about a stable motion; its level is 0 if there is none."""
+    circle = kind == CIRCLE
+    d, k = len(centre), disc.natural_frequency
+    length = max(radius, disc.friction_force / disc.stiffness) or disc.contact_radius
+    scale = np.array([length, *[length * k] * 3] if circle else [length] * 2 + [length * k] * 3)
+
+    steps, ring = APART * scale, replace(disc, contact_points=None)
+    moved = rates(ring, np.concatenate((centre + np.diag(steps), centre - np.diag(steps))))
+    slopes = ((moved[:d] - moved[d:]) / (2.0 * steps[:, np.newaxis])).T / scale[:, np.newaxis] * scale
+    modes = np.linalg.inv(np.linalg.eig(slopes)[1])
+    form = (modes.conj().T @ modes).real
+
+    directions = np.random.default_rng(0).standard_normal((DIRECTIONS, d))
+    directions /= np.sqrt(_values(form, directions, directions))[:, np.newaxis]  # to V = 1
+    largest = math.sqrt(float(np.max(np.linalg.eigvalsh(form))))
+    size = inner = 0.0
+    for trial in np.geomspace(SMALLEST, LARGEST, LEVELS):
+        deviations = trial * directions / largest
+        states = centre + deviations * scale
+        if circle and np.any(states[:, 0] <= 0.0):
+            break
+        if np.all(_values(form, deviations, rates(disc, states) / scale) < 0.0):
+            size = trial
+        elif disc.contact_points is None or size > 0.0:
+            break
+        else:
+            inner = trial
+    if inner > INNER * size:
+        size = 0.0
+
+    row = np.zeros(REGION)
+    row[0], row[1 : 1 + d] = kind, centre
+    matrix = np.zeros((5, 5))
+    matrix[:d, :d] = form / np.outer(scale, scale)
+    row[6:21] = matrix[np.triu_indices(5)]
+    row[21] = SAFE * (size / largest) ** 2
+    z, v = (centre[0], 1j * centre[2]) if circle else (complex(*centre[:2]), 0j)
+    slip = _accelerations(ring, np.array([z]), np.array([v]), centre[d - 1 :])[2][0]
+    row[22:] = radius, radius, slip
+    return row
+
+
+def _values(form: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the bilinear form for all pairs of rows, shape (n,)."""
+    return np.asarray(np.einsum("ni,ij,nj->n", left, form, right))

@@ -1,0 +1,145 @@
+"""How a pin's end state is told while it moves, and from what it follows.
+
+Stuck for ever
+    Turning with the disc, the pull that friction must balance has the constant part k²X₀ and one that turns, of the
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7). Exact. A pin a little beyond that largest radius
+    slips once a turn, for the shorter the closer it is: the pull exceeds g by δ for a time ~√δ, the slip is of the
+    size δ^(3/2), and its way, by which the radius changes, ~δ². That leads inward where k > |ω|, and there is no
+    radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
+    what is left, creeps on for ever and never beyond that radius: it counts as stuck there
+    (``pin_slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
+    is damped enough not to pass by (``pin_slip.creeps_steadily``).
+
+Self-centred
+    The motion is inside of a neighbourhood of the equilibrium (3) from which everything goes there: a level of a
+    quadratic form V. Where the parameters of all trajectories are the same, ``regions`` finds it. Else it follows
+    from an estimate. With the deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
+
+        η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
+
+    where c = β/m, s* = |ω|ρ*, and R is what the direction of slip has beyond its linear part, |R| <= g·(|δw|/s*)² for
+    |δw| <= s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) of each
+    oscillator but for coupling and R, which :func:`well_of` bounds: a small neighbourhood, reached late.
+
+Whirl
+    The places where x is largest make up a section that every closed orbit crosses once a turn. On it a stable orbit
+    is a fixed point, in whose neighbourhood the distance shrinks geometrically. Where the parameters of all
+    trajectories are the same, the orbit is found beforehand, and a neighbourhood that the return map contracts
+    (``regions``): a trajectory that crosses the section in it stays in it. Else the trajectory itself must show it:
+    with d the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is what
+    is left to go, and that must be below ACCURACY of the speed at the crossing, which would vanish at an
+    equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. Since a motion may
+    come close to an orbit that is unstable and leave it later, the orbit must attract, too (``pin_stability``).
+
+Stick–slip
+    Released pins of one set of parameters differ in a single number, their distance from the axis: from there on the
+    motion is the same. So all is said by how that distance changes from one release to the next, and it is judged as
+    the crossings above are. That it shrinks geometrically already shows that the cycle attracts: there is no other
+    direction in which a motion could leave it.
+
+A motion that meets none of these by the end stays undecided: of a pin without damping or without friction it may be
+for ever, and close to the boundary between two basins it may last.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.pin.slip import PinLaw
+
+ACCURACY = 1e-4
+"""What may be left to go, as a fraction, of a motion that shows by itself where it goes."""
+
+STILL = 1e-2
+"""Distance between crossings, as a fraction of what ACCURACY allows, below which they have met but for noise."""
+
+
+class Form(NamedTuple):
+    """The upper half of a quadratic form in ξ, η, ξ'/k, η'/k."""
+
+    xi_xi: float
+    xi_eta: float
+    xi_u: float
+    xi_v: float
+    eta_eta: float
+    eta_u: float
+    eta_v: float
+    u_u: float
+    u_v: float
+    v_v: float
+
+
+class Well(NamedTuple):
+    """The self-centred equilibrium z* (3), V, and the level below which all goes there; negative if none is known."""
+
+    place: complex
+    form: Form
+    level: float
+
+
+NOTHING = Form(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@scalar
+def well_of(law: PinLaw) -> Well:
+    """Return the self-centred equilibrium, with V of the module's estimate."""
+    k2, c, g = law.stiffness, law.damping, law.friction
+    reach = k2 * abs(law.offset)
+    if k2 == 0.0 or c == 0.0 or (g > 0.0 and (g >= reach or law.disc_speed == 0.0)):
+        return Well(0j, NOTHING, -1.0)
+    if g == 0.0:
+        return Well(complex(law.offset, 0.0), NOTHING, math.inf)
+    radius = math.sqrt((reach - g) * (reach + g)) / k2
+    place = radius / law.offset * complex(radius, math.copysign(g / k2, law.disc_speed))
+    slip = abs(law.disc_speed) * radius
+    k = math.sqrt(k2)
+    along, across = (c + g / slip) / k, c / k
+    lever_along, lever_across = math.sqrt(1.0 + along**2 / 4.0), math.sqrt(1.0 + across**2 / 4.0)
+    weight = (2.0 * lever_along * g / (radius * k2)) ** 2 / (along * across)
+    form = Form(
+        1.0 + along**2 / 2.0, 0.0, along / 2.0, 0.0,
+        weight * (1.0 + across**2 / 2.0), 0.0, weight * across / 2.0,
+        1.0, 0.0, weight,
+    )  # fmt: skip
+    # With u² = ξ² + (ξ'/k)² and v² of η, kV falls by half of D·u² + κc·v² and more, but for R; and
+    # |δw| <= (k + |ω|)·√(u² + v²).
+    swing = (k + abs(law.disc_speed)) / slip
+    bound = min(along, weight * across) * k2 / (4.0 * g * swing**2)
+    least_along, least_across = _least_share(along), _least_share(across)
+    root = bound / (lever_along / math.sqrt(least_along) + lever_across * math.sqrt(weight / least_across))
+    nearest = math.sqrt(min(least_along, weight * least_across)) / (2.0 * swing)  # |δw| <= s*/2
+    return Well(place, form, min(root, nearest) ** 2)
+
+
+@inlined
+def _least_share(a: float) -> float:
+    """Return the smaller eigenvalue of ((1 + a²/2, a/2), (a/2, 1)), which is V_d in x and x'/k with a = d/k."""
+    return (1.0 + a**2 / 4.0) / (1.0 + a**2 / 4.0 + math.sqrt(a**4 / 16.0 + a**2 / 4.0))
+
+
+@scalar
+def depth(z: complex, w: complex, law: PinLaw, well: Well) -> float:
+    """Return V of a motion."""
+    size = abs(well.place)
+    along = well.place.conjugate() / size if size > 0.0 else 1.0 + 0j
+    place = (z - well.place) * along
+    speed = (w + 1j * law.disc_speed * z) * along / math.sqrt(law.stiffness)
+    xi, eta, u, v, form = place.real, place.imag, speed.real, speed.imag, well.form
+    return (
+        xi * (form.xi_xi * xi + 2.0 * (form.xi_eta * eta + form.xi_u * u + form.xi_v * v))
+        + eta * (form.eta_eta * eta + 2.0 * (form.eta_u * u + form.eta_v * v))
+        + u * (form.u_u * u + 2.0 * form.u_v * v)
+        + form.v_v * v * v
+    )
+
+
+@scalar
+def converged(last: float, before: float, first: float, scale: float) -> bool:
+    """Tell whether the last three distances between crossings show that less than ACCURACY·scale is left to go."""
+    allowed = ACCURACY * scale
+    if max(last, before, first) < STILL * allowed and not last > before > first:
+        return True  # beside a saddle they are small too, but grow
+    ratio = max(last / before, before / first) if before > 0.0 and first > 0.0 else 1.0
+    return ratio < 1.0 and last * ratio < allowed * (1.0 - ratio)

@@ -1,0 +1,259 @@
+"""A pin's slip, for lanes: eq. 1 in stretched time, how slip comes to rest, how long rest lasts, how slip begins.
+
+As everywhere, z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time
+dτ = dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and far from rest they are as
+they were: one right-hand side serves all lanes, whether they slip fast or are about to rest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.motion.stick import GRAZING, ROUNDING
+
+TERMS, MOST_TERMS = 8, 20
+"""Terms of the series by which slip begins, usually and where it stays slow: see STIFF.
+
+What a short series leaves out is an error of direction, which slip forgets.
+"""
+
+STIFF = 100.0
+"""Time, in units of slip speed over g, in which slip is expected to have grown out of slowness. Where it has not,
+friction exceeds the pull but just, slip is a short excursion, and a longer series goes to its end in place of many
+stiff steps."""
+
+CREEP = 0.1
+"""Excess of the pull, as a fraction of by how much it changes in a turn or of g, up to which slip creeps."""
+
+PLACES = 8
+"""Places at least at which the series is looked at for whether slip ends again."""
+
+
+class PinLaw(NamedTuple):
+    """The constants of a pin, divided by its mass, in units in which motion is of order one.
+
+    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
+    s₀; without friction nothing rests, and ``free`` = 1 keeps time as it is.
+    """
+
+    stiffness: float
+    damping: float
+    friction: float
+    disc_speed: float
+    offset: float
+    stretching: float
+    free: float
+
+
+@inlined
+def pin_rates(y: Any, law: PinLaw) -> Any:
+    """Return the rates of x, y and of the slip velocity by stretched time, dt/dτ, and that times the slip speed."""
+    x, y_, wx, wy = y
+    s = math.sqrt(wx * wx + wy * wy)
+    pace = 1.0 / (s + law.stretching)
+    share = (s + law.free) * pace
+    vx = wx - law.disc_speed * y_
+    vy = wy + law.disc_speed * x
+    ax = -law.stiffness * (x - law.offset) - law.damping * vx + law.disc_speed * vy
+    ay = -law.stiffness * y_ - law.damping * vy - law.disc_speed * vx
+    f = law.friction * pace
+    return share * vx, share * vy, share * ax - f * wx, share * ay - f * wy, share, share * s
+
+
+@inlined
+def pull(z: complex, w: complex, law: PinLaw) -> complex:
+    """Return a(z, w), the relative acceleration without friction."""
+    v = w + 1j * law.disc_speed * z
+    return -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
+
+
+@scalar
+def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float:
+    """Return the time after which slip ends, or inf where that can't yet be told to ``tolerance``.
+
+    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g², whatever the direction of slip: so that what is left of slip
+    lasts for (g·s + Re(ā·w))/(g² − |a|²). That a changes meanwhile adds ȧ·t²/2 to w.
+    """
+    g, s = law.friction, abs(w)
+    a = pull(z, w, law)
+    excess = (g - abs(a)) * (g + abs(a))
+    if excess <= 0.0:
+        return math.inf
+    left = (g * s + (a.conjugate() * w).real) / excess
+    v = w + 1j * law.disc_speed * z
+    acceleration = a - g * w / s + 1j * law.disc_speed * v
+    change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
+    turn = abs(a) * s  # of the place, if the direction of slip changes altogether
+    return left if left * left * (change + turn / s) < tolerance else math.inf
+
+
+@scalar
+def release_delay(z: complex, law: PinLaw) -> float:
+    """Return how long a pin at rest at ``z`` stays stuck, as ``sticking.release_delay`` does: eq. 7; inf for ever."""
+    constant = law.stiffness * law.offset
+    turning = pull(z, 0j, law) - constant
+    p, q, g = abs(constant), abs(turning), law.friction
+    if law.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
+        return math.inf
+    angle = math.atan2(turning.imag, turning.real)
+    if constant < 0.0:
+        angle -= math.pi
+    if law.disc_speed < 0.0:
+        angle = -angle
+    limit = 2.0 * math.atan2(
+        math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
+    )
+    turn = (-limit - angle) % (2.0 * math.pi)
+    if 2.0 * math.pi - turn < ROUNDING:
+        turn = 0.0  # at the limit already
+    return turn / abs(law.disc_speed)
+
+
+@scalar
+def sticking_radius(law: PinLaw) -> float:
+    """Return the largest distance from the axis at which a pin may stay stuck for ever (9): where p + q = g."""
+    turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
+    spare = law.friction - law.stiffness * abs(law.offset)
+    return spare / turning if turning > 0.0 else math.inf
+
+
+@scalar
+def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
+    """Tell whether a pin that was released at the radius ``last`` and then at ``radius`` creeps inward for ever.
+
+    Of its pull the part p = k²|X0| is constant, and q, in proportion to the radius, turns with it. Once a turn they
+    add up to g + δ, from which the pull falls like B·(ωt)²/2 before and after, B = p·q/(p + q). With
+    K = k² − ω² the slip that this sets off takes 4.5·K·δ²/(B·ω²) from δ: less than all of it, so that δ never
+    comes to zero. Nor does it where c² >= 4K, however far the slip goes: see :func:`creeps_steadily`.
+    """
+    inward = law.stiffness - law.disc_speed**2
+    constant = law.stiffness * abs(law.offset)
+    turning = abs(complex(inward, law.disc_speed * law.damping))
+    q = turning * last
+    peak = constant * q / (constant + q) if q > 0.0 else 0.0
+    most = CREEP * peak * min(1.0, law.disc_speed**2 / inward) if inward > 0.0 else 0.0
+    if inward > 0.0 and law.damping**2 >= 4.0 * inward:
+        most = max(most, CREEP * law.friction)
+    return radius < last and law.friction < constant + turning * radius and constant + q < law.friction + most
+
+
+@scalar
+def turns_steadily(law: PinLaw) -> bool:
+    """Tell whether the pull of a pin at rest does nothing but turn with the disc, so that friction may hold it."""
+    return law.offset == 0.0 or law.disc_speed == 0.0
+
+
+@scalar
+def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
+    """Tell whether the slow slip of a pin dies out for ever, without rest: see :func:`turns_steadily`.
+
+    Its speed s is along the pull, which turns with it, and e is by how much that would exceed g at rest. They go by
+    s' = e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, on a disc at rest with an offset too. If it is
+    overdamped and e >= c·s/2 the speed never comes to zero.
+    """
+    inward = law.stiffness - law.disc_speed**2
+    excess = abs(pull(z, 0j, law)) - law.friction
+    overdamped = inward > 0.0 and law.damping**2 >= 4.0 * inward
+    return overdamped and turns_steadily(law) and 0.5 * law.damping * abs(w) <= excess <= CREEP * law.friction
+
+
+@scalar
+def creeping_ends(z: complex, law: PinLaw) -> complex:
+    """Return the place on the disc, of a pin that :func:`creeps_steadily` at ``z``, where friction would hold it."""
+    a = pull(z, 0j, law)
+    return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
+
+
+@scalar
+def begin_slip(z: complex, law: PinLaw, tolerance: float, longest: float, work: Any) -> Any:
+    """Return place, slip velocity, duration and way of slip that begins from rest at ``z``; the slip is 0 if it ends.
+
+    The series of ``sticking.slip_from_rest``, which says how it comes about, as far as its last terms stay below
+    ``tolerance``, and up to ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
+    """
+    terms = TERMS
+    duration = _series(z, law, 1, terms, tolerance, longest, work)
+    if law.friction * duration > STIFF * work[5, 2].imag * duration**2 and duration < longest:
+        duration = _series(z, law, terms + 1, MOST_TERMS, tolerance, longest, work)
+        terms = MOST_TERMS
+    return _along(work[0], work[3], work[5].imag, terms, duration)
+
+
+@scalar
+def _series(
+    z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: Any
+) -> float:
+    """Put terms from ``first`` on into ``work``, which holds those before; return up to when they can be taken."""
+    position, velocity, acceleration, slip, direction = work[0], work[1], work[2], work[3], work[4]
+    theta, speed = work[5].real, work[5].imag
+    omega = 1j * law.disc_speed
+    strength = abs(pull(z, 0j, law))
+    if first == 1:
+        position[0], velocity[0], acceleration[0] = z, omega * z, pull(z, 0j, law)
+        direction[0] = acceleration[0] / strength
+        slip[0], theta[0], speed[0], speed[1] = 0.0, 0.0, 0.0, strength - law.friction
+    for k in range(first, terms + 1):
+        position[k] = velocity[k - 1] / k
+        total = 0j
+        for j in range(1, k + 1):
+            total += speed[j] * direction[k - j]
+        slip[k] = total
+        velocity[k] = total + omega * position[k]
+        acceleration[k] = -(law.damping + omega) * velocity[k] - law.stiffness * position[k]
+        total = 0j
+        for j in range(1, k):
+            total += j * theta[j] * direction[k - j]
+        direction[k] = 1j * total / k
+        b = 0j
+        for j in range(k + 1):
+            b += acceleration[j] * direction[k - j].conjugate()
+        turning = 0.0
+        for j in range(2, k + 1):
+            turning += speed[j] * (k + 1 - j) * theta[k + 1 - j]
+        theta[k] = (b.imag - turning) / (strength + k * speed[1])
+        direction[k] += 1j * theta[k] * direction[0]
+        speed[k + 1] = b.real / (k + 1)
+    last = max(abs(slip[terms]), abs(slip[terms - 1]))
+    return min(longest, (tolerance / last) ** (1.0 / terms)) if last > 0.0 else longest
+
+
+@scalar
+def _along(position: Any, slip: Any, speed: Any, terms: int, duration: float) -> Any:
+    """Return place, slip velocity, duration and way at the end of the series, or where slip ends before."""
+    rest, ends, risen = duration, False, False
+    spacing, before, last = duration / PLACES, 0.0, False
+    a, b, c = speed[1], speed[2], speed[3]
+    if c < 0.0 < b * b - 4.0 * a * c:  # where slip ends by these terms, which holds if that is soon
+        soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
+        spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing
+    while not last and not ends:
+        last = before + 1.5 * spacing > duration
+        t = duration if last else before + spacing
+        if _sum(speed, 1, terms, t) > 0.0:
+            risen, before = True, t
+        elif risen or last:
+            for _ in range(60):
+                middle = 0.5 * (before + t)
+                if _sum(speed, 1, terms, middle) > 0.0:
+                    before = middle
+                else:
+                    t = middle
+            rest, ends = t, True
+        else:
+            before = t
+    way = 0.0
+    for k in range(terms, 0, -1):
+        way = (way + speed[k] / (k + 1)) * rest
+    w = 0j if ends else _sum(slip, 0, terms, rest)
+    return _sum(position, 0, terms, rest), w, rest, way * rest
+
+
+@inlined
+def _sum(coefficients: Any, first: int, terms: int, t: float) -> Any:
+    """Return the sum of coefficients·t^(k − first), k from ``first`` on."""
+    total = coefficients[terms]
+    for k in range(terms - 1, first - 1, -1):
+        total = total * t + coefficients[k]
+    return total

@@ -1,0 +1,179 @@
+"""Neighbourhoods of a pin's equilibrium and whirl from which everything goes there, for one set of parameters.
+
+Of both, a map is known that the motion repeats: that over a given time, and the return to the section where x is
+largest. Near a stable fixed point the map contracts in the norm xᵀPx with MᵀPM − P = −1, M its derivative. How far
+that goes on is found out by the map itself: it is applied to points all over the surface of larger and larger
+ellipsoids, as far as each comes back to an ellipsoid that is clearly smaller, without stick on a whirl. What lies
+inside of all these is drawn in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache, partial
+
+import numpy as np
+from scipy.linalg import solve_discrete_lyapunov
+
+from reference_model.ensemble.end_states import EndState, Results
+from reference_model.ensemble.parameters import parameter_table
+from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
+from reference_model.ensemble.pin.memory import (
+    KNOWN,
+    KNOWN_FORM,
+    KNOWN_LEAST,
+    KNOWN_LEVEL,
+    KNOWN_METRIC,
+    KNOWN_REACH,
+    KNOWN_SLIP,
+    KNOWN_TURN,
+)
+from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
+from reference_model.systems import FloatArray, PinOnDisc
+
+Map = Callable[[FloatArray], FloatArray]
+"""Takes points (n, d) and returns where they are after a turn, NaN where that is not of the kind."""
+
+TOLERANCE = 1e-10
+"""Of the maps, whatever that of the trajectories: derivatives are taken of them."""
+
+DIRECTIONS = 128
+"""Points on the surface of an ellipsoid."""
+
+GROWTH = 1.25
+"""From one ellipsoid to the next, linear; the first is FIRST of the size of the motion."""
+
+FIRST = 1e-2
+
+ASKED_FOR = 0.25
+"""Share of the contraction of small deviations that all points on an ellipsoid must show."""
+
+MOST_ELLIPSOIDS = 40
+
+TURNS = 2
+"""Free periods that the map about the equilibrium takes: more leave time for larger deviations to come back."""
+
+LONGEST = 100.0
+"""Time in which the whirl must have been reached from the circle without offset, in units of m/β."""
+
+NEWTON_STEPS = 3
+
+DIFFERENCE = 1e-4
+"""Relative step for the derivative of the return map."""
+
+
+@lru_cache(maxsize=64)
+def known_ends(pin: PinOnDisc) -> FloatArray:
+    """Return what is known of the end states of ``pin``, as ``pin_watch.Aims`` takes it; zeros where nothing is.
+
+    It takes some ten milliseconds, which a sweep in many parts should spend once.
+    """
+    known = np.zeros(KNOWN)
+    if pin.damping > 0.0 and pin.friction_force > 0.0:
+        _look_about_equilibrium(pin, known)
+        _look_about_whirl(pin, known)
+    known.flags.writeable = False
+    return known
+
+
+def _look_about_equilibrium(pin: PinOnDisc, known: FloatArray) -> None:
+    try:
+        place = complex(*equilibrium_position(pin))
+    except ValueError:
+        return
+    k = pin.natural_frequency
+    along = place / abs(place)
+
+    def after_some_time(points: FloatArray) -> FloatArray:
+        z = place + along * (points[:, 0] + 1j * points[:, 1])
+        v = k * along * (points[:, 2] + 1j * points[:, 3])
+        starts = np.column_stack((z.real, z.imag, v.real, v.imag))
+        duration = TURNS * 2.0 * math.pi / k
+        results = _run(pin, starts, duration)
+        x, y, vx, vy = results.states.T
+        z, v = (x + 1j * y - place) / along, (vx + 1j * vy) / (k * along)
+        given_up = results.times < 0.5 * duration
+        return np.where(given_up[:, np.newaxis], np.nan, np.column_stack((z.real, z.imag, v.real, v.imag)))
+
+    known[KNOWN_LEVEL], known[KNOWN_FORM:KNOWN_REACH] = _drawn_in(after_some_time, 4, abs(place))
+
+
+def _look_about_whirl(pin: PinOnDisc, known: FloatArray) -> None:
+    centred = replace(pin, offset=0.0)
+    try:
+        radius, frequency = whirl_radius(centred), whirl_frequency(centred)
+    except ValueError:
+        return
+    k, longest = pin.natural_frequency, LONGEST * pin.mass / pin.damping
+
+    def crossing_from(crossings: FloatArray) -> FloatArray:
+        results = _run(pin, _on_section(crossings, k), longest, once=True)
+        x, y, _, vy = results.states.T
+        return np.where(
+            results.ends[:, np.newaxis] == EndState.WHIRL, np.column_stack((x, y, vy / k)), np.nan
+        )
+
+    def crossing_near(turn: FloatArray, points: FloatArray) -> FloatArray:
+        return crossing_from(turn + points)
+
+    start = np.array([[pin.offset + radius, 0.0, 0.0, frequency * radius]])
+    for _ in range(2):
+        found = _run(pin, start, longest, early=True)
+        if found.ends[0] != EndState.WHIRL:
+            return
+        x, y, _, vy = found.states[0]
+        turn = np.array([x, y, vy / k])
+        for _ in range(NEWTON_STEPS):
+            matrix = _derivative(partial(crossing_near, turn), 3, radius)
+            turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
+        start = _on_section(turn[np.newaxis], k)  # the measures are those of the orbit itself
+    known[KNOWN_TURN:KNOWN_METRIC] = turn
+    known[KNOWN_LEAST : KNOWN_SLIP + 1] = found.measures[0]
+    known[KNOWN_REACH], known[KNOWN_METRIC:KNOWN_LEAST] = _drawn_in(
+        lambda points: crossing_from(turn + points) - turn, 3, radius
+    )
+
+
+def _on_section(crossings: FloatArray, k: float) -> FloatArray:
+    """Return states (n, 4) for crossings (n, 3)."""
+    x, y, v = crossings.T
+    return np.column_stack((x, y, np.zeros_like(x), k * v))
+
+
+def _run(
+    pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
+) -> Results:
+    results = Results.empty(len(starts), pin.state_size)
+    task = PinTask(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
+    run_pins(task, TOLERANCE, early, once, np.zeros(KNOWN), results, 0, len(starts))
+    return results
+
+
+def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:
+    """Return the derivative of a map at zero by central differences."""
+    points = DIFFERENCE * size * np.concatenate((np.eye(dimension), -np.eye(dimension)))
+    images = flow(points)
+    return np.asarray((images[:dimension] - images[dimension:]).T / (2.0 * DIFFERENCE * size))
+
+
+def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray]:
+    """Return the level of xᵀPx up to which the map contracts, and the upper half of P; zeros if it never does."""
+    nothing = 0.0, np.zeros(dimension * (dimension + 1) // 2)
+    matrix = _derivative(flow, dimension, size)
+    if not np.all(np.isfinite(matrix)) or np.max(np.abs(np.linalg.eigvals(matrix))) >= 1.0:
+        return nothing
+    metric: FloatArray = solve_discrete_lyapunov(matrix.T, np.eye(dimension))
+    directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
+    directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
+    surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
+    # Of the linear map xᵀPx falls by |x|². That a part of this is asked for leaves room between the points.
+    allowed = 1.0 - ASKED_FOR * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
+    level, radius = 0.0, FIRST * size
+    for _ in range(MOST_ELLIPSOIDS):
+        images = flow(radius * surface)
+        if not np.all(np.einsum("ni,ij,nj->n", images, metric, images) <= (allowed * radius) ** 2):
+            break
+        level, radius = radius**2, GROWTH * radius
+    return level, metric[np.triu_indices(dimension)]

@@ -1,0 +1,1 @@
+"""The formulas of the paper, by its equation numbers."""

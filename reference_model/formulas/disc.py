@@ -1,0 +1,342 @@
+"""The closed forms of section 4 of the paper, one function an equation, and what follows from the same balances.
+
+Signs are those of :mod:`reference_model.formulas.pin`: a formula is evaluated for |ω|, with Ω/ω as it is, and what
+it says about y and the spin is mirrored where ω < 0; an offset on the other side turns x and y by half a turn.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
+from reference_model.formulas import pin as pin_formulas
+from reference_model.motion.disc_equations import DiscMotion
+from reference_model.motion.stick import stuck_centre
+from reference_model.numerics.roots import zeros_between
+from reference_model.support import require_linear_support
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+
+
+def pin_of(disc: DiscOnDisc) -> PinOnDisc:
+    """Return the pin that a disc is as long as it does not spin against the master disc."""
+    return PinOnDisc(**{field.name: getattr(disc, field.name) for field in fields(PinOnDisc)})
+
+
+def shaft_torque(disc: DiscOnDisc) -> float:
+    """Return b|ω − Ω| in N m, the moment on a disc that does not spin against the master disc."""
+    return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
+
+
+# ---------------------------------------------------------------- the expansion of the slip speed
+
+
+def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
+    """ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
+
+    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. The average of three terms over the ring,
+    times the slip velocity of the point, is (23).
+
+    Parameters
+    ----------
+    slip : complex
+        (ẋ + ωy) + i(ẏ − ωx), in m/s.
+    rim_speed : float
+        R(ω − φ̇) in m/s, of either sign.
+    place : float
+        φ + χ in rad.
+
+    """
+    small = _expanded(slip, rim_speed, place)
+    return 1.0 - small + 1.5 * small**2
+
+
+def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float) -> float:
+    """Right side of the first line of (22) as the paper prints it, with ν̃_r/|ν_r| on the left; to show it."""
+    return 1.0 - _expanded(slip, rim_speed, place)
+
+
+# ---------------------------------------------------------------- sticking
+
+
+def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
+    """Return the pin that the centre of a stuck disc is, whose μN is what friction can hold beside the shaft.
+
+    A stuck disc turns with the master disc, so that friction must give the constant moment b(ω − Ω). The force that
+    it can give besides is the largest F on the limit surface at that moment, and takes the place of μN in (7) to
+    (9): ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
+
+    Raises
+    ------
+    ValueError
+        If friction can't give the moment, so that the disc never sticks; if the disc rests on single points.
+
+    """
+    law = isotropic_contact_of(disc, contact, "the limits of sticking")
+    centre = stuck_centre(DiscMotion.of(disc, law), law)
+    if centre is None:
+        largest = disc.friction_force * law.shares(0.0, 1.0).moment
+        raise ValueError(
+            f"friction_force = {disc.friction_force:g} N: friction holds a moment of {largest:g} N m and the disc "
+            f"sticks only if that is not less than the shaft's, {shaft_torque(disc):g} N m"
+        )
+    return replace(pin_of(disc), friction_force=centre.friction * disc.mass)
+
+
+# ---------------------------------------------------------------- the self-centred equilibrium of (23)
+
+
+class Place(NamedTuple):
+    """Where a self-centred disc rests, x and y in m, and its spin in rad/s."""
+
+    x: float
+    y: float
+    spin: float
+
+
+class ReducedParameters(NamedTuple):
+    """Parameters of (25): μ₀ and b₀ in m, and δ, a number."""
+
+    load: float
+    shaft_damping: float
+    speed_difference: float
+
+
+def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
+    """Left side minus right side of (4), in m², which holds for the self-centred disc as for the pin.
+
+    ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
+    """
+    return pin_formulas.semicircle_residual(pin_of(disc), x, y)
+
+
+def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Place:
+    """Place and spin by (24) from A in m and the angles α and θ in rad.
+
+    The slip speeds of centre and rim are U = |ω|A·cos α and R(ω − φ̇) = ωA·sin α.
+    """
+    return Place(
+        distance * math.cos(alpha) * math.cos(theta),
+        distance * math.cos(alpha) * math.sin(theta),
+        disc.disc_speed * (1.0 - distance / disc.contact_radius * math.sin(alpha)),
+    )
+
+
+def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
+    """μ₀, b₀ and δ of (25).
+
+    Raises
+    ------
+    ValueError
+        If there are no springs, or the master disc is at rest; if the support is not linear.
+
+    """
+    require_linear_support(disc)
+    _require_not_zero(disc, "stiffness", "disc_speed")
+    return ReducedParameters(
+        load=disc.friction_force / disc.stiffness,
+        shaft_damping=disc.shaft_damping * abs(disc.disc_speed) / (disc.contact_radius * disc.stiffness),
+        speed_difference=1.0 - disc.shaft_speed / disc.disc_speed,
+    )
+
+
+def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> float:
+    """Right side of the first line of (26), of which δ is the left side, at A in m and α in rad.
+
+    Raises
+    ------
+    ValueError
+        As :func:`reduced_parameters`, and without shaft damping.
+
+    """
+    _require_not_zero(disc, "shaft_damping")
+    load, shaft_damping, _ = reduced_parameters(disc)
+    sine, cosine = math.sin(alpha), math.cos(alpha)
+    moment = sine * (1.0 - 0.5 * cosine**2 * (1.0 - 1.5 * sine**2))
+    return sine / disc.contact_radius * distance + load / shaft_damping * moment
+
+
+def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
+    """A² in m² by the second line of (26), corrected, at α in rad; negative where there is no A.
+
+    (24) put into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Raises ``ValueError`` as
+    :func:`reduced_parameters`.
+    """
+    return _squared_distance(
+        disc, alpha, 1.0 - 0.5 * math.sin(alpha) ** 2 + 0.1875 * math.sin(2.0 * alpha) ** 2
+    )
+
+
+def squared_distance_as_printed(disc: DiscOnDisc, alpha: float) -> float:
+    """A² in m² by (26) as the paper prints it, with the bracket 1 − ½cos²α + (3/16)·sin²α; wrong, to show it.
+
+    Raises ``ValueError`` as :func:`reduced_parameters`.
+    """
+    return _squared_distance(disc, alpha, 1.0 - 0.5 * math.cos(alpha) ** 2 + 0.1875 * math.sin(alpha) ** 2)
+
+
+def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
+    """θ of the third line of (26) in rad, at A in m and α in rad; in the sense in which the master disc turns.
+
+    Raises
+    ------
+    ValueError
+        Without an offset, which leaves no direction, and where A·cos α > |X0|.
+
+    """
+    _require_not_zero(disc, "offset")
+    cosine = distance * math.cos(alpha) / disc.offset
+    if abs(cosine) > 1.0 + 1e-12:
+        raise ValueError(
+            f"A·cos(alpha) = {distance * math.cos(alpha):g} m: it must not exceed |offset| = {abs(disc.offset):g} m"
+        )
+    angle = math.acos(max(-1.0, min(cosine, 1.0)))
+    return math.copysign(angle, disc.disc_speed * disc.offset)
+
+
+def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, ...]:
+    """Solve (26) for all its α, by increasing |α|, and return the places by (24).
+
+    The corrected (26) gives the equilibria of (23): it is :func:`reference_model.self_centred_equilibria` on the
+    contact :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
+
+    Raises
+    ------
+    ValueError
+        If stiffness, disc speed, shaft damping or offset is zero.
+
+    """
+    _require_not_zero(disc, "shaft_damping", "offset")
+    squared = squared_distance_as_printed if as_printed else squared_distance
+    difference = reduced_parameters(disc).speed_difference
+
+    def excess(alpha: float) -> float:
+        """Return first line of (26), multiplied by cos α because A grows like its reciprocal."""
+        distance = math.sqrt(max(squared(disc, alpha), 0.0))
+        return (speed_difference_at(disc, distance, alpha) - abs(difference)) * math.cos(alpha)
+
+    def real(alpha: float) -> float:
+        return squared(disc, alpha) * math.cos(alpha) ** 2
+
+    ends = [0.0, *zeros_between(real, 0.0, math.pi / 2.0), math.pi / 2.0]
+    places = []
+    for left, right in itertools.pairwise(ends):
+        if left < right and real((left + right) / 2.0) > 0.0:
+            for root in zeros_between(excess, left, right):
+                alpha = math.copysign(root, difference)
+                distance = math.sqrt(max(squared(disc, alpha), 0.0))
+                places.append(place_of(disc, distance, alpha, polar_angle(disc, distance, alpha)))
+    return tuple(places)
+
+
+# ---------------------------------------------------------------- the whirl, by the same way as (24) to (26)
+
+
+class WhirlAtRatio(NamedTuple):
+    """A whirl without offset: the load μN in N that it takes, its radius in m, its spin in rad/s."""
+
+    load: float
+    radius: float
+    spin: float
+
+
+def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = None) -> WhirlAtRatio:
+    """Whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of the slip speeds of rim and centre.
+
+    A circle of radius ρ at the frequency κ takes three balances. The radial one has no friction, because the
+    slip (κ − ω)ρ is along the circle: κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω
+    and for |ω| > k only, as in (11), so that U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with
+    S = ω − φ̇, R|S| = U·tan α. Together they give the load, see :func:`whirl_arm`::
+
+        μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
+
+    Parameters
+    ----------
+    disc : DiscOnDisc
+        The parameters; ``friction_force`` does not matter.
+    alpha : float
+        In rad, 0 < α < π/2.
+    contact : IsotropicContact or None
+        Law of friction, :class:`reference_model.contact.contact_law.ThreeTermRing` for that of (23); None for that
+        of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If α is outside of its range; if stiffness, damping or shaft damping is zero, if Ω = ω or |ω| <= k; if the
+        disc rests on single points, or its support is not linear.
+
+    """
+    require_linear_support(disc)
+    law = isotropic_contact_of(disc, contact, "the whirl")
+    if not 0.0 < alpha < math.pi / 2.0:
+        raise ValueError(f"alpha = {alpha:g} rad: it must lie between 0 and π/2")
+    if shaft_torque(disc) == 0.0:
+        raise ValueError(
+            f"shaft_damping = {disc.shaft_damping:g} N m s/rad, disc_speed - shaft_speed = "
+            f"{disc.disc_speed - disc.shaft_speed:g} rad/s: the disc does not spin against the master disc"
+        )
+    slip, rim = math.cos(alpha), math.sin(alpha)
+    load = shaft_torque(disc) / whirl_arm(disc, law)(slip, rim)
+    radius = (
+        load
+        * law.shares(slip, rim / disc.contact_radius).resistance
+        / (disc.damping * disc.natural_frequency)
+    )
+    relative_spin = (
+        (abs(disc.disc_speed) - disc.natural_frequency) * radius * rim / (slip * disc.contact_radius)
+    )
+    return WhirlAtRatio(
+        load, radius, disc.disc_speed - math.copysign(relative_spin, disc.disc_speed - disc.shaft_speed)
+    )
+
+
+def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
+    """Return b|ω − Ω|/μN in m of the whirl as a function of slip : rim, the ratio of U and R|ω − φ̇|, both >= 0.
+
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip; at slip = 0 the limit, which is b|ω − Ω| over the onset load.
+
+    Raises
+    ------
+    ValueError
+        If there is no whirl at any load: without stiffness or damping, or for |ω| <= k; if the support is not
+        linear.
+
+    """
+    require_linear_support(disc)
+    per_load = pin_formulas.whirl_radius(replace(pin_of(disc), friction_force=1.0))
+    against_slip = disc.shaft_damping * (abs(disc.disc_speed) - disc.natural_frequency) * per_load
+
+    def arm(slip: float, rim: float) -> float:
+        relative_spin = rim / disc.contact_radius
+        resistance, moment = contact.shares(slip, relative_spin)
+        damper = resistance / slip if slip > 0.0 else contact.slopes(0.0, relative_spin).resistance_by_slip
+        return moment + against_slip * damper * relative_spin
+
+    return arm
+
+
+# ---------------------------------------------------------------- terms and conditions that several share
+
+
+def _expanded(slip: complex, rim_speed: float, place: float) -> float:
+    """ε of (22), R(ω − φ̇)·ν̃_xy/ν̄_r²."""
+    along_rim = slip.real * math.sin(place) - slip.imag * math.cos(place)
+    return rim_speed * along_rim / (abs(slip) ** 2 + rim_speed**2)
+
+
+def _squared_distance(disc: DiscOnDisc, alpha: float, bracket: float) -> float:
+    load = reduced_parameters(disc).load
+    direct = disc.offset / math.cos(alpha)
+    return (direct - load * bracket) * (direct + load * bracket)
+
+
+def _require_not_zero(disc: DiscOnDisc, *names: str) -> None:
+    for name in names:
+        if getattr(disc, name) == 0.0:
+            raise ValueError(f"{name} = 0: (24) to (26) take a value that is not zero")

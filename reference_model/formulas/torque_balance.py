@@ -1,0 +1,153 @@
+"""The balances of a disc in steady motion, with all their solutions.
+
+Isotropic friction depends on the ratio of slip speed U and rim speed W = R|S| only, as in (24): at a given ratio
+its force μN·F and its moment μN·M are known, and one equation is left, whose zeros are sought over all ratios.
+
+Two things narrow the search. The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has
+that of S. And M grows with W : U, as it does for every law of friction here, so that the ratios with
+μN·M <= b|ω − Ω| are an interval.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator
+
+from reference_model.contact.contact_law import IsotropicContact, Shares
+from reference_model.formulas.disc import pin_of, shaft_torque, whirl_arm
+from reference_model.formulas.pin import circling_speed, driven_radius, require_drive
+from reference_model.numerics.roots import largest_between, zero_between, zeros_between
+from reference_model.support import Support
+from reference_model.systems import DiscOnDisc
+
+OfRatio = Callable[[float, float], float]
+"""A function of slip and rim speed, both >= 0, of which only the ratio matters."""
+
+NO_SLIP = 1e-30
+"""Ratio of slip to rim speed that stands for none, where only the limit of their quotient is known."""
+
+ROUNDING = 8.0 * sys.float_info.epsilon
+"""Relative error of a balance that is not more than rounding."""
+
+
+def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
+    """Yield x + iy in m and the spin in rad/s of all equilibria in space in which the contact slides.
+
+    By increasing W : U. None where every place or every spin is as good as another.
+
+    Friction acts across the radius, so that springs of the deflection d must pull by μN·F at a right angle to it:
+    ρ² + d² = X0², where d is μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and
+    tan α = W/U, the torsional balance gives U = (μN·R/b)(m − M)/tan α, and the zeros of
+    (μN·R/(b|ω|)·(m − M)·cos α)² + (d² − X0²)·sin² α are left.
+    """
+    load, offset, torque = disc.friction_force, abs(disc.offset), shaft_torque(disc)
+    speed, radius = abs(disc.disc_speed), disc.contact_radius
+    support = Support.of(disc)
+    if load == 0.0:
+        if support.centring and disc.shaft_damping > 0.0:
+            yield complex(disc.offset), disc.shaft_speed
+        return
+    if speed == 0.0 or support.pull(offset) == 0.0:
+        # The springs pull at nothing or there are none, and friction has no force: the centre does not slip.
+        to_shaft = torque - load * contact.shares(0.0, 1.0).moment
+        if to_shaft > 0.0 and (speed > 0.0 or support.centring):
+            place = complex(disc.offset) if speed == 0.0 else 0j
+            yield place, _spin(disc, to_shaft / disc.shaft_damping)
+        return
+
+    largest_moment = torque / load
+
+    def at(slip: float, rim: float) -> Shares:
+        return contact.shares(slip, rim / radius)
+
+    def balance(slip: float, rim: float) -> float:
+        resistance, moment = at(slip, rim)
+        from_shaft = load * radius / (disc.shaft_damping * speed) * (largest_moment - moment) * slip
+        deflection = support.deflection(load * resistance)
+        return _difference(from_shaft**2, (offset - deflection) * (offset + deflection) * rim**2)
+
+    # A disc that no moment turns against the master disc does not spin against it.
+    ratios = (
+        [(1.0, 0.0)]
+        if torque == 0.0
+        else _zeros(balance, lambda slip, rim: largest_moment - at(slip, rim).moment)
+    )
+    for slip, rim in ratios:
+        resistance, moment = at(slip, rim)
+        deflection, spare_moment = support.deflection(load * resistance), largest_moment - moment
+        squared_place = (offset - deflection) * (offset + deflection)
+        # U and W are as slip and rim by both balances; the one that keeps more digits tells how large they are.
+        if spare_moment * offset**2 > squared_place * largest_moment:
+            size = load * radius / disc.shaft_damping * spare_moment / rim
+        else:
+            size = speed * math.sqrt(max(squared_place, 0.0)) / slip
+        if size > 0.0:
+            rho = size * slip / speed
+            place = rho * complex(rho, math.copysign(deflection, disc.disc_speed)) / disc.offset
+            yield place, _spin(disc, size * rim / radius)
+
+
+def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
+    """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
+
+    They are the ratios at which :func:`reference_model.formulas.disc.whirl_arm` is b|ω − Ω|/μN; of pure spin, at
+    the onset, there is no whirl yet. On a support that is not linear the circle, and with it the centre's slip, is
+    not in proportion to the load, and the arm is that of this load. Raises ``ValueError`` if :func:`whirl_arm` does,
+    or without damping or friction.
+    """
+    pin = pin_of(disc)
+    require_drive(pin)
+    speed, needed = abs(disc.disc_speed), shaft_torque(disc) / disc.friction_force
+
+    def circle(resistance: float) -> tuple[float, float]:
+        """Return the radius at this share of the friction, and by how much the master disc is faster there."""
+        radius = driven_radius(pin, disc.friction_force * resistance)
+        return radius, (speed - circling_speed(pin, radius)) * radius
+
+    def arm_at_load(slip: float, rim: float) -> float:
+        slip = max(slip, NO_SLIP)
+        resistance, moment = contact.shares(slip, rim / disc.contact_radius)
+        relative_spin = circle(resistance)[1] * rim / (slip * disc.contact_radius)
+        return moment + disc.shaft_damping * relative_spin / disc.friction_force
+
+    arm = whirl_arm(disc, contact) if disc.linear_support else arm_at_load
+    for slip, rim in _zeros(lambda slip, rim: _difference(arm(slip, rim), needed)):
+        if slip > 0.0:
+            radius, centre = circle(contact.shares(slip, rim / disc.contact_radius).resistance)
+            if centre > 0.0:
+                yield radius, _spin(disc, centre * rim / (slip * disc.contact_radius))
+
+
+def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
+    """Return the infimum of the loads in N at which :func:`circles` finds any."""
+    arm = whirl_arm(disc, contact)
+    halves = (lambda q: arm(1.0, q)), (lambda q: arm(q, 1.0))
+    return shaft_torque(disc) / max(largest_between(half, 0.0, 1.0) for half in halves)
+
+
+def _difference(one: float, other: float) -> float:
+    """Return one − other, or zero where rounding alone may make it: else that would count as several solutions."""
+    difference = one - other
+    return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
+
+
+def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
+    """Return φ̇ for |S|: S has the sign of ω − Ω."""
+    return disc.disc_speed - math.copysign(relative_spin, disc.disc_speed - disc.shaft_speed)
+
+
+def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
+    """Yield the ratios (slip, rim) at which ``balance`` is zero, by increasing rim : slip.
+
+    Only those are sought that are ``allowed``, that is >= 0: all of them up to one ratio. The larger of slip and
+    rim is 1, which leaves the ratio all its digits; the halves meet where the friction of a ring has a kink.
+    """
+    end = 1.0 if allowed(1.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(1.0, q), 0.0, 1.0)
+    for q in zeros_between(lambda q: balance(1.0, q), 0.0, end):
+        yield 1.0, q
+    if end == 1.0:
+        end = 0.0 if allowed(0.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(q, 1.0), 0.0, 1.0)
+        for q in reversed(zeros_between(lambda q: balance(q, 1.0), end, 1.0)):
+            if q < 1.0:  # else it is there already
+                yield q, 1.0

@@ -1,0 +1,328 @@
+"""Phases of slip and stick, one after the other: what pin and disc have in common, and what each does its way."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference_model.contact.contact_law import IsotropicContact, Ring
+from reference_model.motion.disc_equations import DiscMotion
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.slip.breakaway import LEAST_SLIP, begin_slip
+from reference_model.motion.slip.coordinates import Coordinates, never, stop_edges
+from reference_model.motion.slip.slide import slide, slide_slowly
+from reference_model.motion.stepper import Edge, Run
+from reference_model.motion.stick import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
+from reference_model.systems import FloatArray
+
+CREEP = 1e-6
+"""Way, and slip speed, in their units, below which slip that decays for ever is followed in closed form."""
+
+ERROR = 0.01
+"""Error of the way by that, as a share of the local tolerance."""
+
+
+@dataclass(frozen=True)
+class Creep:
+    """Slip that decays for ever, s = A·exp(−λt) + B·exp(−Λt) with λ < Λ and A > 0, in scaled units.
+
+    Parameters
+    ----------
+    slow, fast : (float, float)
+        (A, λ) and (B, Λ).
+
+    """
+
+    slow: tuple[float, float]
+    fast: tuple[float, float]
+
+    @classmethod
+    def of(cls, slip: float, excess: float, damping: float, fall: float) -> Creep | None:
+        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s.
+
+        None if it does not decay, or ends in rest.
+        """
+        discriminant = damping**2 - 4.0 * fall
+        if not (fall > 0.0 and damping > 0.0 and discriminant > 0.0):
+            return None
+        apart = math.sqrt(discriminant)
+        fast = 0.5 * (damping + apart)
+        slow = fall / fast
+        share = (excess - slow * slip) / apart
+        return cls((share, slow), (slip - share, fast)) if share > 0.0 else None
+
+    @property
+    def way_left(self) -> float:
+        """The way to the end."""
+        return sum(size / rate for size, rate in (self.slow, self.fast))
+
+    def slip(self, delays: FloatArray) -> FloatArray:
+        """Return the slip speed after ``delays`` (n,)."""
+        return np.asarray(sum(size * np.exp(-rate * delays) for size, rate in (self.slow, self.fast)))
+
+    def way(self, delays: FloatArray) -> FloatArray:
+        """Return the way made in ``delays`` (n,)."""
+        return np.asarray(
+            sum(size / rate * -np.expm1(-rate * delays) for size, rate in (self.slow, self.fast))
+        )
+
+
+class Body(ABC):
+    """A body that slips over the master disc or sticks to it; its unknowns are scaled and relative to that disc."""
+
+    def __init__(self, run: Run, coordinates: Coordinates, centre: SlipMotion) -> None:
+        """Take up a body whose slip is written in ``coordinates`` and whose centre moves by ``centre``."""
+        self.run = run
+        self.coordinates = coordinates
+        self.sticky = centre.friction > 0.0
+        self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
+
+    def go(self, y: list[float]) -> None:
+        """Run from the unknowns ``y`` at t = 0 to the last time."""
+        run, t = self.run, 0.0
+        run.record(t, lambda _: np.array([y]).T)
+        self.begin(y)
+        while t < run.end:
+            t, y = self.advance(t, y)
+
+    def begin(self, y: list[float]) -> None:
+        """Enter the first phase."""
+        stuck = self.sticky and self.coordinates.speed(y) == 0.0 and self.holds_for(y) > 0.0
+        self.run.enter("stick" if stuck else "slip", 0.0, y)
+
+    def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow the motion through one description of it; return when and where that ends."""
+        if not self.sticky or self.coordinates.speed(y) > 0.0:
+            creep = self.creeping(y)
+            return self.slip(t, y) if creep is None else self.creep(t, y, creep)
+        held = self.holds_for(y)
+        if held > 0.0:
+            return self.stick(t, y, held)
+        return self.let_go(t, y)
+
+    def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow slip, fast or slow, as long as its description holds."""
+        slowly = self.sticky and self.coordinates.speed(y) < self.coordinates.slow(y)
+        end = (slide_slowly if slowly else slide)(self.run, self.coordinates, t, y, self.leave)
+        return end.t, end.y
+
+    def leave(self, y: list[float]) -> bool:
+        """Tell whether slip is to be described in another way from ``y`` on."""
+        return self.creeping(y) is not None
+
+    def creeping(self, y: list[float]) -> Creep | None:
+        """Return how slip decays if it does so for ever and little way is left, else None.
+
+        The excess e of the pull over friction falls by c times the way, and slip grows like e − b·s. If nothing but
+        the body turns, b and c are constant but for terms of second order in the way: s'' + b·s' + c·s = 0.
+        """
+        d, s = self.coordinates.slip, self.coordinates.speed(y)
+        if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
+            return None
+        rates = self.coordinates.rates(y)
+        growth = sum(a * b for a, b in zip(y[-d:], rates[-d:], strict=True)) / s
+        excess = self._excess(y)
+        if not growth < 0.0 < excess:
+            return None
+        fall = (excess - self._excess(self._moved(y, CREEP / s))) / CREEP
+        creep = Creep.of(s, excess, damping=(excess - growth) / s, fall=fall)
+        if creep is None or not creep.way_left < CREEP:
+            return None
+        # Friction has to hold the body where slip ends: no more of the excess may be left.
+        left = abs(self._excess(self._moved(y, creep.way_left / s)) / excess)
+        return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
+
+    def _moved(self, y: list[float], time: float) -> list[float]:
+        """Return the unknowns after moving with a slip that stays the same, on a master disc that rests."""
+        return list(self.crept(y, np.zeros(1), np.ones(1), np.array([time]))[:, 0].tolist())
+
+    def _excess(self, y: Sequence[float]) -> float:
+        """Return the rate at which next to no slip would grow along that of ``y``."""
+        d, s = self.coordinates.slip, self.coordinates.speed(y)
+        n = [part / s for part in y[-d:]]
+        rates = self.coordinates.rates([*y[:-d], *[LEAST_SLIP * part for part in n]])
+        return sum(a * b for a, b in zip(n, rates[-d:], strict=True))
+
+    def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
+        """Follow slip that decays for ever to the end; it is slip all the time."""
+        run, s = self.run, self.coordinates.speed(y)
+
+        def sample(times: FloatArray) -> FloatArray:
+            delays = times - t
+            return self.crept(y, delays, creep.slip(delays) / s, creep.way(delays) / s)
+
+        run.record(run.end, sample)
+        return run.end, sample(np.array([run.end]))[:, 0].tolist()
+
+    def stick(self, t: float, y: list[float], held: float) -> tuple[float, list[float]]:
+        """Turn with the master disc for ``held``, until friction lets go, or to the end."""
+        self.run.enter("stick", t, y)
+        release = min(t + held, self.run.end)
+        self.run.record(release, lambda times: self.turned(y, times - t))
+        y = self.turned(y, np.array([release - t]))[:, 0].tolist()
+        if release < self.run.end:
+            self.run.enter("slip", release, y)
+            return self.let_go(release, y)
+        return release, y
+
+    @abstractmethod
+    def holds_for(self, y: Sequence[float]) -> float:
+        """Return how long friction holds the body at rest at ``y``."""
+
+    @abstractmethod
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """Return the unknowns of a stuck body after ``delays`` (n,), shape (unknowns, n)."""
+
+    @abstractmethod
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """Return the unknowns after ``delays`` (n,), shape (unknowns, n).
+
+        Slip, its direction fixed on the master disc, is meanwhile ``slip`` times that of ``y`` and has made ``way``
+        times that of ``y`` as a way.
+        """
+
+    @abstractmethod
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Follow slip as it grows from rest."""
+
+
+class PinBody(Body):
+    """The pin; its unknowns are x, y and the slip velocity."""
+
+    def __init__(self, run: Run, motion: SlipMotion) -> None:
+        """Take up the pin that moves by ``motion``."""
+        self.motion = motion
+        omega, g = motion.disc_speed, motion.friction
+
+        def rates(unknowns: Sequence[float]) -> tuple[float, ...]:
+            x, y, wx, wy = unknowns
+            w = complex(wx, wy)
+            speed = abs(w)
+            a = motion.pull(complex(x, y), w) - (g * w / speed if speed > 0.0 else 0.0)
+            return wx - omega * y, wy + omega * x, a.real, a.imag
+
+        slow = run.thresholds.slow_slip * g
+        edges = stop_edges(motion.support)
+        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), motion)
+
+    def holds_for(self, y: Sequence[float]) -> float:
+        """As :meth:`Body.holds_for`: by eq. 6 and 7."""
+        z = complex(y[0], y[1])
+        return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
+
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """As :meth:`Body.turned`."""
+        z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
+        none = np.zeros_like(delays)
+        return np.array((z.real, z.imag, none, none))
+
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """As :meth:`Body.crept`."""
+        turn = np.exp(1j * self.motion.disc_speed * delays)
+        w = complex(y[2], y[3])
+        z = (complex(y[0], y[1]) + way * w) * turn
+        w = slip * w * turn
+        return np.array((z.real, z.imag, w.real, w.imag))
+
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """As :meth:`Body.let_go`; on a linear support by the series, as far as it holds or until slip ends again."""
+        run = self.run
+        if not self.motion.support.linear:
+            pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
+            direction = np.array((pull.real, pull.imag)) / abs(pull)
+            drift = -omega * y[1], omega * y[0]
+            return begin_slip(run, self.coordinates, t, y[:2], drift, direction, self.leave)[:2]
+        start = slip_from_rest(self.motion, complex(y[0], y[1]), tolerance=run.thresholds.series)
+        run.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
+        stop = t + min(start.duration, start.rest)
+        end = min(stop, run.end)
+
+        def sample(times: FloatArray) -> FloatArray:
+            z, w = start.at(times - t)
+            return np.array((z.real, z.imag, w.real, w.imag))
+
+        run.record(end, sample)
+        y = sample(np.array([end]))[:, 0].tolist()
+        rests = start.rest <= start.duration and end == stop
+        if rests:
+            y[2:] = [0.0, 0.0]
+        elif end < run.end:
+            return slide(run, self.coordinates, end, y, self.leave)[:2]
+        return end, y
+
+
+class DiscBody(Body):
+    """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
+
+    def __init__(self, run: Run, motion: DiscMotion, edges: tuple[Edge, ...] = ()) -> None:
+        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``edges``."""
+        self.motion = motion
+        slow = run.thresholds.slow_slip * motion.centre.friction
+        edges += stop_edges(motion.centre.support)
+        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
+        super().__init__(run, coordinates, motion.centre)
+
+    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
+        """As :meth:`Body.turned`."""
+        turn = self.motion.centre.disc_speed * delays
+        z = complex(y[0], y[1]) * np.exp(1j * turn)
+        none = np.zeros_like(delays)
+        return np.array((z.real, z.imag, y[2] + turn, none, none, none))
+
+    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+        """As :meth:`Body.crept`."""
+        turn = self.motion.centre.disc_speed * delays
+        u = complex(y[3], y[4])
+        z = (complex(y[0], y[1]) + way * u) * np.exp(1j * turn)
+        angle = y[2] + turn + way * y[5] / self.motion.gyration
+        u = slip * u * np.exp(1j * turn)
+        return np.array((z.real, z.imag, angle, u.real, u.imag, slip * y[5]))
+
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """As :meth:`Body.let_go`."""
+        return self.begin_slip(t, y[:3], self.coordinates, self.drift(y), self.direction(y))
+
+    def begin_slip(
+        self,
+        t: float,
+        own: Sequence[float],
+        coordinates: Coordinates,
+        drift: Sequence[float],
+        direction: FloatArray,
+    ) -> tuple[float, list[float]]:
+        """Follow slip as it begins from rest in some coordinates; return time and unknowns of the disc."""
+        leave = self.leave if coordinates is self.coordinates else never
+        end = begin_slip(self.run, coordinates, t, own, drift, direction, leave)
+        return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
+
+    def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
+        """Return the rates of x, y and φ of a disc that turns with the master disc."""
+        omega = self.motion.centre.disc_speed
+        return -omega * y[1], omega * y[0], omega
+
+    @abstractmethod
+    def direction(self, y: Sequence[float]) -> FloatArray:
+        """Return the direction in which slip begins."""
+
+
+class RingBody(DiscBody):
+    """A disc whose contact looks the same from all directions."""
+
+    def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
+        """Take up the disc that moves by ``motion``."""
+        super().__init__(run, motion, (Edge(motion.edge),) if isinstance(contact, Ring) else ())
+        self.contact = contact
+        self.stuck = stuck_centre(motion, contact) if self.sticky else None
+
+    def holds_for(self, y: Sequence[float]) -> float:
+        """As :meth:`Body.holds_for`: by eq. 6 and 7 with the friction that the moment leaves."""
+        z = complex(y[0], y[1])
+        return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
+
+    def direction(self, y: Sequence[float]) -> FloatArray:
+        """As :meth:`DiscBody.direction`."""
+        return slip_direction(self.motion, self.contact, complex(y[0], y[1]))

@@ -1,0 +1,231 @@
+"""A disc on single points: it slips, turns about a point that rests, or sticks.
+
+A point that comes to rest while the disc turns about it goes on resting as long as the friction that this takes is
+not more than the point's share. That is a motion of its own, of one degree of freedom, and it is entered and left
+as a pin comes to rest and lets go: see :mod:`reference_model.motion.pivot`. Two points that rest are the whole disc.
+
+Nothing is smoothed and no direction is tracked through a discontinuity, so that the error is that of the
+integrator: against friction regularised at ε the motions differ by an amount that falls with ε, in proportion to it
+up to the first release and like ε^0.8 after, as with a pin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import brentq, minimize, minimize_scalar
+
+from reference_model.contact.contact_law import PointsOnRing
+from reference_model.contact.limit_surface import ComplexArray, PointsLimit
+from reference_model.motion.bodies import DiscBody
+from reference_model.motion.disc_equations import DiscMotion
+from reference_model.motion.pivot import OnePoint
+from reference_model.motion.slip.breakaway import LEAST_SLIP
+from reference_model.motion.slip.coordinates import come_to_rest, never
+from reference_model.motion.slip.slide import slide, slide_slowly
+from reference_model.motion.stepper import Run
+from reference_model.motion.stick import GRAZING, ROUNDING
+from reference_model.systems import FloatArray
+
+LOOKS = 360
+"""Times in a turn at which a stuck disc's margin is looked at; between them its minima are found."""
+
+
+class PointsBody(DiscBody):
+    """A disc on points on a ring."""
+
+    def __init__(self, run: Run, motion: DiscMotion, contact: PointsOnRing) -> None:
+        """Take up the disc that moves by ``motion``."""
+        super().__init__(run, motion)
+        self.contact = contact
+        self.limit = PointsLimit(np.array(contact.arms(0.0), dtype=np.complex128) / motion.length)
+        self.points = [OnePoint(motion, contact, i) for i in range(contact.points)]
+        self.slipping = [point.slipping(run.thresholds) for point in self.points]
+        self.pivoting = [point.pivoting(run.thresholds) for point in self.points]
+        self.pivot: int | None = None
+
+    # ------------------------------------------------------------ slip, and points that come to rest
+
+    def begin(self, y: list[float]) -> None:
+        """As :meth:`Body.begin`."""
+        resting = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
+        if resting is not None and self._at_rest(resting, y):
+            self._rest_on(resting, 0.0, y)
+        if self.pivot is None:
+            super().begin(y)
+
+    def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """As :meth:`Body.advance`."""
+        if self.pivot is not None:
+            return self._turn_about(self.pivot, t, y)
+        slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
+        if slow is None or self.creeping(y) is not None:
+            return super().advance(t, y)
+        if self.coordinates.speed(y) < self.run.thresholds.common_rest:
+            return self._rest(t, y)
+        own = self._own(slow, y)
+        if not self._at_rest(slow, y):
+            end = slide_slowly(self.run, self.slipping[slow], t, own, never)
+            t, own = end.t, end.y
+            y = self.slipping[slow].standard(np.array([own]).T)[:, 0].tolist()
+            if self.slipping[slow].speed(own) > 0.0 or t >= self.run.end:
+                return t, y
+        if not self._rest_on(slow, t, y):
+            return self._slip_from(slow, t, y)
+        return t, y
+
+    def _rest(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Let the disc come to rest as a whole: so slow that it does not matter which of its points does first."""
+        rates = self.coordinates.rates(y)
+        speed = self.coordinates.speed(y)
+        falling = -sum(a * b for a, b in zip(y[3:], rates[3:], strict=True)) / speed
+        if falling <= 0.0:
+            return t, [*y[:3], 0.0, 0.0, 0.0]
+        return t + speed / falling, come_to_rest(self.run, self.coordinates, t, speed / falling, y)
+
+    def leave(self, y: list[float]) -> bool:
+        """As :meth:`Body.leave`: when a single point becomes slow."""
+        return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
+
+    def _slow_point(self, y: Sequence[float]) -> int | None:
+        """Return the point that slips slowly and ever more so, or rests."""
+        u, turning = complex(y[3], y[4]), 1j * y[5] / (self.motion.gyration * self.motion.length)
+        speeds = [abs(u + turning * arm) for arm in self.contact.arms(y[2])]
+        slowest = min(speeds)
+        i = speeds.index(slowest)
+        own = [*y[:3], y[5], 0.0, 0.0]
+        if slowest >= self.slipping[i].slow(own):
+            return None
+        own = self._own(i, y)
+        rates = self.slipping[i].rates(own)
+        return i if self._at_rest(i, y) or own[4] * rates[4] + own[5] * rates[5] < 0.0 else None
+
+    def _at_rest(self, i: int, y: Sequence[float]) -> bool:
+        """Tell whether point ``i`` rests, as closely as floats can say."""
+        return abs(self.points[i].velocity(y)) <= 4.0 * float(np.finfo(float).eps) * math.hypot(y[3], y[4])
+
+    def _own(self, i: int, y: Sequence[float]) -> list[float]:
+        """Return the unknowns of point ``i``."""
+        v = self.points[i].velocity(y)
+        return [*y[:3], y[5], v.real, v.imag]
+
+    # ------------------------------------------------------------ a point that rests
+
+    def _rest_on(self, i: int, t: float, y: Sequence[float]) -> bool:
+        """Let point ``i`` be the pivot if its friction is enough."""
+        holds = self.points[i].grip([*y[:3], y[5]]) > 0.0
+        if holds:
+            self.pivot = i
+            self.run.enter("pivot", t, y)
+        return holds
+
+    def _turn_about(self, i: int, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Turn about point ``i`` until its friction is not enough, the disc rests, or to the end."""
+        motion, own = self.pivoting[i], [*y[:3], y[5]]
+        slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
+        end = (slide_slowly if slowly else slide)(self.run, motion, t, own, never)
+        y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
+        if end.let_go:
+            self.pivot = None
+            self.run.enter("slip", end.t, y)
+            return self._slip_from(i, end.t, y)
+        if motion.speed(end.y) == 0.0:
+            self.pivot = None
+        return end.t, y
+
+    def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
+        """Let point ``i`` slip from rest while the disc turns."""
+        own = [*y[:3], y[5]]
+        point = self.points[i]
+        return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
+
+    # ------------------------------------------------------------ the disc at rest
+
+    def _share(self, y: Sequence[float], delays: FloatArray | float = 0.0) -> tuple[ComplexArray, float]:
+        """Return force and moment that friction must hold, as shares in the frame of the disc."""
+        centre = self.motion.centre
+        turns = np.exp(1j * centre.disc_speed * np.atleast_1d(delays))
+        pulls = np.array([centre.pull(place, 0j) for place in (complex(y[0], y[1]) * turns).tolist()])
+        forces = pulls / (turns * np.exp(1j * y[2]))
+        moment = self.motion.turning_pull(0.0) * self.motion.gyration
+        return forces / centre.friction, moment / centre.friction
+
+    def holds_for(self, y: Sequence[float]) -> float:
+        """As :meth:`Body.holds_for`: up to the first root of the margin, which is looked for through one turn."""
+        centre = self.motion.centre
+
+        def margin(delay: float) -> float:
+            return float(self.limit.margins(*self._share(y, delay))[0])
+
+        if margin(0.0) < -ROUNDING:
+            return 0.0
+        if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
+            return math.inf  # seen from the disc, nothing turns
+        delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), LOOKS + 1)
+        margins = self.limit.margins(*self._share(y, delays))
+        if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
+            return 0.0  # at the limit already
+        for k in range(1, LOOKS + 1):
+            given_way = float(delays[k])
+            if margins[k] >= 0.0:
+                # At a least look the margin may dip by as much as it changes from there to the next ones.
+                around = margins[k - 1 : k + 2]
+                if margins[k] > around.min() or margins[k] > np.ptp(around):
+                    continue
+                ends = (float(delays[k - 1]), float(delays[min(k + 1, LOOKS)]))
+                dip = minimize_scalar(margin, bounds=ends, method="bounded", options={"xatol": 1e-9})
+                if dip.fun >= -GRAZING:
+                    continue
+                given_way = float(dip.x)
+            held = float(delays[k - 1])
+            if margin(held) <= 0.0:
+                return held
+            return float(brentq(margin, held, given_way, xtol=1e-15, rtol=1e-14))
+        return math.inf
+
+    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """As :meth:`Body.let_go`: the disc slips, or turns about one of its points."""
+        pivot = self._pivot_of(y)
+        if pivot is None:
+            return super().let_go(t, y)
+        i, sense = pivot
+        self.run.enter("pivot", t, y)
+        self.pivot = i
+        return self.begin_slip(t, y[:3], self.pivoting[i], self.drift(y), np.array([sense]))
+
+    def _pivot_of(self, y: Sequence[float]) -> tuple[int, float] | None:
+        """Return the point about which a disc begins to turn, and in which sense; None if it slips."""
+        least = -ROUNDING * self.motion.centre.friction
+        for i, point in enumerate(self.points):
+            for sense in (1.0, -1.0):
+                own = [*y[:3], sense * LEAST_SLIP]
+                if point.grip(own) > 0.0 and sense * point.pivoting_rates(own)[3] >= least:
+                    return i, sense
+        return None
+
+    def direction(self, y: Sequence[float]) -> FloatArray:
+        """As :meth:`DiscBody.direction`: normal to the limit surface, or where ½q² + g·P(q) − a·q is least.
+
+        The latter is where slip goes in a first moment against friction that gives way: a − g∇P(q) = q.
+        """
+        forces, moment = self._share(y)
+        if self.limit.margins(forces, moment)[0] > -GRAZING:
+            u, w = self.limit.direction(complex(forces[0]), moment)
+            u *= np.exp(1j * y[2])
+            n = np.array((u.real, u.imag, w * self.motion.gyration))
+            return np.asarray(n / np.linalg.norm(n))
+        pull = np.array(self.motion.rates([*y[:3], 0.0, 0.0, 0.0])[3:])
+
+        def cost(q: FloatArray) -> tuple[float, FloatArray]:
+            slope = np.array(self.motion.rates([*y[:3], *q.tolist()])[3:])
+            friction = self._pull_at(y, q) - slope
+            return float(0.5 * q @ q + friction @ q - pull @ q), q + friction - pull
+
+        found = minimize(cost, pull, jac=True, method="BFGS", options={"gtol": 1e-10 * np.linalg.norm(pull)})
+        return np.asarray(found.x / np.linalg.norm(found.x))
+
+    def _pull_at(self, y: Sequence[float], q: FloatArray) -> FloatArray:
+        a = self.motion.centre.pull(complex(y[0], y[1]), complex(q[0], q[1]))
+        return np.array((a.real, a.imag, self.motion.turning_pull(float(q[2]))))

@@ -1,0 +1,206 @@
+"""Simulation of pin and disc with set-valued Coulomb friction: phases of slip and stick, one after the other.
+
+- While slip is fast it is integrated as it is, and in slip-polar coordinates near to rest (:mod:`slip`). A disc has
+  three components of slip, two of its centre and one of its rim.
+- Where an explicit method would be limited by stability, by strong damping or by slip that is small for long, an
+  implicit one takes over (:mod:`stiff`). Slip that decays for ever is slip to the end: what is left of it is followed
+  in closed form (:mod:`phases`).
+- Stuck, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`sticking`; for
+  points on a ring :mod:`limit_surface`).
+- Slip of a pin begins by the series of ``sticking.slip_from_rest``, that of a disc by collocation (:mod:`growth`).
+- A disc on single points may also turn about one of them that rests (:mod:`points`).
+
+Inside, times and lengths are scaled to order one, so that tolerance and thresholds mean the same in any units, and
+velocities are relative to the master disc.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.contact.contact_law import Contact, IsotropicContact, Pin, PointsOnRing, contact_of
+from reference_model.motion.bodies import Body, PinBody, RingBody
+from reference_model.motion.disc_equations import DiscMotion
+from reference_model.motion.disc_on_points import PointsBody
+from reference_model.motion.nondimensional import Units
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.stepper import Run, Thresholds
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    PinOnDisc,
+    System,
+    checked_state,
+    checked_times,
+    checked_tolerance,
+)
+from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
+
+METHOD = (
+    "DOP853 in slip phases with slip-polar coordinates near rest, Radau where stiff; closed-form stick phases"
+)
+
+
+def simulate(
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+    contact: Contact | None = None,
+    compiled: bool = False,
+) -> Trajectory:
+    """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    initial_state : array-like of shape (4,) or (6,)
+        At ``times[0]``: of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle in rad, vx, vy and the spin in
+        rad/s. A state that turns with the master disc starts stuck if friction can hold it.
+    times : array-like of shape (n,)
+        Increasing, in s.
+    tolerance : float
+        Relative accuracy to aim at, from 1e-14 to 1e-2.
+    contact : Contact or None
+        The law of friction of a disc if it is not that of its parameters.
+    compiled : bool
+        Whether the compiled kernel of :mod:`ensemble` is to do it, where speed matters. It is another implementation
+        of the same physics, for linear supports and the laws of the parameters; the first run of a kind of contact
+        on a machine waits for the compiler.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    ValueError
+        For a state, times, tolerance or contact that are not as above, or a system that compiled code does not know.
+    SimulationError
+        If the integrator gives up.
+
+    """
+    if compiled:
+        # Here, since the plain one is to start without the compiler.
+        from reference_model.ensemble.single_run import simulate_compiled
+
+        return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)
+    return simulate_with(Thresholds(), system, initial_state, times, tolerance=tolerance, contact=contact)
+
+
+def simulate_with(
+    thresholds: Thresholds,
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+    contact: Contact | None = None,
+) -> Trajectory:
+    """Do as ``simulate`` with other thresholds, to measure that they do not matter."""
+    clock = time.perf_counter()
+    state = checked_state(system, initial_state)
+    times = checked_times(times)
+    tolerance = checked_tolerance(tolerance)
+    law = contact_of(system, contact)
+    unit = Units.of(system, state)
+    run = Run(
+        (times - times[0]) / unit.time,
+        system.state_size,
+        lambda t: float(times[0] + t * unit.time),
+        thresholds,
+        tolerance,
+    )
+    frame = _Frame.of(system, unit)
+    _body(run, system, law, unit).go(frame.unknowns(state))
+
+    states = frame.states(run.motion)
+    states[0] = state
+    if not np.all(np.isfinite(states)):
+        raise SimulationError(
+            f"the states are not finite from t = {times[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
+            "the parameters differ by too many orders of magnitude"
+        )
+    begun = [(kind, run.seconds(t), frame.states(y)) for kind, t, y in run.phases]
+    solution = Solution(
+        method=METHOD,
+        tolerance=tolerance,
+        evaluations=run.evaluations,
+        steps=run.steps,
+        wall_time=time.perf_counter() - clock,
+    )
+    return Trajectory(system, times, states, phases_of(begun, float(times[-1])), solution)
+
+
+def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, unit: Units) -> Body:
+    if isinstance(system, PinOnDisc):
+        return PinBody(run, unit.of_pin(SlipMotion.of(system)))
+    motion = unit.of_disc(DiscMotion.of(system, contact))
+    if isinstance(contact, PointsOnRing):
+        return PointsBody(run, motion, contact)
+    if isinstance(contact, Pin):
+        raise ValueError(
+            f"contact = {contact}: a disc that touches in one point never rests; take a PinOnDisc"
+        )
+    return RingBody(run, motion, contact)
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """Between states in SI units and unknowns, scaled and relative to the master disc that turns.
+
+    Parameters
+    ----------
+    disc_speed : float
+        In rad/s.
+    lengths : array of shape (2,) or (3,)
+        Units of the places: m for x and y, rad for the angle of a disc, which is not scaled.
+    speeds : array of shape (2,) or (3,)
+        Units of the relative velocities; that of r = κ(φ̇ − ω) in rad/s, for φ̇ − ω.
+
+    """
+
+    disc_speed: float
+    lengths: FloatArray
+    speeds: FloatArray
+
+    @classmethod
+    def of(cls, system: System, unit: Units) -> _Frame:
+        """Return the frame of ``system``."""
+        lengths, speeds = [unit.length] * 2, [unit.speed] * 2
+        if isinstance(system, DiscOnDisc):
+            lengths.append(1.0)
+            speeds.append(unit.speed / math.sqrt(system.polar_inertia / system.mass))
+        return cls(system.disc_speed, np.array(lengths), np.array(speeds))
+
+    def unknowns(self, state: FloatArray) -> list[float]:
+        """Return the unknowns; what turns with the master disc as closely as floats can say, rests."""
+        place, velocity = np.split(state, 2)
+        carried = self._carried(place)
+        relative = velocity - carried
+        rounding = 4.0 * np.finfo(float).eps
+        if math.hypot(*relative[:2]) <= rounding * math.hypot(*carried[:2]):
+            relative[:2] = 0.0
+        if np.all(abs(relative[2:]) <= rounding * abs(self.disc_speed)):
+            relative[2:] = 0.0
+        return [*(place / self.lengths).tolist(), *(relative / self.speeds).tolist()]
+
+    def states(self, unknowns: FloatArray) -> FloatArray:
+        """Return states for ``unknowns`` of the same shape, (4 or 6,) or (n, 4 or 6)."""
+        place, relative = np.split(unknowns, 2, axis=-1)
+        place = place * self.lengths
+        return np.concatenate((place, relative * self.speeds + self._carried(place)), axis=-1)
+
+    def _carried(self, place: FloatArray) -> FloatArray:
+        """Return the velocities of what turns with the master disc."""
+        result = np.full_like(place, self.disc_speed)
+        result[..., 0] = -self.disc_speed * place[..., 1]
+        result[..., 1] = self.disc_speed * place[..., 0]
+        return result

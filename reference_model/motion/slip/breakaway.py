@@ -1,0 +1,220 @@
+"""How slip begins from rest, for any law.
+
+If the pull is well above what friction can hold, slip grows like time and an explicit method follows it from next to
+nothing. But slip that begins at the limit of what friction can hold grows like ½κt², with its direction slaved to the
+pull: stiff for an explicit method. Yet the motion is a smooth function of time from the first moment on, so that a
+polynomial fits it, and an implicit method that goes through all its nodes at once (Radau IIA; Hairer and Wanner,
+Solving Ordinary Differential Equations II, IV.5) needs a few steps, until the slip is fast enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome
+from reference_model.motion.slip.slide import slide_slowly
+from reference_model.motion.stepper import Run
+from reference_model.numerics.collocation import INTEGRAL, NODES, POINTS, TO_SERIES, newton_matrix
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+FIRST_STEP = 0.01
+"""In units of time. It is made smaller until the motion is resolved."""
+
+LEAST_STEP = 1e-12
+"""In units of time."""
+
+MOMENT = 1e-6
+"""Time, in its unit, by which the growth of the pull is measured."""
+
+SUDDEN = 0.05
+"""Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
+
+STIFF = 10.0
+"""Stiffness of a step, rate times length, below which an explicit method is as good."""
+
+MOST_ITERATIONS = 12
+
+LEAST_SLIP = 1e-100
+"""A slip speed that stands for none, but gives friction a direction."""
+
+
+def begin_slip(
+    run: Run,
+    motion: Coordinates,
+    t: float,
+    y: Sequence[float],
+    drift: Sequence[float],
+    direction: FloatArray,
+    leave: Leave,
+) -> Outcome:
+    """Follow slip that begins from rest, to where an explicit method in standard unknowns can go on, or to the end.
+
+    Parameters
+    ----------
+    run : Run
+        The simulation.
+    motion : Coordinates
+        Those of the slip that begins.
+    t : float
+        When it begins.
+    y : sequence
+        Its unknowns then but for the slip, which is zero.
+    drift : sequence
+        Their rates at rest.
+    direction : array of shape (slip,)
+        Unit vector along which slip begins.
+    leave : callable
+        Tells whether the motion is to be described in another way.
+
+    Raises
+    ------
+    SimulationError
+        If the motion can't be resolved.
+
+    """
+    others, carried = np.array(y), np.array(drift)
+
+    def excess(delay: float, sense: float) -> float:
+        """Return the rate of slip along the direction for a slip that is next to none."""
+        rates = motion.rates([*(others + delay * carried), *(sense * LEAST_SLIP * direction)])
+        return float(np.dot(rates[len(others) :], direction))
+
+    first, against = max(excess(0.0, 1.0), 0.0), excess(0.0, -1.0)
+    if first > SUDDEN * 0.5 * (against - first):
+        least = run.thresholds.reversal_slip * min(1.0, motion.slow(y))
+        return slide_slowly(run, motion, t, [*y, *(least * direction)], leave)
+    gain = (excess(MOMENT, 1.0) - excess(0.0, 1.0)) / MOMENT
+
+    def begun(delays: FloatArray) -> FloatArray:
+        """Return the unknowns to the leading order in time, shape (n, unknowns)."""
+        slip = (first * delays + 0.5 * gain * delays**2)[:, np.newaxis] * direction
+        return np.hstack((others + delays[:, np.newaxis] * carried, slip))
+
+    start, step, expected = begun(np.zeros(1))[0], FIRST_STEP, begun
+    while t < run.end:
+        run.count_step(t)
+        piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
+        if piece is None or piece.error > run.thresholds.series:
+            step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
+            if step < LEAST_STEP:
+                raise SimulationError(
+                    f"slip that begins at t = {run.seconds(t):g} s could not be followed: the force is too near to "
+                    "the limit of what friction can hold"
+                )
+            continue
+        stop = min(t + step, run.end)
+        run.record(stop, _Sample(motion, piece, t))
+        start, t = piece.at(np.array([stop - t]))[0], stop
+        if piece.falling or step * piece.stiffness < STIFF:
+            break
+        step *= min(4.0, piece.change_of_step(run.thresholds.series))
+        expected = piece.beyond
+    return Outcome(t, start.tolist())
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """A polynomial that solves the equations of motion at the nodes of one step.
+
+    Parameters
+    ----------
+    start : array of shape (unknowns,)
+        Where it begins.
+    step : float
+        How long it lasts.
+    rates : array of shape (NODES, unknowns)
+        At the nodes.
+    stiffness : float
+        How fast slip is drawn to the direction of the pull at its end, in 1/T.
+    falling : bool
+        Whether slip becomes slower at its end.
+
+    """
+
+    start: FloatArray
+    step: float
+    rates: FloatArray
+    stiffness: float
+    falling: bool
+
+    @property
+    def error(self) -> float:
+        """What the last terms of the series contribute."""
+        return self.step * float(np.max(np.abs(TO_SERIES[-2:] @ self.rates)))
+
+    def change_of_step(self, tolerance: float) -> float:
+        """Return the factor by which the step may change for an error of ``tolerance``."""
+        return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
+
+    def at(self, delays: FloatArray) -> FloatArray:
+        """Return the unknowns at ``delays`` (n,) after the start, shape (n, unknowns)."""
+        integral = legendre.legint(TO_SERIES @ self.rates, lbnd=-1)
+        growth = legendre.legval(2.0 * delays / self.step - 1.0, integral)
+        return np.asarray(self.start + 0.5 * self.step * growth.T)
+
+    def beyond(self, delays: FloatArray) -> FloatArray:
+        """Return the continuation to ``delays`` after its end."""
+        return self.at(self.step + delays)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sample:
+    """The motion at times of a piece that begins at ``t``, for the record."""
+
+    motion: Coordinates
+    piece: _Piece
+    t: float
+
+    def __call__(self, times: FloatArray) -> FloatArray:
+        return self.motion.standard(self.piece.at(times - self.t).T)
+
+
+def _collocate(
+    run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
+) -> _Piece | None:
+    """Solve for the unknowns at the nodes by Newton's method, from ``values``; None if it does not converge."""
+    others = len(start) - motion.slip
+    for _ in range(MOST_ITERATIONS):
+        rates = _rates(run, motion, values)
+        if not np.all(np.isfinite(rates)):
+            return None
+        jacobians = np.array([_jacobian(run, motion, *node) for node in zip(values, rates, strict=True)])
+        residual = values - start - step * (INTEGRAL @ rates)
+        try:
+            change = np.linalg.solve(newton_matrix(jacobians, step), residual.ravel())
+        except np.linalg.LinAlgError:
+            return None
+        change = change.reshape(values.shape)
+        values = values - change
+        slip = np.linalg.norm(values[:, others:], axis=1)
+        converged = np.linalg.norm(change[:, others:], axis=1) < 1e-9 * slip + 1e-15 * step
+        if converged.all() and np.all(abs(change) < 1e-13 * (1.0 + abs(values))):
+            rates = _rates(run, motion, values)
+            return _Piece(
+                start,
+                step,
+                rates,
+                stiffness=float(np.linalg.norm(jacobians[-1][others:, others:], 2)),
+                falling=bool(np.dot(values[-1][others:], rates[-1][others:]) <= 0.0),
+            )
+    return None
+
+
+def _rates(run: Run, motion: Coordinates, values: FloatArray) -> FloatArray:
+    """Return the rates at ``values`` (n, unknowns)."""
+    run.evaluations += len(values)
+    return np.array([motion.rates(row) for row in values.tolist()])
+
+
+def _jacobian(run: Run, motion: Coordinates, values: FloatArray, rates: FloatArray) -> FloatArray:
+    """Return the derivatives of the rates by differences, those by the slip on its own scale."""
+    others = len(values) - motion.slip
+    changes = np.full(len(values), 1e-7)
+    changes[others:] *= max(float(np.linalg.norm(values[others:])), LEAST_SLIP)
+    moved = _rates(run, motion, values + np.diag(changes))
+    return np.asarray((moved - rates).T / changes)

@@ -1,0 +1,137 @@
+"""Slip, fast and near to rest, by SciPy's eighth-order Runge–Kutta method with the unregularised law.
+
+While slip is fast, or grows, its components are unknowns. While it comes near to zero it is written s·n with a
+unit vector n, and the unknowns are n and ln s, in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends on n
+only, so that there these equations are smooth and not stiff down to s = 0, where n tends to a limit direction of the
+discontinuity (Antali and Stépán 2019; of a pin, the direction of the pull) and the time that is left is s over
+the rate at which s falls. No event has to be located.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from scipy.integrate import DenseOutput
+
+from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.slip.stiff import slide_stiffly
+from reference_model.motion.stepper import TIGHTEST, Run, Sampler, Stepper
+from reference_model.systems import FloatArray
+
+
+def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
+    """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
+
+    def rates(_: float, y: FloatArray) -> Sequence[float]:
+        return motion.rates(y.tolist())
+
+    solver = Stepper(run, rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
+    lost = None
+    while t < run.end:
+        before = t
+        solver.step(t)
+        lost = grip_lost(motion, solver, lambda y: y)
+        t = solver.t if lost is None else lost
+        if run.pending(t):
+            run.record(t, partial(_standard, motion, solver.dense_output()))
+        if lost is not None:
+            y = solver.dense_output()(lost).tolist()
+            break
+        y = solver.y.tolist()
+        falling = float(np.dot(solver.y[-motion.slip :], solver.rates[-motion.slip :])) < 0.0
+        if (falling and motion.speed(y) < motion.slow(y)) or leave(y):
+            break
+        if solver.stiff and motion.speed(y) > 0.0:
+            return slide_stiffly(run, motion, t, y, leave, t - before)
+    return Outcome(t, y, let_go=lost is not None)
+
+
+def _standard(motion: Coordinates, dense: DenseOutput, times: FloatArray) -> FloatArray:
+    """Return the standard unknowns in a step."""
+    return motion.standard(dense(times))
+
+
+def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], leave: Leave) -> Outcome:
+    """Integrate in slip-polar coordinates and stretched time until slip is fast again or zero."""
+    d = motion.slip
+    others = len(y) - d
+    s0 = run.thresholds.stretching * motion.slow(y)
+
+    def unknowns(stretched: list[float]) -> tuple[list[float], list[float], float]:
+        """Return the unknowns, the direction n and the slip speed s."""
+        n = stretched[others : others + d]
+        size = math.hypot(*n)
+        n = [part / size for part in n]
+        # A trial step may overshoot wildly before it is rejected: exp() must not overflow there.
+        s = math.exp(min(stretched[-2], 50.0))
+        return stretched[:others] + [s * part for part in n], n, s
+
+    def rates(_: float, stretched: FloatArray) -> Sequence[float]:
+        y, n, s = unknowns(stretched.tolist())
+        dy = motion.rates(y)
+        growth = dy[others:]
+        along = sum(a * b for a, b in zip(n, growth, strict=True))
+        pace = math.hypot(s, s0)
+        dt = s / pace  # dt/dτ
+        return [
+            *[rate * dt for rate in dy[:others]],
+            *[(a - along * b) / pace for a, b in zip(growth, n, strict=True)],
+            along / pace,
+            dt,
+        ]
+
+    def sampler(dense: DenseOutput) -> Sampler:
+        def sample(times: FloatArray) -> FloatArray:
+            stretched = dense(_stretched_times(dense, times - start, s0))
+            n = stretched[others : others + d]
+            slip = np.exp(stretched[-2]) * n / np.linalg.norm(n, axis=0)
+            return motion.standard(np.vstack((stretched[:others], slip)))
+
+        return sample
+
+    speed = motion.speed(y)
+    # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
+    relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
+    initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
+    edges = [edge.seen_by(lambda stretched: unknowns(stretched)[0]) for edge in motion.edges]
+    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, edges)
+    t = start
+    while True:
+        before = t
+        solver.step(t)
+        lost = grip_lost(motion, solver, lambda stretched: unknowns(stretched)[0])
+        ending = solver.y.tolist() if lost is None else solver.dense_output()(lost).tolist()
+        t = start + ending[-1]
+        if run.pending(t):
+            run.record(min(t, run.end), sampler(solver.dense_output()))
+        y, _, s = unknowns(ending)
+        if lost is not None or t >= run.end or s > 1.2 * motion.slow(y) or leave(y):
+            break
+        ended = slip_ends(run, motion, t, y)
+        if ended is not None:
+            return ended
+        if solver.stiff:
+            return slide_stiffly(run, motion, t, y, leave, t - before)
+    return Outcome(t, y, let_go=lost is not None)
+
+
+def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:
+    """Return τ at which the last unknown of ``dense``, the time, takes the values ``delays``, by Newton's method.
+
+    Time grows monotonically with τ inside of a step; where Newton's method would leave the step it is stopped
+    at its end.
+    """
+    first, last = dense.t_min, dense.t_max
+    t_first, t_last = dense(first)[-1], dense(last)[-1]
+    tau: FloatArray = first + (last - first) * (delays - t_first) / (t_last - t_first)
+    for _ in range(50):
+        y = dense(tau)
+        s = np.exp(y[-2])
+        correction = (y[-1] - delays) * np.hypot(s, s0) / s
+        tau = np.clip(tau - correction, first, last)
+        if np.all(np.abs(y[-1] - delays) <= 4.0 * np.finfo(float).eps * max(abs(t_last), 1.0)):
+            break
+    return tau

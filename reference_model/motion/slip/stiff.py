@@ -1,0 +1,121 @@
+"""Slip that is stiff, by an implicit method: slip that creeps, slow slip that goes on, strong damping.
+
+Where slip s is small for long, its direction n is drawn to that of the pull at the rate g/s, and an explicit method
+takes steps of some s/g, however smooth the motion. Slip of a well damped body may even decay for ever: it creeps
+towards where friction can just hold it, s ~ exp(−λt), until little way is left
+(:mod:`reference_model.motion.bodies`). Written as n and ln s over the time, all that is smooth, and collocation
+takes steps as long as the motion allows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from scipy.integrate import DenseOutput
+
+from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.stepper import Run, StepError, Stepper
+from reference_model.numerics.collocation import Scales
+from reference_model.systems import FloatArray
+
+DIFFERENCE = 1e-7
+"""Change of the unknowns, all of order one, by which derivatives are found."""
+
+TIGHTEST_IMPLICIT = 3e-13
+"""Error of a step, on unknowns of order one, below which rounding is felt in the solution of its equations."""
+
+LOOSEST = 0.03
+"""The largest error of a step in ln s."""
+
+WORTH = 50.0
+"""Length of a step times the largest rate, from which an implicit step is worth what it costs."""
+
+
+def slide_stiffly(
+    run: Run, motion: Coordinates, start: float, y: list[float], leave: Leave, step: float
+) -> Outcome:
+    """Integrate by an implicit method as long as that pays, or until slip is zero, or ``leave`` says so.
+
+    ``step`` is that of an explicit method.
+    """
+    d = motion.slip
+    others = len(y) - d
+
+    def unknowns(polar: list[float]) -> tuple[list[float], list[float], float]:
+        """Return the unknowns, the direction n and the slip speed s."""
+        n = polar[others:-1]
+        size = math.hypot(*n) or 1.0
+        n = [part / size for part in n]
+        s = math.exp(max(min(polar[-1], 50.0), -500.0))  # a trial may overshoot wildly
+        return polar[:others] + [s * part for part in n], n, s
+
+    def rates(_: float, polar: FloatArray) -> Sequence[float]:
+        y, n, s = unknowns(polar.tolist())
+        dy = motion.rates(y)
+        growth = dy[others:]
+        along = sum(a * b for a, b in zip(n, growth, strict=True))
+        return [
+            *dy[:others],
+            *[(a - along * b) / s for a, b in zip(growth, n, strict=True)],
+            along / s,
+        ]
+
+    tolerance = max(run.local_tolerance, TIGHTEST_IMPLICIT)
+    relative = np.zeros(others + d + 1)
+    relative[:others] = motion.tolerances(run, others)
+
+    def tolerated(polar: FloatArray) -> FloatArray:
+        result = tolerance + relative * abs(polar)
+        result[-1] = min(tolerance / math.exp(polar[-1]), LOOSEST)  # the error of s itself counts
+        return np.asarray(result)
+
+    def differences(polar: FloatArray) -> FloatArray:
+        return np.full(len(polar), DIFFERENCE)
+
+    most = np.full(others + d + 1, math.inf)
+    most[-1] = 1.0
+    speed = motion.speed(y)
+    initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed)]
+    edges = [edge.seen_by(lambda polar: unknowns(polar)[0]) for edge in motion.edges]
+    solver = Stepper(
+        run,
+        rates,
+        initial,
+        (start, run.end),
+        relative,
+        edges,
+        (Scales(tolerated, differences, most), 2.0 * step),
+    )
+    t = start
+    while t < run.end:
+        try:
+            solver.step(t)
+        except StepError:
+            run.patience *= 2
+            break
+        lost = grip_lost(motion, solver, lambda polar: unknowns(polar)[0])
+        t = solver.t if lost is None else lost
+        if run.pending(t):
+            run.record(t, partial(_standard, motion, others, solver.dense_output()))
+        y = unknowns((solver.y if lost is None else solver.dense_output()(lost)).tolist())[0]
+        if lost is not None:
+            return Outcome(t, y, let_go=True)
+        if t >= run.end or leave(y):
+            break
+        ended = slip_ends(run, motion, t, y) if motion.slow(y) > 0.0 else None
+        if ended is not None:
+            return ended
+        if solver.settled and solver.stiffness < WORTH:
+            run.patience *= 2
+            break
+    return Outcome(t, y)
+
+
+def _standard(motion: Coordinates, others: int, dense: DenseOutput, times: FloatArray) -> FloatArray:
+    """Return the standard unknowns in a step."""
+    polar = dense(times)
+    n = polar[others:-1]
+    return motion.standard(np.vstack((polar[:others], np.exp(polar[-1]) * n / np.linalg.norm(n, axis=0))))

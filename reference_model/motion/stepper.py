@@ -1,0 +1,390 @@
+"""A simulation under way: its thresholds, what it has recorded, and the steps of its integrators."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, NoReturn
+
+import numpy as np
+from scipy.integrate import DOP853, DenseOutput, OdeSolution
+from scipy.optimize import brentq, minimize_scalar
+
+from reference_model.numerics.collocation import Radau, Scales
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+Kind = Literal["slip", "pivot", "stick"]
+Sampler = Callable[[FloatArray], FloatArray]
+"""Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
+
+TIGHTEST = 3e-14
+"""The smallest relative tolerance that SciPy's integrators take."""
+
+MOST_STEPS = 5_000_000
+"""Some minutes' work; a motion that takes more is hardly meant."""
+
+LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
+"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
+
+
+STABLE = 3.0
+"""Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
+
+PATIENCE = 15
+"""Steps that stability limits before an implicit method is tried; twice as many each time that it does not pay."""
+
+
+LAST_TERM = 1e-3
+"""Error of DOP853's interpolant as a share of its last term, as measured."""
+
+AS_GOOD = 20.0
+"""Error of the interpolant, in local tolerances, up to which it is within the tolerance that was asked for."""
+
+INTERPOLANT_ORDER = 7
+
+SPOILT = 1.5
+"""Stiffness of a step from which what decays fast may spoil the interpolant, whatever its last term is."""
+
+
+class StepError(SimulationError):
+    """An integrator could not take a step."""
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Where one description of the motion hands over to the next; results must not depend on it.
+
+    Parameters
+    ----------
+    slow_slip : float
+        Slip that falls below this multiple of g·T is described in slip-polar coordinates (T: unit of time).
+    stretching : float
+        s₀ of the stretched time as a multiple of ``slow_slip``.
+    rest_time : float
+        Error, in units of T, up to which the closed form for the time of coming to rest is taken.
+    reversal_slip : float
+        Slip speed, in units of length per T, below which slip that friction can't hold counts as turned.
+    common_rest : float
+        Slip speed, in units of length per T, below which all points of a disc come to rest together.
+    series : float
+        Size of the last terms of the series by which slip starts.
+    safety : float
+        The integrator's tolerance as a fraction of the one asked for.
+
+    """
+
+    slow_slip: float = 0.5
+    stretching: float = 2.0
+    rest_time: float = 1e-12
+    reversal_slip: float = 1e-13
+    common_rest: float = 1e-11
+    series: float = 1e-12
+    safety: float = 0.05
+
+
+@dataclass
+class Run:
+    """A simulation from t = 0 on; times and unknowns are scaled, ``seconds`` gives the time in s.
+
+    Parameters
+    ----------
+    times : array of shape (n,)
+        Those that were asked for, the first of them 0.
+    unknowns : int
+        Number of unknowns of the body, half of them its relative velocities.
+    seconds : callable
+        Turns a time into one in s.
+    thresholds : Thresholds
+        Where the descriptions hand over.
+    tolerance : float
+        The one that was asked for.
+
+    """
+
+    times: FloatArray
+    unknowns: int
+    seconds: Callable[[float], float]
+    thresholds: Thresholds
+    tolerance: float
+    motion: FloatArray = field(init=False)
+    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
+    evaluations: int = 0
+    steps: int = 0
+    patience: int = PATIENCE
+    _recorded: int = 0
+    _looked_back: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.motion = np.empty((len(self.times), self.unknowns))
+        self.local_tolerance = max(self.thresholds.safety * self.tolerance, TIGHTEST)
+        self.end = float(self.times[-1])
+
+    def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
+        """Begin a phase of this kind, unless it is under way."""
+        if not self.phases or self.phases[-1][0] != kind:
+            self.phases.append((kind, t, np.array(y)))
+
+    def step(self, solver: DOP853 | Radau, since: float) -> None:
+        """Take one step, or raise ``StepError`` with the time up to which all was well."""
+        evaluations = solver.nfev
+        message = solver.step()
+        self.evaluations += solver.nfev - evaluations
+        self.count_step(since)
+        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+            raise StepError(
+                f"the integrator gave up after t = {self.seconds(since):g} s: "
+                f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
+            )
+
+    def count_step(self, since: float) -> None:
+        """Count one step more, from ``since``; raise ``SimulationError`` if there are, or will be, too many."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            self._give_up(f"more than {MOST_STEPS:,} steps", since)
+        if self.steps % LOOK_BACK == 0:
+            passed, self._looked_back = since - self._looked_back, since
+            if (self.end - since) * LOOK_BACK > MOST_AHEAD * passed:
+                self._give_up(f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}", since)
+
+    def _give_up(self, steps: str, since: float) -> NoReturn:
+        raise SimulationError(
+            f"{steps} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is very "
+            "long; simulate it in parts, or with a larger tolerance"
+        )
+
+    def pending(self, t: float) -> bool:
+        """Tell whether a time that was asked for lies before or at ``t``."""
+        return self._recorded < len(self.times) and bool(self.times[self._recorded] <= t)
+
+    def record(self, until: float, sample: Sampler) -> None:
+        """Store the motion at the times up to ``until`` that are not yet recorded."""
+        stop = int(np.searchsorted(self.times, until, side="right"))
+        span = slice(self._recorded, stop)
+        if stop > self._recorded:
+            self.motion[span] = sample(self.times[span]).T
+            self._recorded = stop
+
+
+class Edge(NamedTuple):
+    """Where the rates are continuous but not smooth.
+
+    Parameters
+    ----------
+    value : callable
+        Takes the unknowns and changes sign there.
+    trend : callable or None
+        Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. If there is
+        one, a step that crosses the edge and comes back is noticed too.
+
+    """
+
+    value: Callable[[list[float]], float]
+    trend: Callable[[list[float], list[float]], float] | None = None
+
+    def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> Edge:
+        """Return the edge for unknowns that ``unknowns`` turns into these; x and y are the first of both."""
+        return Edge(lambda other: self.value(unknowns(other)), self.trend)
+
+
+class Stepper:
+    """Steps of a Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
+
+    SciPy's explicit one of eighth order, or collocation, which is implicit.
+
+    An error estimate tells little of a step across such an edge, but it can be trusted on either side. So a step that
+    has crossed one is taken back and made to end there.
+
+    Parameters
+    ----------
+    run : Run
+        The simulation, which counts steps and evaluations.
+    rates : callable
+        The right side, as SciPy takes it.
+    y : sequence
+        Where to begin.
+    span : (float, float)
+        When to begin and to end.
+    relative_tolerance : array of shape (unknowns,)
+        Of each unknown; the absolute tolerance is that of the run.
+    edges : sequence of Edge
+        The edges.
+    implicit : (Scales, float) or None
+        For an implicit method, the scales of the unknowns and the first step to try.
+
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        rates: Callable[[float, FloatArray], Sequence[float]],
+        y: Sequence[float],
+        span: tuple[float, float],
+        relative_tolerance: FloatArray,
+        edges: Sequence[Edge] = (),
+        implicit: tuple[Scales, float] | None = None,
+    ) -> None:
+        self._run, self._rates, self._edges = run, rates, edges
+        self._scales = None if implicit is None else implicit[0]
+        first_step = None if implicit is None else implicit[1]
+        self._dense: DenseOutput | OdeSolution | None = None
+        self._solver: DOP853 | Radau
+        self._limited = 0  # steps that stability may have limited, less others
+        self._relative_tolerance = relative_tolerance
+        self._end = span[1]
+        self._landed: tuple[Edge, float] | None = None  # an edge, and the sign beyond
+        self._usual_step = math.inf
+        self._start(span[0], np.array(y), self._end, first_step)
+
+    @property
+    def t(self) -> float:
+        """The time, or what stands for it, that is reached."""
+        return float(self._solver.t)
+
+    @property
+    def y(self) -> FloatArray:
+        """The unknowns there."""
+        return np.asarray(self._solver.y)
+
+    @property
+    def rates(self) -> FloatArray:
+        """Their rates there."""
+        return np.asarray(self._solver.f)
+
+    @property
+    def settled(self) -> bool:
+        """Whether the implicit method has found the length of its steps."""
+        return isinstance(self._solver, Radau) and self._solver.settled
+
+    @property
+    def stiff(self) -> bool:
+        """Whether stability has limited the explicit method for long."""
+        return self._limited >= self._run.patience
+
+    @property
+    def stiffness(self) -> float:
+        """The length of the last step times the largest rate of decay.
+
+        Of the explicit method by its last two stages, both at the end of the step (Hairer and Wanner, IV.2).
+        """
+        solver = self._solver
+        if isinstance(solver, Radau):
+            return solver.stiffness
+        h = solver.t - solver.t_old
+        stage = solver.y_old + h * (solver.A[-1, :-1] @ solver.K[: len(solver.A) - 1])
+        apart = float(np.linalg.norm(solver.y - stage))
+        return h * float(np.linalg.norm(solver.f - solver.K[-2])) / apart if apart > 0.0 else 0.0
+
+    def dense_output(self) -> DenseOutput | OdeSolution:
+        """Return the interpolant of the last step, as accurate as its end."""
+        if self._dense is None:
+            solver = self._solver
+            self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)
+        return self._dense
+
+    def _interpolant(self, solver: DOP853) -> DenseOutput | OdeSolution:
+        evaluations = solver.nfev
+        dense = solver.dense_output()
+        self._run.evaluations += solver.nfev - evaluations
+        tolerated = self._run.local_tolerance + self._relative_tolerance * abs(solver.y)
+        error, stiffness = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated)), self.stiffness
+        if error > AS_GOOD or stiffness > SPOILT:
+            error = self._defect(dense, tolerated)
+        if error <= AS_GOOD:
+            return dense
+        return self._finer(solver, 1 + math.ceil(max(error ** (1.0 / INTERPOLANT_ORDER), stiffness)))
+
+    def _defect(self, dense: DenseOutput, tolerated: FloatArray) -> float:
+        """Return what the interpolant would miss in half a step by its defect in the middle, in tolerances."""
+        first, last = dense.t_old, dense.t
+        middle, little = 0.5 * (first + last), 1e-3 * (last - first)
+        slope = (dense(middle + little) - dense(middle - little)) / (2.0 * little)
+        self._run.evaluations += 1
+        lacks = slope - np.array(self._rates(middle, dense(middle)))
+        return float(0.5 * (last - first) * np.max(abs(lacks) / tolerated))
+
+    def _finer(self, done: DOP853, parts: int) -> OdeSolution:
+        """Return the motion in the last step from as many shorter ones."""
+        first, last = done.t_old, done.t
+        solver = self._explicit(first, done.y_old, last, (last - first) / parts, (last - first) / parts)
+        times, pieces = [first], []
+        while solver.status == "running":
+            solver.step()
+            times.append(solver.t)
+            pieces.append(solver.dense_output())
+        self._run.evaluations += solver.nfev
+        return OdeSolution(times, pieces)
+
+    def step(self, since: float) -> None:
+        """Take one step; ``since`` is the time to tell if that fails."""
+        if self._solver.status == "finished" and self.t < self._end:
+            self._start(self.t, self.y, self._end, self._usual_step)
+        self._dense = None
+        solver = self._solver
+        t, y, rates = solver.t, solver.y, solver.f
+        self._run.step(solver, since)
+        self._limited = max(0, self._limited + (1 if self.stiffness > STABLE else -1))
+        if not self._edges or solver.t_bound != self._end:
+            return
+        landed, self._landed = self._landed, None
+        crossings = []
+        for edge in self._edges:
+            side = landed[1] if landed is not None and landed[0] is edge else None
+            crossing = self._crossing(edge, side, t, y.tolist(), rates.tolist())
+            if crossing is not None and t < crossing[0] < solver.t:
+                crossings.append((*crossing, edge))
+        if crossings:
+            place, beyond, edge = min(crossings, key=lambda crossing: crossing[0])
+            self._landed = edge, beyond
+            self._usual_step = float(solver.t - t)
+            self._start(t, y, place, place - t)
+            self._run.step(self._solver, since)
+
+    def _crossing(
+        self, edge: Edge, side: float | None, t: float, y: list[float], rates: list[float]
+    ) -> tuple[float, float] | None:
+        """Return where in the last step, from ``t`` on, an edge was crossed, and the sign of its value beyond.
+
+        ``side`` is the sign at ``t`` if the step began on the edge, where the value is nothing but rounding.
+        """
+        on_edge = side is not None
+        if on_edge and edge.trend is None:
+            return None  # one step on, it is on one side again
+        if side is None:
+            side = math.copysign(1.0, edge.value(y))
+        crossed = side * edge.value(self.y.tolist()) < 0.0
+        dips = edge.trend is not None and side * edge.trend(y, rates) < 0.0 < side * edge.trend(
+            self.y.tolist(), self.rates.tolist()
+        )
+        if not crossed and not dips:
+            return None
+        dense = self.dense_output()
+
+        def inside(tau: float) -> float:
+            return side * edge.value(dense(tau).tolist())
+
+        first, last = t, self.t
+        if not crossed or on_edge:
+            sign = -1.0 if crossed else 1.0  # off the edge and back, or towards it and back
+            span = {"bounds": (t, self.t), "method": "bounded", "options": {"xatol": 1e-9 * (last - first)}}
+            extreme = float(minimize_scalar(lambda tau: sign * inside(tau), **span).x)
+            first, last = (extreme, last) if crossed else (first, extreme)
+        if not inside(first) > 0.0 > inside(last):
+            return None
+        return float(brentq(inside, first, last, rtol=TIGHTEST)), -side
+
+    def _start(self, t: float, y: FloatArray, end: float, first_step: float | None = None) -> None:
+        first_step = None if first_step is None else min(first_step, end - t)
+        self._dense = None
+        if self._scales is not None:
+            self._solver = Radau(self._rates, t, y, end, first_step or end - t, self._scales)
+            return
+        self._solver = self._explicit(t, y, end, first_step)
+        self._run.evaluations += self._solver.nfev
+
+    def _explicit(
+        self, t: float, y: FloatArray, end: float, first_step: float | None, most: float = math.inf
+    ) -> DOP853:
+        tolerances = {"rtol": self._relative_tolerance, "atol": self._run.local_tolerance}
+        return DOP853(self._rates, t, y, end, first_step=first_step, max_step=most, **tolerances)

@@ -1,0 +1,256 @@
+"""Stick phases (eq. 6 to 9): what friction must hold, when it lets go, and how slip starts.
+
+Stuck means w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and the friction that holds it balances
+the pull a(z, 0). All functions of the pin take the equations of motion and complex positions.
+
+A friction disc sticks only as a whole. Its shaft asks for a moment that does not change meanwhile, and beside that
+moment a contact that looks the same from all directions can hold a force up to its limit surface: so its centre is
+a stuck pin with less friction.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.motion.disc_equations import DiscMotion
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.systems import FloatArray
+
+GRAZING = 1e-8
+"""Relative excess of the holding force that is passed over.
+
+An excess δ at the peak of the holding force lasts for √(8δ)/ω and moves the pin by some g·δ²/ω², far less
+than rounding of the position.
+"""
+
+NARROW = 1e-5
+"""Angle in rad down to which the first release is looked for.
+
+A pull that exceeds friction for less moves the pin by some NARROW³ of its way: it is passed over.
+"""
+
+ROUNDING = 1e-12
+"""Angle in rad within which a pin counts as being at the limit of what friction can hold."""
+
+
+def can_hold(motion: SlipMotion, z: complex) -> bool:
+    """Tell whether friction can hold a pin at rest on the disc at ``z`` (eq. 6)."""
+    return abs(motion.pull(z, 0.0)) <= motion.friction
+
+
+def release_delay(motion: SlipMotion, z: complex) -> float:
+    """Return how long a pin held at ``z`` stays stuck, in s; inf if friction never lets go.
+
+    Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning
+    pull q of the position: a single harmonic, whose first upward crossing has a closed form. It is derived here
+    from the equations of motion: ``pin_formulas.release_time``, which is eq. 7 as printed, is there to judge it.
+    On a support that is not linear the pull of the position depends on the angle too, see :func:`_first_release`.
+    """
+    if not motion.support.linear:
+        return _first_release(motion, z)
+    constant = motion.support.stiffness * motion.support.offset
+    turning = motion.pull(z, 0.0) - constant
+    p, q, g = abs(constant), abs(turning), motion.friction
+    if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
+        return math.inf
+    # The angle between the two pulls, counted as it grows; friction holds outside of ± limit. The half-angle
+    # form of the law of cosines keeps its digits where an arccos would lose them.
+    angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
+    limit = 2.0 * math.atan2(
+        math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
+    )
+    turn = (-limit - angle) % (2.0 * math.pi)
+    if 2.0 * math.pi - turn < ROUNDING:
+        turn = 0.0  # at the limit already
+    return turn / abs(motion.disc_speed)
+
+
+def _first_release(motion: SlipMotion, z: complex) -> float:
+    """Do as :func:`release_delay` by search for the first root over a turn of the disc.
+
+    Seen from the disc the pin rests and the offset turns, by X0·h in length while the disc turns by h. So what
+    friction has left over the pull changes by Λh at most, with Λ = |X0| times the tangent stiffness at the largest
+    deflection on the way, or, seen from rest, |z|·(that + |ω² − iωβ/m|); and the deflection is not more than the mean
+    of those at both ends + min(|X0|, |z|)·h/2. That says how low the margin can fall between two angles. Where this
+    is below zero the way is halved, the first half first, down to where there is room for one root only.
+    """
+    if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
+        return math.inf  # the pull only turns
+    g, radius, offset = motion.friction, abs(z), abs(motion.support.offset)
+    sense = math.copysign(1.0, motion.disc_speed)
+    carried = abs(complex(motion.damping, motion.disc_speed) * motion.disc_speed)
+
+    def at(turn: float) -> complex:
+        return z * cmath.exp(1j * sense * turn)
+
+    def spare(turn: float) -> float:
+        return g - abs(motion.pull(at(turn), 0j))
+
+    def deflection(turn: float) -> float:
+        return abs(at(turn) - motion.support.offset)
+
+    held = firmly = 0.0  # firmly: with something to spare, not just up to grazing
+    waiting = [2.0 * math.pi]
+    while waiting:
+        firmly = held if spare(held) > 0.0 else firmly
+        end = waiting[-1]
+        h = end - held
+        tangent = motion.support.tangent(0.5 * (deflection(held) + deflection(end) + min(offset, radius) * h))
+        slope = min(offset * tangent, radius * (carried + tangent))
+        least = 0.5 * (spare(held) + spare(end) - slope * h)
+        if least >= -GRAZING * g:
+            held = end
+            waiting.pop()
+        elif h > NARROW:
+            waiting.append(0.5 * (held + end))
+        elif spare(end) >= -GRAZING * g:
+            held = end
+            waiting.pop()
+        else:
+            if spare(firmly) > 0.0:
+                firmly = float(brentq(spare, firmly, end, xtol=1e-15, rtol=1e-15))
+            return firmly / abs(motion.disc_speed)
+    return math.inf
+
+
+def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
+    """Return the stuck pin that the centre of a stuck disc is; None if friction can't hold the moment of the shaft.
+
+    Its friction is the force on the limit surface beside that moment. Force and moment of the surface are those of
+    slip with all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    """
+    g = motion.centre.friction
+    asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
+    most = contact.shares(0.0, 1.0).moment
+    if asked > g * most:
+        return None
+
+    def lacking(alpha: float) -> float:
+        return g * contact.shares(math.cos(alpha), math.sin(alpha) / most).moment - asked
+
+    alpha = float(brentq(lacking, 0.0, math.pi / 2.0, xtol=1e-16, rtol=1e-15)) if asked > 0.0 else 0.0
+    return replace(
+        motion.centre, friction=g * contact.shares(math.cos(alpha), math.sin(alpha) / most).resistance
+    )
+
+
+def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) -> NDArray[np.float64]:
+    """Return the unit vector (u_x, u_y, r) along which slip begins from rest at ``z`` where friction gives way.
+
+    With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n is where that is
+    largest: there a − g∇P is along n. At a release, where it is zero, n is normal to the limit surface. The centre
+    begins to slip along its pull, so that one angle is left.
+    """
+    pull, turning = motion.centre.pull(z, 0j), motion.turning_pull(0.0)
+    strength, g = abs(pull), motion.centre.friction
+
+    def growth(beta: float) -> tuple[float, float]:
+        """Return the parts of a − g∇P along n, by which slip grows, and across it, by which n turns."""
+        c, s = math.cos(beta), math.sin(beta)
+        shares = contact.shares(motion.length * c, -s / motion.gyration)
+        force = strength - g * shares.resistance
+        moment = turning + g * shares.moment / (motion.length * motion.gyration)
+        return force * c + moment * s, moment * c - force * s
+
+    angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 65).tolist()
+    best = max(range(len(angles)), key=lambda i: growth(angles[i])[0])
+    low, beta, high = angles[max(best - 1, 0)], angles[best], angles[min(best + 1, len(angles) - 1)]
+    if growth(low)[1] > 0.0 > growth(high)[1]:
+        beta = float(brentq(lambda beta: growth(beta)[1], low, high, xtol=1e-16, rtol=1e-15))
+    along = math.cos(beta) * (pull / strength if strength > 0.0 else 1.0)
+    return np.array((along.real, along.imag, math.sin(beta)))
+
+
+@dataclass(frozen=True)
+class SlipStart:
+    """Slip that grows from rest, as a power series in the time since it began.
+
+    Parameters
+    ----------
+    positions, slip : complex arrays of shape (terms,)
+        Coefficients of z and of w.
+    duration : float
+        Time up to which the series holds, in s.
+    rest : float
+        Time at which the series ends in rest again, in s; inf if it does not. It counts if it lies within
+        ``duration``: after a release at which the pull exceeds friction only just and only for a while.
+
+    """
+
+    positions: NDArray[np.complex128]
+    slip: NDArray[np.complex128]
+    duration: float
+    rest: float
+
+    def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Return z and w at ``delays`` (shape (n,)) after the start, each of shape (n,)."""
+        powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
+        return powers @ self.positions, powers @ self.slip
+
+
+def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
+    """Return how slip grows from a pin at rest on the disc at ``z`` whose pull is not less than friction.
+
+    On a linear support.
+
+    In polar slip coordinates w = s·exp(iθ) and with b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b.
+    At rest θ is the direction of the pull. Where the pull exceeds friction, slip grows linearly and the
+    series converges. Where it is just equal (release from a stick phase), slip grows quadratically with its
+    direction slaved to the pull; the point is an irregular singular one and the series asymptotic, with an
+    error like exp(−2g/(κt)), κ = d|a|/dt. Both obey the same recurrence: of order t^k,
+    (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
+
+    ``duration`` is where the last terms of slip and direction reach ``tolerance``.
+    """
+    omega = 1j * motion.disc_speed
+    position = np.zeros(terms + 1, dtype=complex)
+    velocity = np.zeros_like(position)
+    pull = np.zeros_like(position)
+    slip = np.zeros_like(position)
+    direction = np.zeros_like(position)  # exp(iθ)
+    theta = np.zeros(terms + 1)
+    speed = np.zeros(terms + 2)
+
+    position[0], velocity[0], pull[0] = z, omega * z, motion.pull(z, 0.0)
+    strength = abs(pull[0])
+    direction[0] = pull[0] / strength
+    speed[1] = strength - motion.friction
+    order = np.arange(terms + 2)
+    for k in range(1, terms + 1):
+        position[k] = velocity[k - 1] / k
+        slip[k] = np.dot(speed[1 : k + 1], direction[k - 1 :: -1])
+        velocity[k] = slip[k] + omega * position[k]
+        pull[k] = -(motion.damping + omega) * velocity[k] - motion.support.stiffness * position[k]
+        # Coefficient k of exp(iθ) and of b = a·exp(−iθ) but for the terms with θ_k itself.
+        direction[k] = 1j * np.dot(order[1:k] * theta[1:k], direction[k - 1 : 0 : -1]) / k
+        b = np.dot(pull[: k + 1], direction[k::-1].conj())
+        turning = np.dot(speed[2 : k + 1], (order[k - 1 : 0 : -1] * theta[k - 1 : 0 : -1]))
+        theta[k] = (b.imag - turning) / (strength + k * speed[1])
+        direction[k] += 1j * theta[k] * direction[0]
+        speed[k + 1] = b.real / (k + 1)
+
+    last = max(abs(theta[-1]), abs(theta[-2]), abs(slip[-1]), abs(slip[-2]))
+    duration = (tolerance / last) ** (1.0 / terms) if last > 0.0 else math.inf
+    return SlipStart(position, slip, duration, _first_rest(speed[1:], duration))
+
+
+def _first_rest(speed: FloatArray, duration: float) -> float:
+    """Return the first time up to ``duration`` at which slip falls to zero, or inf.
+
+    ``speed`` are the coefficients of slip speed over time. Its rounding at a release, where the first of them
+    should vanish, adds a root next to zero; there slip rises.
+    """
+    if not math.isfinite(duration):
+        return math.inf
+    scaled = np.polynomial.Polynomial(speed * duration ** np.arange(len(speed)))
+    roots = scaled.roots()
+    times = roots.real[(abs(roots.imag) < 1e-9 * abs(roots)) & (roots.real > 0.0) & (roots.real <= 1.0)]
+    falling = times[scaled.deriv()(times) < 0.0]
+    return float(falling.min()) * duration if falling.size else math.inf

@@ -1,0 +1,225 @@
+"""The boundary between the starts of a pin that come to its self-centred equilibrium and those that whirl.
+
+Where a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
+released, sooner or later, at the orbit's angle. The angle of a release depends smoothly on the start. So a point of
+the boundary is the root of an equation; end states, which only tell on which side a start lies, serve to find where
+to look for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from reference_model.contact.contact_law import require_whole
+from reference_model.numerics.continuation import Curve
+from reference_model.numerics.dividing_curves import dividing_curves
+from reference_model.orbits.release_map import JUMP, ROUGH, Release, Releases, StickSlipOrbit
+from reference_model.systems import FloatArray, checked_state, finite_number
+
+COMPONENTS = ("x", "y", "vx", "vy")
+
+NEAR = 0.1
+"""Angle in rad within which a release counts as near to that of the orbit.
+
+A root is on the boundary whatever this is; it decides how near two starts must come for one to be looked for.
+"""
+
+SPARE = 0.1
+"""Error that the search for a point may leave, over the tolerance of the orbit."""
+
+DISTINCT = 0.1
+"""Relative difference in radius of two motions that are told apart by it."""
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The two sides of the stable set of a saddle orbit.
+
+    Parameters
+    ----------
+    orbit : StickSlipOrbit
+        The saddle.
+    releases : Releases
+        How releases follow each other.
+
+    """
+
+    orbit: StickSlipOrbit
+    releases: Releases
+
+    @classmethod
+    def of(cls, orbit: StickSlipOrbit) -> Sides:
+        """Return the sides of ``orbit``; raise ``ValueError`` if it does not separate two motions."""
+        if not isinstance(orbit, StickSlipOrbit):
+            raise ValueError(f"orbit = {orbit!r}: it must be a StickSlipOrbit")
+        if not orbit.multiplier > 1.0:
+            raise ValueError(
+                f"orbit has the multiplier {orbit.multiplier:g}: only the stable set of one with a multiplier > 1 "
+                "has two sides that lead to different motions"
+            )
+        sides = cls(orbit, Releases(orbit.system, orbit.flow.tolerance))
+        before, behind = sides.ends
+        if abs(before - behind) < DISTINCT * max(before, behind):
+            raise ValueError(
+                f"from both sides of the orbit the pin comes to motions of the same radius, {before:g} m and "
+                f"{behind:g} m: the orbit does not separate them"
+            )
+        return sides
+
+    @cached_property
+    def ends(self) -> tuple[float, float]:
+        """Radii in m to which the pin comes if it is released before the orbit and behind it."""
+        before, behind = (
+            self.rough.first(self.rough.state(self.orbit.release_angle + shift), lambda _: False)[1]
+            for shift in (-NEAR, NEAR)
+        )
+        return math.hypot(*before[:2]), math.hypot(*behind[:2])
+
+    @cached_property
+    def rough(self) -> Releases:
+        """The releases with an error that matters only next to the boundary."""
+        return replace(self.releases, tolerance=max(ROUGH, self.releases.tolerance))
+
+    def miss(self, start: ArrayLike) -> float:
+        """Return by which angle the pin that starts from a state misses the orbit, at its first release near to it.
+
+        Positive is the side of the releases behind that of the orbit. Without a near release it is ±NEAR, by the
+        motion to which the pin comes.
+        """
+
+        def near(release: Release) -> bool:
+            return abs(release.angle - self.orbit.release_angle) < NEAR
+
+        release, last = self.rough.first(start, near)
+        if release is not None and self.releases != self.rough:
+            release, last = self.releases.first(start, near)
+        if release is not None:
+            return release.angle - self.orbit.release_angle
+        radius = math.hypot(*last[:2])
+        before, behind = self.ends
+        return NEAR if abs(radius - behind) < abs(radius - before) else -NEAR
+
+    def point_between(self, first: FloatArray, second: FloatArray) -> FloatArray:
+        """As :func:`boundary_point`."""
+
+        def miss(share: float) -> float:
+            return self.miss(first + share * (second - first))
+
+        if miss(0.0) * miss(1.0) > 0.0:
+            raise ValueError(
+                f"from {first} and from {second} the pin comes to the same motion: they must lie on different sides"
+            )
+        share = float(brentq(miss, 0.0, 1.0, xtol=1e-15, rtol=1e-14))
+        point = first + share * (second - first)
+        self.require_on_boundary(point)
+        return np.asarray(point)
+
+    def require_on_boundary(self, start: FloatArray) -> None:
+        """Raise ``RuntimeError`` if a start at which the side changes does not lead to the orbit."""
+        if abs(self.miss(start)) > JUMP:
+            raise RuntimeError(
+                f"the boundary at {start} is not in the stable set of the orbit: no release is near to that of it"
+            )
+
+
+def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
+    """Return the start, shape (4,), at which the straight line between two starts crosses the boundary of the basins.
+
+    Parameters
+    ----------
+    orbit : StickSlipOrbit
+        The saddle whose stable set is the boundary. Its tolerance is that of the point.
+    first, second : array-like of shape (4,)
+        Starts that come to different motions.
+
+    Raises
+    ------
+    ValueError
+        If the orbit is no saddle that separates two motions, or if both starts come to the same of them.
+    RuntimeError
+        If what separates the starts is not the stable set of this orbit.
+
+    """
+    sides = Sides.of(orbit)
+    return sides.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
+
+
+def basin_boundary(
+    orbit: StickSlipOrbit,
+    *,
+    components: tuple[str, str] = ("x", "vx"),
+    ranges: Sequence[tuple[float, float]],
+    others: ArrayLike = (0.0, 0.0, 0.0, 0.0),
+    cells: int = 32,
+) -> tuple[Curve, ...]:
+    """Return the boundary of the basins in a rectangle of starts, as curves of points of shape (n, 2).
+
+    The limits at which a curve ends are, by their index, the lower ones of both components, then the upper ones.
+
+    Parameters
+    ----------
+    orbit : StickSlipOrbit
+        The saddle whose stable set is the boundary. Its tolerance is that of the points.
+    components : (str, str)
+        What varies in the rectangle: two of "x", "y", "vx", "vy".
+    ranges : pair of (float, float)
+        From where to where, in m or m/s.
+    others : array-like of shape (4,)
+        The state of which they are replaced.
+    cells : int
+        The resolution: starts on a grid of as many cells in each direction tell where a curve is, and points of a
+        curve are not farther apart than a cell. A curve that no edge of the grid crosses just once is not found.
+
+    Raises
+    ------
+    ValueError
+        If the orbit is no saddle that separates two motions, or for a rectangle or resolution that are not as above.
+    RuntimeError
+        If some boundary is not in the stable set of this orbit, or if a curve can't be followed.
+
+    """
+    sides = Sides.of(orbit)
+    places = _checked_places(components)
+    low, high = _checked_ranges(components, ranges)
+    state = checked_state(orbit.system, others)
+    require_whole("cells", cells, least=2)
+
+    def start(point: FloatArray) -> FloatArray:
+        result = state.copy()
+        result[places] = point
+        return result
+
+    curves = dividing_curves(
+        lambda point: sides.miss(start(point)), low, high, cells, error=SPARE * orbit.flow.tolerance
+    )
+    for point in (point for curve in curves for point in curve.points):
+        sides.require_on_boundary(start(point))
+    return curves
+
+
+def _checked_places(components: tuple[str, str]) -> list[int]:
+    """Return the places of two components in the state, or raise ``ValueError``."""
+    if len(components) != 2 or components[0] == components[1] or not set(components) <= set(COMPONENTS):
+        raise ValueError(f"components = {components!r}: they must be two of {', '.join(COMPONENTS)}")
+    return [COMPONENTS.index(name) for name in components]
+
+
+def _checked_ranges(
+    components: tuple[str, str], ranges: Sequence[tuple[float, float]]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the lower and the upper limits, each of shape (2,), or raise ``ValueError``."""
+    if len(ranges) != 2 or any(len(limits) != 2 for limits in ranges):
+        raise ValueError(f"ranges = {ranges!r}: they must be two pairs of numbers")
+    for name, limits in zip(components, ranges, strict=True):
+        first, last = (finite_number(f"range of {name}", limit) for limit in limits)
+        if not first < last:
+            raise ValueError(f"range of {name} = {first:g} to {last:g}: it must increase")
+    low, high = np.array(ranges, dtype=float).T
+    return low, high

@@ -1,0 +1,401 @@
+"""Where the whirl of a disc loses its stability or its existence, as curves in planes of two parameters.
+
+The paper stops at "the existence region of this complex limit cycle can be investigated analytically by a stability
+analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that
+analysis, for X0 = 0 and any isotropic law of friction. A whirl is known by the ratio of the slip speeds of centre and
+rim, and its torsional balance is left, see :func:`reference_model.formulas.disc.whirl_arm`. That ratio and two
+parameters of the disc make three unknowns, and a boundary has two equations, the balance and
+
+- *Hopf*: Hurwitz' determinant is zero, so that a pair of eigenvalues ±iν is imaginary;
+- *fold*: the constant coefficient is zero; two whirls meet, and an eigenvalue is zero;
+- *onset*: the whirl has no size; there the rotation of the centred disc about the axis loses its stability.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, lru_cache, partial
+from typing import Any, Literal, get_args
+
+import numpy as np
+from scipy.optimize import brentq
+
+from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
+from reference_model.formulas.characteristic_polynomial import Coefficients, characteristic_coefficients
+from reference_model.formulas.disc import pin_of, whirl_arm
+from reference_model.formulas.pin import whirl_radius
+from reference_model.numerics.continuation import follow
+from reference_model.support import require_linear_support
+from reference_model.systems import DiscOnDisc, FloatArray
+
+Kind = Literal["Hopf", "fold", "onset"]
+
+FAST, SLOW = 1, -1
+"""Which of centre and rim slips faster: the sides of U = W, where a ring's friction has no derivative."""
+
+NEAREST = 8.0
+"""Of ln(U/|U − W|), up to which curves are followed.
+
+The friction of a ring has derivatives that grow like this number as U → W, so it is the unknown in which the curves
+are smooth there.
+"""
+
+FARTHEST = 2e-3
+"""Of the same, that is nearly the least U : W or W : U."""
+
+SCALE = 3.0
+"""Change of it that counts as much as a whole range of a parameter."""
+
+INERTIA = "polar_inertia"
+
+SLOWEST = 3e-3
+"""Frequency ν of a pair at which a Hopf curve ends, as a fraction of k: the two are about to become real."""
+
+LINES = 9
+"""On which curves are looked for, in each direction of the plane."""
+
+NODES = 41
+"""Ratios that are tried on each of them."""
+
+INSET = 1e-6
+"""Distance of the outermost lines from the borders of a plane, so that all starts are inside."""
+
+SAME = 3e-3
+"""Distance from a known curve in units of the scales at which a start is taken to lie on it."""
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A rectangle in two parameters of a disc; the others are those of ``disc``.
+
+    Parameters
+    ----------
+    disc : DiscOnDisc
+        The other parameters.
+    names : tuple of str
+        The two parameters, as the fields of ``DiscOnDisc`` are called; all but those of contact and stop.
+    lower, upper : tuple of float
+        Their ranges.
+
+    Raises
+    ------
+    ValueError
+        If a name is no parameter, a range is empty or reaches where no whirl exists at any load, or if there is
+        an offset or a support that is not linear.
+
+    """
+
+    disc: DiscOnDisc
+    names: tuple[str, str]
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        """Refuse a plane in which nothing can be traced."""
+        if self.disc.offset != 0.0:
+            raise ValueError(
+                f"offset = {self.disc.offset:g} m: boundaries are known for whirls without offset"
+            )
+        require_linear_support(self.disc)
+        # A contact that is handed over has a radius of its own.
+        fixed = ("offset", "hardening", "stop_gap", "stop_stiffness", "contact_radius", "contact_points")
+        allowed = [field.name for field in fields(self.disc) if field.name not in fixed]
+        if len(set(self.names)) != 2 or not set(self.names) <= set(allowed):
+            raise ValueError(f"names = {self.names}: they must be two of {', '.join(allowed)}")
+        for name, low, high in zip(self.names, self.lower, self.upper, strict=True):
+            if not low < high:
+                raise ValueError(f"{name} from {low:g} to {high:g}: the range must not be empty")
+            if name == "disc_speed" and low < 0.0 < high:
+                raise ValueError(f"disc_speed from {low:g} to {high:g} rad/s: there is no whirl at rest")
+        for corner in itertools.product(*zip(self.lower, self.upper, strict=True)):
+            whirl_radius(pin_of(self.at(corner)))
+
+    def at(self, values: Iterable[float]) -> DiscOnDisc:
+        """Return the disc with the two parameters of these values."""
+        changes: dict[str, Any] = dict(zip(self.names, map(float, values), strict=True))
+        return replace(self.disc, **changes)
+
+    def lines(self, which: int) -> FloatArray:
+        """Return the values of one parameter on the lines where curves are looked for, shape (LINES,)."""
+        inset = INSET * self.size[which]
+        return np.linspace(self.lower[which] + inset, self.upper[which] - inset, LINES)
+
+    @property
+    def size(self) -> FloatArray:
+        """Length of both ranges, shape (2,)."""
+        return np.subtract(self.upper, self.lower)
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary:
+    """A curve in a plane.
+
+    Parameters
+    ----------
+    kind : str
+        "Hopf", "fold" or "onset".
+    parameters : array of shape (n, 2)
+        The points, in the units of the two parameters.
+    alpha : array of shape (n,)
+        The angle of (24) of the whirl there, in rad: tan α = R|ω − φ̇|/U, π/2 where it has no size.
+    closed : bool
+        Whether the last point is the first one again.
+
+    """
+
+    kind: Kind
+    parameters: FloatArray
+    alpha: FloatArray
+    closed: bool
+
+
+def boundaries(
+    plane: Plane, kind: Kind, contact: IsotropicContact | None = None, *, step: float = 0.03
+) -> tuple[Boundary, ...]:
+    """Return all curves of a kind in ``plane``.
+
+    They are looked for on LINES lines in each direction, the borders among them: only a closed curve between
+    neighbouring lines would not be found.
+
+    Parameters
+    ----------
+    plane : Plane
+        The parameters and their ranges.
+    kind : str
+        "Hopf", "fold" or "onset".
+    contact : IsotropicContact or None
+        Law of friction; None for that of the parameters.
+    step : float
+        Largest distance of neighbouring points, in units of the ranges.
+
+    Raises
+    ------
+    ValueError
+        For an unknown kind, or if the disc rests on single points.
+
+    """
+    return tuple(
+        boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)
+    )
+
+
+def crossings(
+    plane: Plane, kind: Kind, name: str, value: float, contact: IsotropicContact | None = None
+) -> tuple[float, ...]:
+    """Return where a line in ``plane`` crosses the curves of a kind, in increasing order.
+
+    Parameters
+    ----------
+    plane, kind, contact
+        As in :func:`boundaries`.
+    name : str
+        The one of the two parameters that is the same along the line.
+    value : float
+        Its value.
+
+    Returns
+    -------
+    tuple of float
+        Values of the other parameter.
+
+    Raises
+    ------
+    ValueError
+        As :func:`boundaries`; if ``name`` is none of the plane, or ``value`` is not in its range.
+
+    """
+    if name not in plane.names:
+        raise ValueError(f"name = {name!r}: it must be one of {' and '.join(plane.names)}")
+    across = plane.names.index(name)
+    low, high = plane.lower[across], plane.upper[across]
+    if not low <= value <= high:
+        raise ValueError(f"{name} = {value:g}: it must lie between {low:g} and {high:g}, as in the plane")
+    return tuple(
+        sorted(
+            float(point[1 - across])
+            for condition in _conditions(plane, kind, contact)
+            for point in condition.crossings(across, value)
+        )
+    )
+
+
+def _conditions(plane: Plane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
+    """Yield the equations on both sides of U = W and for both signs of ω − Ω, as far as there are such."""
+    if kind not in get_args(Kind):
+        raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
+    law = isotropic_contact_of(plane.disc, contact, "the boundaries")
+    for side in (SLOW, FAST) if kind != "onset" else (SLOW,):
+        for sense in (1.0, -1.0):
+            yield _Condition(plane, kind, law, side, sense)
+
+
+@dataclass(frozen=True, eq=False)
+class _Condition:
+    """The equations of a boundary, for unknowns (two parameters, nearness to U = W), on one side of U = W.
+
+    And for one sign of ω − Ω, because |ω − Ω| has a kink. The onset is where the centre slips no more: it leaves
+    the two parameters.
+    """
+
+    plane: Plane
+    kind: Kind
+    law: IsotropicContact
+    side: int
+    sense: float
+
+    def ratio(self, unknowns: FloatArray) -> tuple[float, float]:
+        """Return slip and rim speed, the larger one being 1."""
+        if self.kind == "onset":
+            return 0.0, 1.0
+        smaller = -math.expm1(-float(unknowns[2]))
+        return (1.0, smaller) if self.side == FAST else (smaller, 1.0)
+
+    def alpha(self, unknowns: FloatArray) -> float:
+        """Return the angle of (24) in rad."""
+        slip, rim = self.ratio(unknowns)
+        return math.atan2(rim, slip)
+
+    @cached_property
+    def at(self) -> Callable[[float, float], tuple[DiscOnDisc, Callable[[float, float], float]]]:
+        """Return the function from two parameters to the disc and its :func:`whirl_arm`."""
+
+        @lru_cache(maxsize=16)  # Newton's method asks for the same ones at several ratios
+        def found(first: float, second: float) -> tuple[DiscOnDisc, Callable[[float, float], float]]:
+            disc = self.plane.at((first, second))
+            return disc, whirl_arm(disc, self.law)
+
+        return found
+
+    def disc(self, unknowns: FloatArray) -> DiscOnDisc:
+        """Return the disc with the two parameters."""
+        return self.at(*unknowns[:2].tolist())[0]
+
+    def balance(self, unknowns: FloatArray) -> float:
+        """Return the torsional balance of the whirl, in N m."""
+        disc, arm = self.at(*unknowns[:2].tolist())
+        torque = disc.shaft_damping * self.sense * (disc.disc_speed - disc.shaft_speed)
+        return disc.friction_force * arm(*self.ratio(unknowns)) - torque
+
+    def coefficients(self, unknowns: FloatArray) -> Coefficients:
+        """Return those of the characteristic equation."""
+        return characteristic_coefficients(self.disc(unknowns), *self.ratio(unknowns), self.law)
+
+    def margin(self, unknowns: FloatArray) -> float:
+        """Return what is zero on the boundary besides the balance."""
+        found = self.coefficients(unknowns)
+        return found.hurwitz if self.kind == "Hopf" else found.constant
+
+    def equations(self, unknowns: FloatArray) -> FloatArray:
+        """Return what is zero on the boundary."""
+        rest = () if self.kind == "onset" else (self.margin(unknowns),)
+        return np.array([self.balance(unknowns), *rest])
+
+    def limits(self, unknowns: FloatArray) -> FloatArray:
+        """Return what is positive inside."""
+        disc = self.disc(unknowns)
+        inside = [
+            *(unknowns[:2] - self.plane.lower),
+            *(self.plane.upper - unknowns[:2]),
+            self.sense * (disc.disc_speed - disc.shaft_speed),
+        ]
+        if self.kind != "onset":
+            inside += [unknowns[2] - FARTHEST, NEAREST - unknowns[2]]
+        if self.kind == "Hopf":
+            slowest = SLOWEST * disc.natural_frequency
+            inside.append(self.coefficients(unknowns).squared_frequency - slowest**2)
+        return np.array(inside)
+
+    def starts(self) -> Iterator[FloatArray]:
+        """Yield the points at which the curves cross the lines."""
+        for across in (0, 1):
+            for value in self.plane.lines(across).tolist():
+                yield from self.crossings(across, value)
+
+    def crossings(self, across: int, value: float) -> Iterator[FloatArray]:
+        """Yield the points of the curves, within the limits, at which one of the parameters has a value."""
+        found = [self.whirl(across, value)] if self.kind == "onset" else self.zeros(across, value)
+        for point in found:
+            if point is not None and np.all(self.limits(point) > 0.0):
+                yield point
+
+    def zeros(self, across: int, value: float) -> Iterator[FloatArray | None]:
+        """Yield the whirls on a line whose :meth:`margin` is zero."""
+        ratios = np.geomspace(FARTHEST, NEAREST, NODES)
+        if self.plane.names[1 - across] != INERTIA:
+
+            def margin(nearness: float) -> float:
+                whirl = self.whirl(across, value, nearness)
+                return math.nan if whirl is None else self.margin(whirl)
+
+            for nearness in _roots(margin, ratios):
+                yield self.whirl(across, value, nearness)
+            return
+
+        # Whirls do not depend on the inertia, only their stability does.
+        def unknowns(inertia: float, nearness: float) -> FloatArray:
+            return np.array([*self.pair(across, value, inertia), nearness])
+
+        inertias = np.linspace(self.plane.lower[1 - across], self.plane.upper[1 - across], NODES)
+        for nearness in _roots(lambda nearness: self.balance(unknowns(float(inertias[0]), nearness)), ratios):
+            along = partial(unknowns, nearness=nearness)
+            yield from map(along, _roots(partial(_composed, self.margin, along), inertias))
+
+    @staticmethod
+    def pair(across: int, value: float, other: float) -> tuple[float, float]:
+        """Return the two parameters on a line."""
+        return (value, other) if across == 0 else (other, value)
+
+    def whirl(self, across: int, value: float, *nearness: float) -> FloatArray | None:
+        """Return the unknowns of the whirl at a ratio on a line, on which one parameter has a value."""
+        along = 1 - across
+        low, high = self.plane.lower[along], self.plane.upper[along]
+
+        def unknowns(other: float) -> FloatArray:
+            return np.array([*self.pair(across, value, other), *nearness])
+
+        def balance(other: float) -> float:
+            return self.balance(unknowns(other))
+
+        # It grows or falls with every parameter, on one side of ω = Ω, so that it has one zero at most.
+        return unknowns(brentq(balance, low, high)) if balance(low) * balance(high) < 0.0 else None
+
+
+def _traced(condition: _Condition, step: float) -> Iterator[Boundary]:
+    """Yield every curve once."""
+    scales = condition.plane.size if condition.kind == "onset" else np.append(condition.plane.size, SCALE)
+    curves: list[FloatArray] = []
+    for start in condition.starts():
+        if any(_near(start / scales, curve) for curve in curves):
+            continue
+        curve = follow(condition.equations, condition.limits, start, scales, step=step)
+        curves.append(curve.points / scales)
+        yield Boundary(
+            condition.kind,
+            curve.points[:, :2],
+            np.array([condition.alpha(point) for point in curve.points]),
+            curve.closed,
+        )
+
+
+def _composed(
+    outer: Callable[[FloatArray], float], inner: Callable[[float], FloatArray], value: float
+) -> float:
+    return outer(inner(value))
+
+
+def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:
+    """Yield a zero of ``function`` between all neighbouring ``nodes`` where it changes its sign."""
+    for (left, low), (right, high) in itertools.pairwise((node, function(node)) for node in nodes.tolist()):
+        if low * high < 0.0:
+            yield float(brentq(function, left, right))
+
+
+def _near(point: FloatArray, curve: FloatArray) -> bool:
+    """Return whether a point lies on the line through the points of a curve, but for its sag."""
+    begin, along = curve[:-1], np.diff(curve, axis=0)
+    share = np.sum((point - begin) * along, axis=1) / np.sum(along**2, axis=1)
+    feet = begin + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
+    return bool(np.min(np.linalg.norm(feet - point, axis=1)) < SAME)

@@ -1,0 +1,284 @@
+"""Linear stability of sliding motions of pin and disc, from analytic Jacobians of eq. 1 and 19.
+
+Eigenvalues are in 1/s and come as tuples of complex numbers, the one that decays slowest first. On an isotropic
+contact nothing depends on the angle of a disc, which drops out of its steady motions: five states are left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.contact.contact_law import Contact, IsotropicContact, contact_of, isotropic_contact_of
+from reference_model.formulas.pin import (
+    equilibrium_position,
+    equilibrium_radius,
+    largest_load_in_words,
+    whirl_frequency,
+    whirl_radius,
+)
+from reference_model.support import Support
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System, checked_state
+
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
+
+
+def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
+    """Return the derivative of the right side of eq. 1 or 19 by the state, for a contact that slides.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    state : array of shape (4,) or (6,)
+        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
+    contact : Contact or None
+        Law of friction of a disc; None for that of the parameters.
+
+    Returns
+    -------
+    array of shape (4, 4) or (6, 6)
+
+    Raises
+    ------
+    ValueError
+        If a point of the contact is at rest, where Coulomb friction has no derivative; if the stop of the support
+        just begins; if the state is none; or if a pin is given a contact.
+
+    """
+    state = checked_state(system, state)
+    size = system.state_size // 2
+    x, y = state[:2]
+    vx, vy = state[size : size + 2]
+    angle, spin = 0.0, 0.0
+    inertia, damping = (np.full(size, value) for value in (system.mass, system.damping))
+    if isinstance(system, DiscOnDisc):
+        angle, spin = state[ANGLE], state[-1]
+        inertia[ANGLE], damping[ANGLE] = system.polar_inertia, system.shaft_damping
+
+    by_place, by_rates = np.zeros((size, size)), -np.diag(damping)
+    by_place[:2, :2] = -Support.of(system).stiffness_matrix(complex(x, y))
+    law = contact_of(system, contact)
+    if system.friction_force > 0.0:
+        omega = system.disc_speed
+        slip = complex(vx + omega * y, vy - omega * x)
+        friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
+        # How u_x, u_y, S and φ, on which friction depends, change with x, y, φ and with their rates.
+        with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
+        by_place += (friction @ with_place)[:size, :size]
+        by_rates += (friction @ with_rates)[:size, :size]
+    by_state = np.hstack((by_place, by_rates)) / inertia[:, np.newaxis]
+    return np.vstack((np.eye(size, 2 * size, size), by_state))
+
+
+def jacobian_without_angle(
+    system: System, state: ArrayLike, contact: IsotropicContact | None = None
+) -> FloatArray:
+    """Return :func:`sliding_jacobian` without row and column of the angle, on which nothing depends.
+
+    Shape (4, 4) of a pin, (5, 5) of a disc. Parameters and errors as there; ``ValueError`` too for single points,
+    whose friction does depend on the angle.
+    """
+    if isinstance(system, PinOnDisc):
+        return sliding_jacobian(system, state, contact)
+    law = isotropic_contact_of(system, contact, "steady motions")
+    jacobian = sliding_jacobian(system, state, law)
+    return np.delete(np.delete(jacobian, ANGLE, axis=0), ANGLE, axis=1)
+
+
+def equilibrium_eigenvalues(
+    system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
+) -> tuple[complex, ...]:
+    """Eigenvalues of an equilibrium in space below which the master disc slides: four of a pin, five of a disc.
+
+    Those of a pin (3) are known in closed form. It slips along the circumference, so friction resists its
+    radial velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. The tangential motion also
+    drives the radial one, but not the other way round: the eigenvalues are the roots of mλ² + βλ + C and
+    mλ² + (β + μN/(|ω|ρ*))λ + C. That is why the equilibrium is always stable, as the paper says below (5),
+    provided that β > 0.
+
+    Those of a disc, and of a pin on a support that is not linear, are the eigenvalues of :func:`sliding_jacobian`
+    without the angle.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    state : array of shape (6,) or None
+        Of the disc whose centre rests in space, see :func:`reference_model.self_centred_equilibria`; a pin
+        needs none.
+    contact : IsotropicContact or None
+        Law of friction of a disc; None for that of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If there is no such equilibrium of a pin, or it is on the axis, where the pin does not slide; if a disc
+        rests on single points, which keep the angle; as :func:`sliding_jacobian`.
+
+    """
+    if isinstance(system, DiscOnDisc):
+        if state is None:
+            raise ValueError("state = None: that of a disc is needed, see self_centred_equilibria()")
+        return slowest_first(np.linalg.eigvals(jacobian_without_angle(system, state, contact)))
+    radius = equilibrium_radius(system)
+    friction_damping = 0.0
+    if system.friction_force > 0.0:
+        if radius == 0.0:
+            raise ValueError(
+                f"friction_force = {system.friction_force:g} N = {largest_load_in_words(system)}: the equilibrium is "
+                "on the axis, where the pin does not slide"
+            )
+        friction_damping = system.friction_force / (abs(system.disc_speed) * radius)
+    if not system.linear_support:
+        return slowest_first(
+            np.linalg.eigvals(sliding_jacobian(system, [*equilibrium_position(system), 0, 0]))
+        )
+    return slowest_first(
+        root
+        for damping in (system.damping, system.damping + friction_damping)
+        for root in _oscillator_eigenvalues(system.mass, damping, system.stiffness)
+    )
+
+
+def turning_frame_jacobian(
+    system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
+) -> FloatArray:
+    """Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
+
+    The state is the position in m and the velocity in m/s (that of the frame at rest), both along the turning
+    axes, and the spin of a disc in rad/s. Without offset eq. 1 and 19 look the same from all directions, so the
+    whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    state : array of shape (4,) or (6,), or None
+        A state on the whirl, with the centre on the x axis: y = vx = 0. A pin has one whirl at most and needs
+        none.
+    contact : IsotropicContact or None
+        Law of friction of a disc; None for that of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If there is no whirl of a pin; if the state can't lie on one; if a disc rests on single points, which
+        keep the angle; as :func:`sliding_jacobian`.
+
+    """
+    state = _state_on_whirl(system, state)
+    jacobian = jacobian_without_angle(system, state, contact)
+    turn = np.zeros_like(jacobian)
+    turn[:4, :4] = np.kron(np.eye(2), QUARTER_TURN)
+    return jacobian - _frequency(system, state) * turn
+
+
+def whirl_eigenvalues(
+    system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
+) -> tuple[complex, ...]:
+    """Eigenvalues of a whirl in the frame that turns with it: an exact zero first, then three or four more.
+
+    The zero belongs to the phase, which is free; for a pin, the other three are the roots of the corrected (13).
+    Parameters and errors as in :func:`turning_frame_jacobian`.
+    """
+    state = _state_on_whirl(system, state)
+    jacobian = turning_frame_jacobian(system, state, contact)
+    # A turn of the whole motion is its free phase: (0, 1) in position, (−κ, 0) in velocity. Taking that
+    # direction out of the matrix leaves the other eigenvalues free of the rounding of a zero among them.
+    phase = np.zeros(len(jacobian))
+    phase[1], phase[2] = 1.0, -_frequency(system, state)
+    others = [i for i in range(len(jacobian)) if i != 1]
+    reduced = jacobian[np.ix_(others, others)] - np.outer(phase[others], jacobian[1, others])
+    return (0j, *slowest_first(np.linalg.eigvals(reduced)))
+
+
+def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
+    """Return the μN in N at which the rotation of a centred disc about the axis loses its stability.
+
+    With the centre on the axis nothing but the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M
+    is the moment of pure spin (R for a ring). Against a small slip u of the centre friction is a damper
+    μN·g/|S| that turns with the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
+
+        mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
+
+    C is the stiffness for small deflections, so that hardening does not matter, nor a stop that has a gap. A motion
+    z ~ exp(±ikt) in the sense of ω neither grows nor decays where μN·g(|ω| − k) = βk|S|, which is linear in μN.
+    Above, up to the load at which the disc sticks (b|ω − Ω| = μN·M), the centred rotation is unstable.
+
+    Parameters
+    ----------
+    disc : DiscOnDisc
+        The parameters, without offset; ``friction_force`` does not matter.
+    contact : IsotropicContact or None
+        Law of friction; None for that of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the rotation is
+        stable at every load; if b = 0 or Ω = ω, where friction lets the disc stick at every load; or if the disc
+        rests on single points.
+
+    """
+    law = isotropic_contact_of(disc, contact, "the onset")
+    speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
+    if disc.offset != 0.0:
+        raise ValueError(f"offset = {disc.offset:g} m: the centre rests on the axis only without an offset")
+    if speed <= k:
+        raise ValueError(
+            f"disc_speed = {disc.disc_speed:g} rad/s: the centred rotation is stable at every load up to the "
+            f"natural frequency {k:g} rad/s, in either sense"
+        )
+    if disc.shaft_damping == 0.0 or disc.disc_speed == disc.shaft_speed:
+        raise ValueError(
+            f"shaft_damping = {disc.shaft_damping:g} N m s/rad, disc_speed - shaft_speed = "
+            f"{disc.disc_speed - disc.shaft_speed:g} rad/s: nothing makes the disc turn against the master disc"
+        )
+    torque = disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
+    against_slip = disc.shaft_damping * law.slopes(0.0, 1.0).resistance_by_slip * (speed - k)
+    damped = disc.damping * k
+    return damped * torque / (against_slip + damped * law.shares(0.0, 1.0).moment)
+
+
+def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
+    """Sort by decreasing real part, conjugates with the positive imaginary part first."""
+    return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
+
+
+def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:
+    if state is None:
+        if isinstance(system, DiscOnDisc):
+            raise ValueError(
+                "state = None: a disc may have several whirls, a state on one is needed, see whirls()"
+            )
+        radius = whirl_radius(system)
+        return np.array([radius, 0.0, 0.0, whirl_frequency(system) * radius])
+    state = checked_state(system, state)
+    x, y, vx = state[0], state[1], state[system.state_size // 2]
+    if x == 0.0 or y != 0.0 or vx != 0.0:
+        raise ValueError(
+            f"x = {x:g} m, y = {y:g} m, vx = {vx:g} m/s: a state on a whirl with its centre on the x axis has "
+            "x != 0 and y = vx = 0"
+        )
+    return state
+
+
+def _frequency(system: System, state: FloatArray) -> float:
+    """Return the angular velocity of the centre about the axis, in rad/s."""
+    return float(state[system.state_size // 2 + 1] / state[0])
+
+
+def _oscillator_eigenvalues(mass: float, damping: float, stiffness: float) -> tuple[complex, complex]:
+    """Both roots of mλ² + βλ + C = 0 for C > 0."""
+    discriminant = damping**2 - 4.0 * mass * stiffness
+    if discriminant < 0.0:
+        oscillating = complex(-damping, math.sqrt(-discriminant)) / (2.0 * mass)
+        return oscillating, oscillating.conjugate()
+    faster = -(damping + math.sqrt(discriminant)) / 2.0
+    # From the product of the roots: the difference would cancel where the damping is strong.
+    return complex(stiffness / faster), complex(faster / mass)

@@ -1,0 +1,59 @@
+"""Claims of yes or no differ where an answer is surely no, and are open where the engine's error leaves one open."""
+
+import numpy as np
+import pytest
+
+from compare.claims.answers import asked, holds
+from compare.claims.claim import Claim, Verdict
+from compare.report.worst import in_short
+
+
+def of(*margins_and_errors, **more):
+    about = {"equation": "", "engine": "good", "parameters": {}, "source": "a test"}
+    return Claim("It is so", **about, **holds(*margins_and_errors, **more))
+
+
+@pytest.mark.parametrize(
+    ("margins", "errors", "verdict", "count"),
+    [
+        ([True, True, True], 0.0, Verdict.AGREES, "3 of 3"),
+        ([True, False, True], 0.0, Verdict.DIFFERS, "2 of 3"),
+        ([0.3, 0.2], 0.1, Verdict.AGREES, "2 of 2"),
+        ([0.3, 0.05], 0.1, Verdict.INCONCLUSIVE, "1 of 2"),
+        ([0.3, -0.05], 0.1, Verdict.INCONCLUSIVE, "1 of 2"),
+        ([0.05, -0.3], 0.1, Verdict.DIFFERS, "0 of 2"),  # one that is open does not excuse the other
+        ([0.3, 0.05], [0.1, 0.01], Verdict.AGREES, "2 of 2"),
+        ([[0.3, 0.3], [0.05, 0.3]], [[0.1], [0.01]], Verdict.AGREES, "4 of 4"),
+        ([0.0], 0.0, Verdict.INCONCLUSIVE, "0 of 1"),
+        ([1.0, np.nan], 0.1, Verdict.DIFFERS, "1 of 2"),
+        ([1.0, 1.0], [0.1, np.nan], Verdict.DIFFERS, "1 of 2"),
+        ([1.0, 1.0], [0.1, np.inf], Verdict.INCONCLUSIVE, "1 of 2"),
+    ],
+)
+def test_answers_are_counted_by_what_is_sure(margins, errors, verdict, count):
+    claim = of(margins, errors)
+    assert claim.verdict is verdict
+    assert in_short(claim) == count
+
+
+def test_so_many_answers_may_be_open_as_are_allowed():
+    margins = np.append(np.ones(1998), [0.0, 0.0])
+    assert of(margins, may_be_open=2).verdict is Verdict.AGREES
+    assert of(margins, may_be_open=1).verdict is Verdict.INCONCLUSIVE
+    assert of(np.append(margins, -1.0), may_be_open=2).verdict is Verdict.DIFFERS
+
+
+def test_an_answer_that_changes_with_the_tolerance_is_open():
+    """At a threshold of 1, an engine whose error is twice its tolerance."""
+
+    def engine(exact):
+        return lambda tolerance: np.array(exact) + 2.0 * tolerance > 1.0
+
+    assert of(*asked(engine([1.5, 2.0]), 0.1)).verdict is Verdict.AGREES
+    assert of(*asked(engine([1.5, 0.9]), 0.1)).verdict is Verdict.INCONCLUSIVE
+    assert of(*asked(engine([1.5, 0.5]), 0.1)).verdict is Verdict.DIFFERS
+
+
+def test_a_margin_within_its_error_is_open_though_the_answer_does_not_change():
+    claim = of(*asked(lambda tolerance: [1.5 - 1.0, 1.0 + tolerance - 1.0], 0.1))
+    assert (claim.verdict, in_short(claim)) == (Verdict.INCONCLUSIVE, "1 of 2")

@@ -1,0 +1,258 @@
+"""What a verdict is worth as evidence: by the claim, by the engine, and by the verdicts beside it."""
+
+import json
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fake_studies import GOOD, claim, draw_nothing, straight
+
+from compare.claims.claim import THEORY, Verdict
+from compare.claims.evidence import evidence_of
+from compare.claims.study import Findings, Study
+from compare.engines import Engine, engines, exudyn, exudyn_native, reference
+from compare.report.matrix import State
+from compare.report.page import summary
+from compare.report.write import write_report
+from compare.run.runner import Run, run
+from compare.studies import STUDIES, studies
+from compare.studies.claim_list import as_text, listed_claims
+
+
+@pytest.mark.parametrize(
+    ("engine", "about", "evidence"),
+    [
+        ("exudyn", {}, "independent"),
+        ("exudyn", {"kind": "conservation"}, "independent"),
+        ("exudyn", {"kind": "trajectory"}, "independent"),
+        ("mypackage.mymodule:simulate", {"kind": "trajectory"}, "independent"),
+        ("reference", {"kind": "trajectory"}, "self-check"),
+        ("compiled", {"kind": "trajectory"}, "self-check"),  # it has the reference's closed forms
+        ("reference", {"kind": "trajectory", "basis": "independent"}, "independent"),
+        ("reference", {"kind": "conservation", "basis": "reference"}, "self-check"),
+        ("exudyn", {"kind": "conservation", "basis": "reference"}, "independent"),
+        ("exudyn", {"basis": "self-check"}, "self-check"),
+        (THEORY, {}, "algebra"),
+        (THEORY, {"kind": "trajectory"}, "self-check"),  # simulated by the reference
+        (THEORY, {"basis": "independent"}, "independent"),
+    ],
+)
+def test_the_engine_decides_whether_a_prediction_is_its_own(engine, about, evidence):
+    assert evidence_of(claim("c", engine, 0.0, 0.0, 1.0, **about)) == evidence
+
+
+RESTS, CIRCLE, OTHER = "It rests there", "So it rests on the circle", "It whirls elsewhere"
+
+
+def measured(engine, rests=0.0, basis="independent"):
+    made = (
+        claim(RESTS, engine.name, 0.0, rests, 1e-9, basis=basis),
+        claim(CIRCLE, engine.name, 0.0, 0.0, 1e-9, implied_by=RESTS),
+        claim(OTHER, engine.name, 0.0, 0.0, 1e-9),
+    )
+    return Findings(made)
+
+
+def measured_wrongly(engine):
+    return measured(engine, rests=1.0)
+
+
+def measured_with_its_own_law(engine):
+    return measured(engine, basis="reference")
+
+
+def study_of(measure, **more):
+    return Study("rests", "Rest and whirl", "They are.", measure, draw_nothing, **more)
+
+
+def kinds(folder, study, *of):
+    result = run((study,), of or (GOOD,), folder=folder / "data")
+    (group,) = write_report(result, folder).groups
+    return {row.sentence: {name: cell.evidence for name, cell in row.cells.items()} for row in group.rows}
+
+
+def test_what_follows_from_a_claim_that_agrees_adds_nothing(tmp_path):
+    found = kinds(tmp_path, study_of(measured))
+    assert [each["good"] for each in found.values()] == ["independent", "implied", "independent"]
+
+
+def test_what_follows_from_a_claim_that_differs_stands_for_itself(tmp_path):
+    found = kinds(tmp_path, study_of(measured_wrongly))
+    assert [each["good"] for each in found.values()] == ["independent"] * 3
+
+
+def test_a_self_check_does_not_imply_independent_evidence(tmp_path):
+    """(4) needs no law of friction: it is evidence about an engine whose place of rest is predicted with its own."""
+    found = kinds(tmp_path, study_of(measured_with_its_own_law), reference, exudyn)
+    assert found[RESTS] == {"reference": "self-check", "exudyn": "independent"}
+    assert found[CIRCLE] == {"reference": "independent", "exudyn": "implied"}
+
+
+def test_an_engine_with_another_contact_repeats_its_kin_but_where_the_contact_decides(tmp_path):
+    (named,) = engines(["exudyn-native"])
+    for contact, evidence in ((False, "implied"), (True, "independent")):
+        found = kinds(tmp_path / str(contact), study_of(measured, contact=contact), exudyn, named)
+        assert found[OTHER] == {"exudyn": "independent", "exudyn-native": evidence}
+    alone = kinds(tmp_path / "alone", study_of(measured), named)
+    assert alone[OTHER] == {"exudyn-native": "independent"}  # there is nothing that it would repeat
+
+
+def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
+    usual = next(engine for engine in engines() if engine.name == exudyn_native.name)
+    (named,) = engines([exudyn_native.name])
+    assert (usual.contact_only, named.contact_only) == (True, False)
+    about_contact = {study.name for study in STUDIES if study.contact}
+    assert about_contact == {
+        "whirl-stability",
+        "contact-laws",
+        "trajectories",
+        "power-balance",
+        "connector",
+    }
+    asked = Run(STUDIES, ("exudyn", usual.name), contact_only=(usual.name,))
+    assert {study.name for study in STUDIES if usual.name in asked.columns(study)} == about_contact
+    everything = Run(STUDIES, ("exudyn", usual.name))
+    assert len([study for study in STUDIES if usual.name in everything.columns(study)]) > 15
+
+
+def measured_and_told(engine):
+    return replace(measured(engine), data={"contact only": np.array(float(engine.contact_only))})
+
+
+def test_findings_where_the_contact_decides_are_not_taken_for_all_of_an_engine(tmp_path):
+    study = study_of(measured_and_told, contact=True)
+    part = Engine("part", straight, contact_only=True)
+    for engine in (part, replace(part, contact_only=False), part):
+        found = run((study,), (engine,), folder=tmp_path, resume=True).outcomes["rests", "part"]
+        assert found.data["contact only"] == float(engine.contact_only)
+
+
+@pytest.mark.parametrize(
+    ("name", "sentences"),
+    [
+        ("trajectories", {"a pin", "a pin that sticks on its way", "a disc on six points"}),
+        ("power-balance", {"six points thrown on a table, to rest"}),
+    ],
+)
+def test_the_motions_of_the_contact_alone_are_among_those_of_its_study(name, sentences):
+    (study,) = studies([name])
+    resting = Engine("resting", straight, ("pin", "points"), contact_only=True)
+    found = {made.sentence.split(": ")[1] for made in study.measure(resting).claims}
+    assert found == sentences
+
+
+def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
+    (study,) = studies(["whirl-stability"])
+    part = replace(reference, contact_only=True)
+    found = study.measure(part, speeds=(1.5,)).claims
+    assert [made.sentence.split(" with ")[1].split(" where")[0] for made in found] == [
+        "the radius μN/(βk)",
+        "the frequency k",
+    ]
+    assert {made.verdict for made in found} == {Verdict.AGREES}
+
+
+@pytest.fixture(scope="module")
+def reported(tmp_path_factory):
+    """Matrix and folder of a report on the reference and Exudyn, with something of every kind."""
+    folder = tmp_path_factory.mktemp("evidence")
+    study = study_of(measured_with_its_own_law, theory=theory)
+    native_too = replace(exudyn_native, function=straight)
+    matrix = write_report(run((study,), (reference, exudyn, native_too), folder=folder / "data"), folder)
+    return matrix, folder
+
+
+def theory():
+    return Findings((claim("The forms are one", THEORY, 0.0, 0.0, 1e-9),))
+
+
+def test_the_first_line_counts_independent_evidence_first(reported):
+    matrix, folder = reported
+    line = (
+        "4 agree on independent evidence, besides 1 by self-check, 1 of algebra and 1 implied; "
+        "0 differ, 0 inconclusive"
+    )
+    assert summary(matrix) == line
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    assert f'<p class="totals" id="totals"><strong>{line}.</strong></p>' in page
+    assert f"<title>Friction discs: {line}</title>" in page
+
+
+def test_the_page_says_what_each_kind_means_and_from_what_a_verdict_follows(reported):
+    page = (reported[1] / "index.html").read_text(encoding="utf-8")
+    (legend,) = re.findall(r'<dl class="legend kinds">(.*?)</dl>', page, flags=re.DOTALL)
+    assert re.findall("<dt>(.*?)</dt>", legend) == ["independent", "self-check", "algebra", "implied"]
+    assert (
+        page.count(f'implied by <a href="#rests-2" title="{RESTS}">no.&nbsp;2</a>') == 2
+    )  # matrix and table
+    assert page.count("Exudyn with its built-in contact in place of the connector") == 1
+
+
+def test_programs_see_the_kind_of_each_verdict(reported):
+    matrix, folder = reported
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert {kind: counts["agrees"] for kind, counts in results["evidence"].items()} == {
+        "independent": 4,
+        "self-check": 1,
+        "algebra": 1,
+        "implied": 1,
+    }
+    claims = {(made["engine"], made["sentence"]): made for made in results["studies"][0]["claims"]}
+    assert claims["reference", RESTS]["evidence"] == "self-check"
+    assert (claims["exudyn", CIRCLE]["evidence"], claims["exudyn", CIRCLE]["follows_from"]) == (
+        "implied",
+        RESTS,
+    )
+    cases = {
+        (case.get("classname"), case.get("name")): {
+            each.get("name"): each.get("value") for each in case.iter("property")
+        }
+        for case in ET.parse(folder / "junit.xml").iter("testcase")
+    }
+    assert cases["rests.exudyn", CIRCLE] == {"kind": "formula", "evidence": "implied", "implied by": RESTS}
+    assert cases["rests.theory", "The forms are one"]["evidence"] == "algebra"
+    assert sum(matrix.of_evidence("independent").values()) == 4
+
+
+def test_matrix_and_table_show_one_number(tmp_path):
+    """Of a claim whose smallest budget is far from its largest."""
+
+    def budgets(engine):
+        differences, allowed = np.array([1e-13, 9e-6, 2e-5]), np.array([1e-12, 1e-5, 1e-3])
+        return Findings(
+            (claim("Three numbers", engine.name, np.zeros(3), differences, allowed, resolution=1.0),)
+        )
+
+    matrix = write_report(run((study_of(budgets),), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    cell = matrix.groups[0].rows[0].cells["good"]
+    assert (cell.state, cell.number) == (State.AGREES, "±\N{NO-BREAK SPACE}1.0×10⁻⁵ m")
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert page.count(f'<small class="within">{cell.number}</small>') == 2
+    assert '<data value="9e-06">' in page
+    assert 'largest <data value="2e-05">' in page
+    (made,) = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"]
+    assert made["decided_by"] == {
+        "element": 1,
+        "difference": 9e-6,
+        "allowed": 1e-5,
+        "largest_difference": 2e-5,
+    }
+
+
+def test_what_implies_a_claim_is_a_claim_of_the_same_study_that_follows_from_none():
+    found = 0
+    for study, claims in listed_claims().items():
+        for sentence, listed in claims.items():
+            assert listed["basis"] in ("independent", "reference", "self-check"), (study, sentence)
+            if listed["implied_by"]:
+                found += 1
+                assert listed["implied_by"] in claims, (study, sentence)
+                assert not claims[listed["implied_by"]]["implied_by"], (study, sentence)
+    assert found > 8
+
+
+def test_the_list_of_claims_is_written_as_it_is_read():
+    claims = listed_claims()
+    assert json.loads(as_text(claims)) == claims

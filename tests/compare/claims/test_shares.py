@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from compare.claims.shares import CONFIDENCE, of_grid, of_sample
+from reference_model.ensemble import EndState
+
+WHIRL, UNDECIDED, STUCK = EndState.WHIRL, EndState.UNDECIDED, EndState.STUCK
+
+
+@pytest.mark.parametrize("probability", [0.03, 0.5, 0.9])
+def test_the_interval_of_a_sample_holds_the_probability_as_often_as_it_says(probability):
+    n = 200
+    counts = np.arange(n + 1)
+    holds = np.zeros(n + 1)
+    for count in counts:
+        ends = np.full(n, STUCK, dtype=np.uint8)
+        ends[:count] = WHIRL
+        share = of_sample(ends)[WHIRL]
+        assert share.value == count / n
+        holds[count] = share.low <= probability <= share.high
+    covered = float(np.sum(holds * stats.binom.pmf(counts, n, probability)))
+    assert abs(covered - CONFIDENCE) < 0.03  # Wilson's interval is not exact
+
+
+@pytest.mark.parametrize("count", [0, 1, 70, 199, 200])
+def test_the_interval_of_a_sample_is_that_of_wilson(count):
+    n = 200
+    ends = np.full(n, STUCK, dtype=np.uint8)
+    ends[:count] = WHIRL
+    share = of_sample(ends)[WHIRL]
+    interval = stats.binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
+    np.testing.assert_allclose((share.low, share.high), (interval.low, interval.high), rtol=1e-13)
+
+
+def test_undecided_trajectories_may_be_anything():
+    ends = np.array([WHIRL] * 50 + [UNDECIDED] * 50, dtype=np.uint8)
+    shares = of_sample(ends)
+    assert shares[WHIRL].low < 0.5
+    assert shares[WHIRL].high > 0.99
+    assert shares[STUCK].low == 0.0
+    assert shares[STUCK].high == shares[UNDECIDED].high
+
+
+def test_bounds_of_a_grid_hold_the_area_and_close_like_the_distance_of_its_points():
+    widths = []
+    for n in (41, 81, 161):
+        y, x = np.mgrid[0.0 : 1.0 : n * 1j, 0.0 : 1.0 : n * 1j]
+        inside = (x - 0.47) ** 2 + (y - 0.52) ** 2 < 0.09
+        share = of_grid(np.where(inside, WHIRL, STUCK).astype(np.uint8))[WHIRL]
+        assert share.low < 0.09 * np.pi < share.high
+        assert share.low < share.value < share.high
+        widths.append(share.high - share.low)
+    np.testing.assert_allclose(np.log2(np.divide(widths[:-1], widths[1:])), 1.0, atol=0.1)
+
+
+def test_an_undecided_corner_of_a_cell_leaves_its_area_open():
+    ends = np.full((3, 3), WHIRL, dtype=np.uint8)
+    ends[1, 1] = UNDECIDED
+    shares = of_grid(ends)
+    assert (shares[WHIRL].low, shares[WHIRL].value, shares[WHIRL].high) == (0.0, 0.75, 1.0)
+    assert (shares[STUCK].low, shares[STUCK].value, shares[STUCK].high) == (0.0, 0.0, 1.0)
+    assert shares[UNDECIDED].value == 0.25

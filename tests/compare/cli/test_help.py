@@ -1,0 +1,93 @@
+"""Every example in a help text or a document is a command that is understood; those that take no time are run."""
+
+import re
+import shlex
+
+import pytest
+import typer
+from processes import ROOT
+
+import compare.cli.sweep
+import compare.judge.judge
+import compare.run.runner
+from compare.cli import commands as cli
+from compare.engines import Engine
+from compare.sweep.compute.store import SweepStore
+
+COMMAND = "friction-discs "
+
+
+def help_texts(command=None, path="friction-discs"):
+    """Yield name and help text of every command."""
+    command = command or typer.main.get_command(cli.app)
+    yield path, command.help
+    for name, part in getattr(command, "commands", {}).items():
+        yield from help_texts(part, f"{path} {name}")
+
+
+def examples(text):
+    """Return the lines that begin with the command, each with those below it that are indented further."""
+    found, margin = [], None
+    for line in text.splitlines():
+        indent = len(line) - len(line.lstrip())
+        if line.lstrip().startswith(COMMAND):
+            found.append(line.strip())
+            margin = indent
+        elif margin is not None and line.strip() and indent > margin:
+            found[-1] += f" {line.strip()}"
+        else:
+            margin = None
+    return found
+
+
+def code(document):
+    return "\n".join(re.findall(r"```\w*\n(.*?)```", document.read_text(), re.DOTALL))
+
+
+HELP = [(name, example) for name, text in help_texts() for example in examples(text)]
+DOCUMENTS = [
+    (path.name, example)
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+    for example in examples(code(path))
+]
+
+
+class Understood(BaseException):
+    """The arguments have been looked at, and the work would begin."""
+
+
+@pytest.fixture
+def idle(monkeypatch, tmp_path):
+    """No work is done, and nothing is written where this process was started."""
+
+    def stop(*arguments, **options):
+        raise Understood
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(compare.run.runner, "run", stop)
+    monkeypatch.setattr(compare.judge.judge, "judge", stop)
+    monkeypatch.setattr(Engine, "simulate", stop)
+    monkeypatch.setattr(compare.cli.sweep, "_executor", stop)
+    monkeypatch.setattr(SweepStore, "open", stop)
+
+
+@pytest.mark.parametrize(
+    ("where", "example"), [pytest.param(*pair, id=": ".join(pair)) for pair in HELP + DOCUMENTS]
+)
+def test_an_example_is_understood(where, example, idle, capsys):
+    arguments = shlex.split(example, comments=True)[1:]
+    try:
+        status = cli.status(arguments)
+    except Understood:
+        return
+    output, errors = capsys.readouterr()
+    assert (status, errors) == (0, "")
+    assert output
+    assert arguments[0] in ("list", "errata") or arguments[-1] == "--help"
+
+
+def test_every_command_has_an_example_of_its_own():
+    assert {name for name, _ in HELP} == {name for name, _ in help_texts()}
+    for name, example in HELP:
+        assert example.startswith(name) or name == "friction-discs"
+    assert len(DOCUMENTS) > 10

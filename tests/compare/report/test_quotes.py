@@ -1,0 +1,99 @@
+"""A text quotes what a claim measured, with the digits that its error allows, or says that it was not measured."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from fake_studies import VERDICTS, claim, straight
+
+from compare.claims.study import Findings
+from compare.engines import Engine
+from compare.report import quotes
+from compare.report.quotes import filled, quote
+from compare.report.write import write_report
+from compare.run.runner import run
+
+NAMED = {"unit": "m", "named": {"place": 0}}
+CLAIMS = (
+    claim("The radius", "theory", 0.05, 0.0512345678, 1e-6, **NAMED),
+    claim("The radius", "good", 0.05, 0.05123, 2e-4, **NAMED),
+    claim("The error", "good", [1.0, 2.0], [1.0, 2.001], [0.002, 0.004], named={"all": None, "second": 1}),
+)
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ("place", "0.051235"),
+        ("place, 3 digits", "0.0512"),
+        ("place, good", "0.05123"),
+        ("place, mm, 3 digits", "51.2"),
+        ("place, rpm", "0.489254"),
+        ("place, turns, 2 digits", "0.0082"),
+        ("place, %, 2 digits", "5.1"),
+        ("place, ±, good", "0.05123 ± 0.0002"),
+        ("place, error, good", "0.00020"),
+        ("all, difference", "0.0010"),
+        ("all, error, 1 digit", "0.004"),
+        ("all, difference, relative", "0.00050"),
+        ("second", "2.001"),
+        ("second, % from 2", "+0.050"),
+        ("second, % from 4, 2 digits", "−50"),
+    ],
+)
+def test_a_quote_says_what_it_is_asked_for(words, text):
+    found = quote(CLAIMS, words)
+    assert found is not None
+    assert found.text == text
+
+
+def test_a_quote_knows_its_number_its_error_and_its_nature():
+    found = quote(CLAIMS, "place, mm, good")
+    assert (found.value, found.error, found.nature) == (pytest.approx(51.23), pytest.approx(0.2), "measured")
+    assert quote(CLAIMS, "all, error").nature == "error"
+    assert quote(CLAIMS, "place, bad") is None
+    with pytest.raises(ValueError, match="names all numbers of a claim"):
+        quote(CLAIMS, "all")
+
+
+def test_a_text_without_its_claim_says_so():
+    assert filled("{place, 2 digits} m and {nothing} m", CLAIMS) == "0.051 m and (not measured) m"
+
+
+def test_a_claim_has_no_name_for_an_element_that_it_does_not_have():
+    with pytest.raises(ValueError, match="'far' is element 1 of 1"):
+        claim("The radius", "good", 0.05, 0.05, 1e-6, named={"far": 1})
+
+
+def quoted(engine):
+    """Return one claim that agrees, with a name."""
+    return Findings((claim("The radius", engine.name, 0.05, 0.05 + 1e-8, 1e-7, **NAMED),))
+
+
+STUDY = replace(
+    VERDICTS,
+    measure=quoted,
+    theory=None,
+    draw=lambda data: {},
+    finding="It rests at {place, 2 digits} m.",
+    paper="The radius is {place} m.",
+)
+
+
+def page_of(study, folder):
+    write_report(run((study,), (Engine("one", straight),), folder=folder / "data"), folder)
+    return (folder / "index.html").read_text(encoding="utf-8")
+
+
+def test_the_page_links_each_quote_to_its_claim_and_tells_its_error(tmp_path):
+    page = page_of(STUDY, tmp_path)
+    first = re.escape(f'<a class="quote" href="#{STUDY.name}-1" title="± 1.0×10⁻⁷, one: The radius">')
+    assert re.search(f"<li>It rests at {first}0.050</a> m\\.", page)
+    assert re.search(f"<p>The radius is {first}0.0500000</a> m\\.", page)
+    assert f'<tbody id="{STUDY.name}-1">' in page
+
+
+def test_a_finding_whose_number_was_not_measured_is_none(tmp_path):
+    page = page_of(replace(STUDY, finding="It rests at {nowhere} m."), tmp_path)
+    assert "It rests at" not in page
+    assert quotes.MISSING not in page

@@ -1,0 +1,409 @@
+import base64
+import json
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import groupby
+
+import pytest
+from fake_studies import AGREEMENT, PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, straight
+from processes import ROOT
+
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.errata import Erratum, Evidence
+from compare.claims.study import Recorded
+from compare.cli.commands import status
+from compare.engines import EVERY_KIND, Engine
+from compare.report.matrix import WORST_FIRST, State
+from compare.report.page import summary
+from compare.report.quotes import parts
+from compare.report.write import write_report
+from compare.run.runner import run
+from compare.studies import STUDIES
+
+
+class Cells(HTMLParser):
+    """Collects what the cells of all tables say: [class of table, id of body, label, text, numbers]."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.cells, self.links, self.ids = [], [], []
+        self._table = self._body = self._label = ""
+        self._open = False
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.ids += [attributes["id"]] if "id" in attributes else []
+        self.links += [attributes["href"]] if "href" in attributes else []
+        if tag == "table":
+            self._table = attributes.get("class")
+        elif tag == "tbody":
+            self._body = attributes.get("id", "")
+        elif tag in ("td", "th"):
+            self._open = True
+            self.cells.append([self._table, self._body, attributes.get("data-label"), "", []])
+        elif tag == "data" and self._open:
+            self.cells[-1][4].append(float(attributes["value"]))
+
+    def handle_endtag(self, tag):
+        self._open = self._open and tag not in ("td", "th")
+
+    def handle_data(self, text):
+        if self._open:
+            self.cells[-1][3] += text
+
+
+@pytest.fixture(scope="module")
+def page(reported):
+    return (reported[1] / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def cells(page):
+    return Cells(page)
+
+
+@pytest.fixture(scope="module")
+def results(reported):
+    return json.loads((reported[1] / "results.json").read_text(encoding="utf-8"))
+
+
+def test_the_totals_are_those_of_the_claims(results, page):
+    gaps = {"failed": 4, "missing": 0, "not simulated": 0}
+    assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
+    assert (
+        "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed." in page
+    )
+    verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
+    for verdict in ("agrees", "differs", "inconclusive"):
+        assert verdicts.count(verdict) == results["totals"][verdict]
+
+
+def test_every_number_of_results_json_is_in_the_table_of_its_study(results, cells):
+    tables = [cell for cell in cells.cells if cell[0] == "claims"]
+    labels = {
+        "Predicted": "predicted",
+        "Measured": "measured",
+        "Difference": "difference",
+        "Numerical error": "numerical_error",
+        "Model error": "model_error",
+        "Resolution": "resolution",
+    }
+    for label, name in labels.items():
+        shown = [number for cell in tables if cell[2] == label for number in cell[4]]
+        claims = [claim for study in results["studies"] for claim in study["claims"]]
+        assert len(shown) == len(claims)
+        for number, claim in zip(shown, claims, strict=True):
+            wanted = claim[name]
+            assert number == wanted or (isinstance(wanted, list) and number in wanted)
+
+
+def test_an_array_shows_its_worst_element(results, cells):
+    (claim,) = [
+        c for study in results["studies"] for c in study["claims"] if isinstance(c["predicted"], list)
+    ]
+    worst = max(range(21), key=lambda i: claim["difference"][i])
+    shown = [cell for cell in cells.cells if "of 21" in cell[3]]
+    assert [cell[4] for cell in shown] == [[claim["predicted"][worst]]]
+    assert f"no. {worst + 1} of 21" in shown[0][3]
+
+
+def test_the_matrix_says_every_verdict_in_a_word_and_a_mark(cells):
+    said = [
+        cell[3].split()
+        for cell in cells.cells
+        if cell[0] == "matrix" and cell[2] in ("theory", "good", "failing")
+    ]
+    for mark, word in (("✓", "agrees"), ("✗", "differs"), ("?", "inconclusive"), ("!", "failed")):
+        assert [mark, word] in [text[:2] for text in said]
+
+
+def test_what_must_not_be_overlooked_stands_below_the_totals(page):
+    (listed,) = re.findall(r'<ul class="exceptions">(.*?)</ul>', page, flags=re.DOTALL)
+    lines = [" ".join(re.sub("<[^>]*>", "", line).split()) for line in listed.split("</li>")][:-1]
+    assert lines == [
+        "! failed failing: Fig. 3: self-centring of the pin at low speed: "
+        "the step size became too small at t = 3.2 s: try a larger tolerance",
+        "✗ differs good: The equilibrium is lost at the load of eq. (5)",
+        "? inconclusive good: The time of release follows from eq. (7)",
+    ]
+
+
+def test_a_failed_engine_gives_its_reason(results, page):
+    unit = results["studies"][0]["units"]["failing"]
+    assert unit["state"] == "failed"
+    assert unit["reason"] == "the step size became too small at t = 3.2 s: try a larger tolerance"
+    assert page.count(unit["reason"]) >= 2
+
+
+def test_links_lead_somewhere_and_the_page_asks_for_nothing(page, cells, reported):
+    for link in cells.links:
+        assert link[1:] in cells.ids if link.startswith("#") else (reported[1] / link).exists()
+    sources = re.findall(r'(?:src|href)="([^"]*)"', page)
+    assert all(source.startswith(("data:", "#", "results.json", "figures/")) for source in sources)
+    assert "@import" not in page
+    assert "url(" not in page
+    assert "<script" not in page
+
+
+def test_the_page_holds_the_very_figures_of_the_folder(page, reported):
+    for name, kind in (("fake-radius.svg", "image/svg+xml"), ("fake-motion.gif", "image/gif")):
+        content = (reported[1] / "figures" / name).read_bytes()
+        assert f"data:{kind};base64,{base64.b64encode(content).decode()}" in page
+    assert (reported[1] / "figures" / "fake-radius.png").read_bytes().startswith(b"\x89PNG")
+    assert "Radius of the equilibrium over the load: both engines on the formula (3)." in page
+
+
+def test_each_study_says_how_to_repeat_it(page):
+    assert "friction-discs report verdicts --engine good" in page
+    assert "friction-discs report agreement --engine failing" in page
+
+
+def test_parameters_and_their_source_are_there(page):
+    assert "mass = 1, stiffness = 1, damping = 0.1, disc_speed = 0.7, offset = 0.1." in page
+    assert "assumption: any set within (5), the paper prints none for Fig. 3" in page
+
+
+def test_the_report_does_not_tell_where_it_was_made(page, reported):
+    for name in ("results.json", "junit.xml"):
+        page += (reported[1] / name).read_text(encoding="utf-8")
+    assert str(ROOT) not in page
+    assert str(reported[1]) not in page
+
+
+def test_junit_has_a_case_for_each_claim_and_engine(reported, results):
+    root = ET.parse(reported[1] / "junit.xml").getroot()
+    cases = list(root.iter("testcase"))
+    totals = results["totals"]
+    assert len(cases) == sum(totals.values()) == int(root.get("tests"))
+    for tag, attribute, state in (
+        ("failure", "failures", "differs"),
+        ("skipped", "skipped", "inconclusive"),
+        ("error", "errors", "failed"),
+    ):
+        found = [case for case in cases if case.find(tag) is not None]
+        assert len(found) == totals[state] == int(root.get(attribute))
+    (failure,) = root.iter("failure")
+    assert failure.get("message").startswith(
+        "predicted 0.1 N, measured 0.1004 N, difference 0.00040, allowed "
+    )
+    assert {case.get("classname") for case in cases} >= {
+        "verdicts.theory",
+        "verdicts.good",
+        "agreement.failing",
+    }
+
+
+@pytest.fixture(scope="module", params=["first", "resumed"])
+def partly_reported(request, tmp_path_factory):
+    """Matrix and folder of a report with engines that simulate all, some, and a pin only."""
+    folder = tmp_path_factory.mktemp("partly")
+    engines = (
+        Engine("all", straight, EVERY_KIND),
+        Engine("some", straight, ("pin", "points")),
+        Engine("pins", straight),
+    )
+    for resume in (False, True) if request.param == "resumed" else (False,):
+        result = run((PARTLY, RING_ONLY), engines, folder=folder / "data", resume=resume)
+    return result, write_report(result, folder), folder
+
+
+def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported):
+    result, matrix, _ = partly_reported
+    states = {
+        row.sentence: {column: cell.state for column, cell in row.cells.items()}
+        for row in matrix.groups[0].rows
+    }
+    yes, no = State.AGREES, State.NOT_SIMULATED
+    assert states == {
+        PIN: {"all": yes, "some": yes, "pins": yes},
+        POINTS: {"all": yes, "some": yes, "pins": no},
+        RING: {"all": yes, "some": no, "pins": no},
+    }
+    (row,) = matrix.groups[1].rows
+    assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
+    assert row.cells["pins"].state is State.NOT_SIMULATED
+    assert matrix.totals == {yes: 7, no: 5}
+    assert summary(matrix) == "7 agree on independent evidence; 0 differ, 0 inconclusive, 5 not simulated"
+    assert set(result.data(RING_ONLY)) == {"all"}  # the others have nothing to draw
+
+
+def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
+    page = (partly_reported[2] / "index.html").read_text(encoding="utf-8")
+    reason = "some does not simulate a disc on a continuous ring"
+    (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
+    assert legend.count(reason) == 1
+    assert page.count(reason) == 3  # besides, one a study
+    assert (
+        page.count("2 claims: pins does not simulate a disc on single points or a disc on a continuous ring")
+        == 1
+    )
+    said = {
+        table: [" ".join(c[3].split()) for c in Cells(page).cells if c[0] == table and c[2] == "some"]
+        for table in ("overview", "matrix")
+    }
+    assert said["overview"] == [
+        "2 of 2 agree",  # independent evidence
+        "2 of 2 agree, 2 not simulated",
+        "2 of 2 agree, 1 not simulated",
+        "1 not simulated",
+    ]
+    assert said["matrix"] == ["✓ agrees", "✓ agrees", "∅ not simulated", "∅ not simulated"]
+    assert '<ul class="exceptions">' not in page
+
+
+@pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (VERDICTS, False)])
+def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tmp_path, study, shown):
+    study = replace(study, finding="Straight on.")
+    engines = (Engine("one", straight, EVERY_KIND), Engine("pins", straight))
+    write_report(run((study,), engines, folder=tmp_path / "data"), tmp_path)
+    assert ("<li>Straight on." in (tmp_path / "index.html").read_text(encoding="utf-8")) == shown
+
+
+GIVEN = {
+    "basins": ["0.3 m", "0.5 m", "0.4 m"],
+    "fig11": ["0.1 m"],
+    "drivetrain-frozen": ["10 %", "1.4 N", "0.2 N"],
+}
+"""What a finding says of parameters, which no claim measures."""
+
+
+def test_numbers_of_a_finding_are_quoted_from_claims():
+    found = [study for study in STUDIES if study.finding]
+    assert {study.name for study in found} >= {"fig11", "stability-map"}
+    for study in found:
+        words = "".join(literal for literal, _ in parts(study.finding))
+        assert re.findall(r"[\d.]*\d (?:%|N|mm|m|s|1/s)(?!\w)", words) == GIVEN.get(study.name, [])
+        assert any(quoted for _, quoted in parts(study.finding))
+
+
+def test_a_caption_and_a_paragraph_have_no_brace_but_of_a_quote():
+    for study in STUDIES:
+        for text in (study.finding, study.paper, *study.figures.values()):
+            assert all(quoted != "" for _, quoted in parts(text))
+
+
+def test_studies_of_a_section_stand_together():
+    sections = [study.section for study in STUDIES]
+    assert all(sections)
+    assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
+
+
+def test_programs_see_what_is_not_simulated(partly_reported):
+    _, _, folder = partly_reported
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert results["totals"]["not simulated"] == 5
+    units = results["studies"][1]["units"]
+    assert {name: unit["state"] for name, unit in units.items()} == {
+        "all": "finished",
+        "some": "not simulated",
+        "pins": "not simulated",
+    }
+    assert units["some"]["reason"] == "some does not simulate a disc on a continuous ring"
+    root = ET.parse(folder / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
+
+
+def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
+    matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
+    (row,) = matrix.groups[0].rows
+    assert row.cells["pins"].state is State.NOT_SIMULATED
+    assert summary(matrix) == "0 agree on independent evidence; 0 differ, 0 inconclusive, 1 not simulated"
+
+
+def recorded():
+    """Return what two engines of others made of two claims: one agrees with both, the other with neither."""
+
+    def claims(name, off):
+        budget = ErrorBudget(1e-3, resolution=0.1)
+        about = {
+            "equation": "",
+            "engine": name,
+            "parameters": {},
+            "source": "a test",
+            "unit": "m",
+            "budget": budget,
+        }
+        return (
+            Claim("A pin slides", predicted=0.0, measured=off, **about),
+            Claim("A disc slides", predicted=0.0, measured=1e-4 + off, **about),
+        )
+
+    return (
+        Recorded("Kite", "cone", "1.2", "2026-01-31", claims("Kite, cone", 0.0)),
+        Recorded("Kite", "box", "1.2", "2026-01-31", claims("Kite, box", 0.25)),
+        Recorded("ours", "", "0.1", "2026-01-31", claims("ours", 1e-6)),
+    )
+
+
+@pytest.fixture(scope="module")
+def recorded_reported(tmp_path_factory):
+    """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
+    folder = tmp_path_factory.mktemp("recorded")
+    study = replace(AGREEMENT, recorded=recorded)
+    arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]
+    return status(arguments, (study,)), folder
+
+
+def test_what_recorded_engines_get_wrong_is_no_failure_of_this_project(recorded_reported):
+    exit_status, folder = recorded_reported
+    assert exit_status == 0
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert (results["totals"]["agrees"], results["totals"]["differs"]) == (1, 0)
+    root = ET.parse(folder / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("failures")) == ("1", "0")
+    assert [claim["verdict"] for found in results["recorded"] for claim in found["claims"]] == [
+        "agrees",
+        "agrees",
+        "differs",
+        "differs",
+        "agrees",
+        "agrees",
+    ]
+
+
+def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_reported):
+    page = (recorded_reported[1] / "index.html").read_text(encoding="utf-8")
+    found = Cells(page)
+    said = [" ".join(cell[3].split()) for cell in found.cells if cell[0] == "matrix recorded"]
+    assert said == [
+        *("Engine, setting", "A pin slides", "A disc slides"),
+        "Kite 1.2, 2026-01-31",
+        *("cone", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+        *("box", "✗ differs by 0.25 m", "✗ differs by 0.25 m"),
+        *("ours 0.1, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+    ]
+    assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
+    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive." in page
+    assert "4 agree, 2 differ, 0 inconclusive." in page
+
+
+def test_every_state_has_its_place_among_the_worst():
+    assert set(WORST_FIRST) == set(State)
+    assert WORST_FIRST[-1] is State.AGREES
+
+
+def evidence():
+    return Evidence("frequency in rad/s", 1.25, 1.5, 1.25 + 1e-12)
+
+
+def no_evidence():
+    raise RuntimeError("no root was found")
+
+
+def test_errata_show_both_forms_and_the_numbers(tmp_path):
+    errata = (
+        Erratum("(13)", "1 + β/m", "β·(1 + <m>)", "Because.", evidence),
+        Erratum("(26)", "cos²α", "sin²α", "Because.", no_evidence),
+    )
+    write_report(run((), (), folder=tmp_path / "data", errata=errata), tmp_path)
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "β·(1 + &lt;m&gt;)" in page
+    numbers = [cell[4] for cell in Cells(page).cells if cell[0] == "evidence" and cell[4]]
+    assert numbers == [[1.25], [1.5], [1.25 + 1e-12], [0.25], [1.25 + 1e-12 - 1.25]]
+    assert "The evidence could not be computed: no root was found" in page
+    written = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["errata"]
+    assert written[0]["evidence"]["printed_value"] == 1.5
+    assert written[1]["evidence"] == {"failed": "no root was found"}

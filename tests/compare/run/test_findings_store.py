@@ -1,0 +1,92 @@
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from fake_studies import GOOD, claim, measure_verdicts, straight
+from processes import environment
+
+from compare.claims.study import Findings
+from compare.run.findings_store import PACKAGES, Store, claim_as_json, claim_from_json, stamp
+from compare.run.fingerprint import fingerprint
+
+NOW = stamp(fingerprint(straight, PACKAGES))
+
+
+def same(a, b):
+    return json.dumps(claim_as_json(a)) == json.dumps(claim_as_json(b))
+
+
+def test_findings_come_back_to_the_last_bit(tmp_path):
+    store, findings = Store(tmp_path / "data"), measure_verdicts(GOOD)
+    store.keep("fig03", "good", NOW, findings, 1.5)
+    found, seconds = store.find("fig03", "good", NOW)
+    assert seconds == 1.5
+    assert all(same(a, b) for a, b in zip(found.claims, findings.claims, strict=True))
+    for name, array in findings.data.items():
+        np.testing.assert_array_equal(found.data[name], array)
+
+
+def test_numbers_that_json_does_not_know_come_back(tmp_path):
+    made = claim(
+        "c", "good", [0.0, np.inf], [np.nan, -np.inf], np.inf, parameters={"a": np.float64(1.0), "n": 3}
+    )
+    text = json.dumps(claim_as_json(made), allow_nan=False)
+    back = claim_from_json(json.loads(text))
+    np.testing.assert_array_equal(back.measured, made.measured)
+    assert back.budget.numerical == np.inf
+    assert back.verdict is made.verdict
+
+
+def test_findings_of_other_code_are_not_taken(tmp_path):
+    store = Store(tmp_path)
+    store.keep("fig03", "good", "another version", Findings(), 0.0)
+    assert store.find("fig03", "good", NOW) is None
+
+
+def test_broken_files_are_computed_again(tmp_path):
+    store = Store(tmp_path)
+    store.keep("fig03", "good", NOW, Findings(), 0.0)
+    (tmp_path / "fig03--good.npz").write_bytes(b"")
+    assert store.find("fig03", "good", NOW) is None
+    (tmp_path / "fig03--good.json").write_text("{")
+    assert store.find("fig03", "good", NOW) is None
+
+
+def test_engines_of_ones_own_have_files_of_their_own(tmp_path):
+    store = Store(tmp_path)
+    store.keep("fig03", "mine.py:simulate", NOW, Findings(), 0.0)
+    assert store.find("fig03", "mine.py:simulate", NOW) is not None
+    assert store.find("fig03", "mine", NOW) is None
+
+
+def test_the_stamp_knows_the_code_of_the_engine_and_of_the_packages():
+    assert stamp(fingerprint(straight, PACKAGES)) == NOW
+    assert stamp(fingerprint(json.dumps, PACKAGES)) != NOW
+    assert stamp(fingerprint(straight, PACKAGES), code=("reference_model",)) != NOW
+
+
+@pytest.mark.parametrize(("first", "settings"), [("compare.engines", "off"), ("exudyn", "on")])
+def test_a_users_own_settings_of_exudyn_are_switched_off_and_the_stamp_says_whether_they_are(
+    first, settings, tmp_path
+):
+    (tmp_path / "config.json").write_text('{"version": 1, "config": {"suppressWarnings": true}}')
+    code = (
+        f"import {first}, exudyn\n"
+        "from compare.run.findings_store import stamp\n"
+        "from compare.run.workers import Workers\n"
+        "from exudyn.misc.overrideSettings import Applied\n"
+        "if __name__ == '__main__':\n"
+        "    with Workers(2) as workers:\n"
+        "        workers.submit('key', Applied)\n"
+        "        in_worker = [done.value for done in workers.finished()]\n"
+        "    print(bool(Applied()), in_worker, stamp().split()[-1])\n"
+    )
+    (tmp_path / "script.py").write_text(code)
+    variables = environment(EXUDYN_CONFIG_FILE=str(tmp_path / "config.json"))
+    del variables["EXUDYN_NO_USER_SETTINGS"]
+    command = [sys.executable, str(tmp_path / "script.py")]
+    done = subprocess.run(command, env=variables, capture_output=True, text=True)
+    expected = f"{settings == 'on'} [[]] exudyn-user-settings-{settings}\n"
+    assert done.stdout.endswith(expected), done.stdout + done.stderr

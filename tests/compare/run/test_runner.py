@@ -1,0 +1,200 @@
+import json
+import multiprocessing
+import os
+import signal
+import subprocess
+import time
+from types import SimpleNamespace
+
+import fake_studies as fake
+import numpy as np
+import pytest
+from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
+
+from compare.claims.errata import Erratum, Evidence
+from compare.claims.study import Findings
+from compare.run import workers
+from compare.run.runner import Drawing, run
+from compare.run.workers import Failure
+
+BOTH = (fake.GOOD, fake.FAILING)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(jobs, tmp_path):
+    studies = (fake.VERDICTS, fake.AGREEMENT) + ((fake.DEATH,) if jobs > 1 else ())
+    result = run(studies, BOTH, folder=tmp_path, jobs=jobs)
+    assert not result.interrupted
+    assert result.missing == ()
+    assert multiprocessing.active_children() == []
+    for key in (
+        ("verdicts", "theory"),
+        ("verdicts", "good"),
+        ("agreement", "good"),
+        ("agreement", "failing"),
+    ):
+        assert isinstance(result.outcomes[key], Findings)
+    failure = result.outcomes["verdicts", "failing"]
+    assert failure.reason == "the step size became too small at t = 3.2 s: try a larger tolerance"
+    assert failure.where[-1].startswith("fake_studies.py:")
+    assert "/" not in "".join(failure.where)
+    if jobs > 1:
+        for engine in ("good", "failing"):
+            assert (
+                result.outcomes["death", engine].reason == "its process came to a sudden end (exit status 7)"
+            )
+
+
+def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
+    """The clock jumps beyond the limit once the measurement runs, however long its process took to start."""
+    running, limit, wait = tmp_path / "running", 1000.0, workers.wait
+    monkeypatch.setenv("RUNNING", str(running))
+    clock = SimpleNamespace(
+        monotonic=lambda: time.monotonic() + (2.0 * limit if running.exists() else 0.0),
+        perf_counter=time.perf_counter,
+    )
+    monkeypatch.setattr(workers, "time", clock)
+    monkeypatch.setattr(workers, "wait", lambda connections, left: wait(connections, min(left, 0.05)))
+    result = run((fake.UNENDING, fake.AGREEMENT), (fake.ALSO_GOOD,), folder=tmp_path, limit=limit)
+    assert result.outcomes["unending", "also-good"] == Failure("not finished within 1000 s")
+    assert result.seconds["unending", "also-good"] == limit
+    assert isinstance(result.outcomes["agreement", "also-good"], Findings)
+    assert multiprocessing.active_children() == []
+
+
+def test_one_and_two_processes_find_and_draw_the_same(tmp_path):
+    one, two = (run((fake.VERDICTS,), BOTH, folder=tmp_path / str(jobs), jobs=jobs) for jobs in (1, 2))
+    drawing = one.drawings["verdicts"]
+    assert set(drawing.figures) == {"fake-radius"}
+    assert drawing.animations["fake-motion"].startswith(b"GIF89a")
+    assert two.drawings["verdicts"] == drawing  # byte for byte: figures are reproducible
+    good = [result.outcomes["verdicts", "good"] for result in (one, two)]
+    np.testing.assert_array_equal(good[0].data["radius"], good[1].data["radius"])
+    assert [c.measured.tolist() for c in good[0].claims] == [c.measured.tolist() for c in good[1].claims]
+
+
+def test_a_figure_that_fails_leaves_the_claims(tmp_path):
+    result = run((fake.UNDRAWABLE, fake.AGREEMENT), (fake.GOOD,), folder=tmp_path)
+    assert result.drawings["undrawable"].reason == "KeyError: 'radius'"
+    assert isinstance(result.outcomes["undrawable", "good"], Findings)
+    assert result.drawings["agreement"] == Drawing()
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_what_is_no_result_is_said(jobs, tmp_path):
+    reason = (
+        run((fake.NO_FINDINGS,), (fake.GOOD,), folder=tmp_path, jobs=jobs)
+        .outcomes["no-findings", "good"]
+        .reason
+    )
+    if jobs == 1:
+        assert reason == "TypeError: the study returned NoneType: it must be Findings"
+    else:  # its measure is a lambda
+        assert reason.startswith("it can't be sent to another process")
+        assert reason.endswith("use --jobs 1 or functions of a module")
+
+
+def evidence():
+    return Evidence("a half", 0.5, 0.4, 0.5)
+
+
+def no_evidence():
+    raise ZeroDivisionError("division by zero")
+
+
+def test_evidence_is_computed_and_its_failure_kept(tmp_path):
+    errata = tuple(Erratum("(1)", "a", "b", "c", function) for function in (evidence, no_evidence))
+    result = run((), (), folder=tmp_path, errata=errata)
+    assert result.evidence == {0: evidence(), 1: result.evidence[1]}
+    assert isinstance(result.evidence[1], Failure)
+
+
+@pytest.fixture
+def count(tmp_path, monkeypatch):
+    path = tmp_path / "count"
+    path.touch()
+    monkeypatch.setenv("COUNT", str(path))
+    return lambda: path.read_text().split()
+
+
+def test_resume_computes_only_what_is_not_there(tmp_path, count):
+    first = run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
+    assert count() == ["good"]
+    second = run((fake.COUNTED,), (fake.GOOD, fake.ALSO_GOOD), folder=tmp_path, resume=True)
+    assert count() == ["good", "also-good"]
+    assert second.seconds["counted", "good"] == first.seconds["counted", "good"]
+    assert second.outcomes["counted", "good"].data == first.outcomes["counted", "good"].data
+    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
+    assert count() == ["good", "also-good", "good"]
+
+
+def test_resume_does_not_take_what_another_version_found(tmp_path, count):
+    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
+    path = tmp_path / "counted--good.json"
+    content = json.loads(path.read_text())
+    path.write_text(json.dumps(content | {"stamp": content["stamp"].replace("numpy", "numpi")}))
+    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path, resume=True)
+    assert count() == ["good", "good"]
+
+
+def test_progress_counts_to_its_end(tmp_path):
+    calls = []
+    run((fake.VERDICTS,), BOTH, folder=tmp_path, progress=lambda *call: calls.append(call))
+    assert [done for done, _, _ in calls] == list(range(5))  # theory, two engines, the figures
+    assert {total for _, total, _ in calls} == {4}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
+    running, output = tmp_path / "running", tmp_path / "report"
+    arguments = ["report", "unending", "--engine", "good", "--engine", "also-good", "--engine", "failing"]
+    process = subprocess.Popen(
+        [*FAKE, *arguments, "--jobs", jobs, "--output", str(output)],
+        env=environment(RUNNING=str(running)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        start_new_session=True,
+        preexec_fn=interruptible,
+    )
+    wait_for(process, running, output / "data" / "unending--good.json")
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
+    out, err = process.communicate(timeout=PATIENCE)
+
+    assert process.returncode == 130
+    missing = "unending also-good, unending failing"
+    assert err == f"Interrupted; missing: {missing}. The same command with --resume completes it.\n"
+    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
+    results = json.loads((output / "results.json").read_text(encoding="utf-8"))
+    assert results["interrupted"]
+    states = {engine: unit["state"] for engine, unit in results["studies"][0]["units"].items()}
+    assert states == {"good": "finished", "also-good": "missing", "failing": "missing"}
+    page = (output / "index.html").read_text(encoding="utf-8")
+    assert "missing: unending with also-good, unending with failing." in page
+    wait_until(lambda: ended(process.pid))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="groups of processes are a POSIX thing")
+def test_no_process_outlives_a_killed_one(tmp_path):
+    running = tmp_path / "running"
+    process = subprocess.Popen(
+        [*FAKE, "report", "unending", "--engine", "also-good", "--jobs", "2", "--output", str(tmp_path)],
+        env=environment(RUNNING=str(running)),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    wait_for(process, running)
+    process.kill()
+    process.wait()
+    wait_until(lambda: ended(process.pid))
+
+
+def ended(group):
+    """Whether every process of the group has ended; an ended one may wait to be collected."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return True
+    return False

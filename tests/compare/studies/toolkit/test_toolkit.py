@@ -1,0 +1,68 @@
+"""What the studies share: parameters in words, turns about the axis, eigenvalues from simulations."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG5, FIG8, FIG9, FIG11
+from compare.engines import engines
+from compare.studies.toolkit.common import matched, measured_eigenvalues, parameters_of, turned
+from reference_model.steady.stability import whirl_eigenvalues
+from reference_model.steady.steady_states import self_centred_equilibria, whirls
+
+
+def test_parameters_of_a_claim_name_the_ring_in_words():
+    ring = parameters_of(FIG11, without=("offset",), friction_force=0.5)
+    assert ring["contact_points"] == "continuous ring"
+    assert ring["friction_force"] == 0.5
+    assert "offset" not in ring
+    assert parameters_of(replace(FIG11, contact_points=6))["contact_points"] == 6
+    assert parameters_of(FIG5)["offset"] == FIG5.offset
+
+
+def test_parameters_of_a_claim_tell_of_hardening_and_stop_where_there_are_any():
+    assert not {"hardening", "stop_gap", "stop_stiffness"} & set(parameters_of(FIG5))
+    hard = parameters_of(replace(FIG5, hardening=2.0, stop_stiffness=3.0))
+    assert (hard["hardening"], hard["stop_stiffness"]) == (2.0, 3.0)
+    assert set(hard) - set(parameters_of(FIG5)) == {"hardening", "stop_stiffness"}
+
+
+@pytest.mark.parametrize("angle", [0.7, -2.0, 100.0])
+def test_turning_a_state_keeps_radius_speed_and_spin(angle):
+    pin, disc = np.array([1.0, 2.0, 3.0, -4.0]), np.array([1.0, 2.0, 0.5, 3.0, -4.0, 7.0])
+    c, s = np.cos(angle), np.sin(angle)
+    expected = [c - 2.0 * s, s + 2.0 * c, 3.0 * c + 4.0 * s, 3.0 * s - 4.0 * c]
+    assert turned(pin, angle) == pytest.approx(expected)
+    assert turned(disc, angle) == pytest.approx([*expected[:2], 0.5 + angle, *expected[2:], 7.0])
+    assert turned(turned(disc, angle), -angle) == pytest.approx(disc)
+    assert disc[2] == 0.5  # the state itself stays as it is
+
+
+def test_many_states_are_turned_by_one_angle_or_by_one_each():
+    discs = np.arange(18.0).reshape(3, 6)
+    angles = np.array([0.1, 0.2, 0.3])
+    each = turned(discs, angles)
+    for disc, angle, result in zip(discs, angles, each, strict=True):
+        assert result == pytest.approx(turned(disc, angle))
+    assert turned(discs[0], angles)[2] == pytest.approx(turned(discs[0], 0.3))
+    assert turned(discs, 0.1)[2] == pytest.approx(turned(discs[2], 0.1))
+
+
+@pytest.mark.parametrize("name", ["reference", "exudyn"])
+@pytest.mark.parametrize(
+    "figure", [FIG8, replace(FIG11, friction_force=0.01), FIG11, FIG9], ids=["8", "centred", "11", "9"]
+)
+def test_eigenvalues_of_a_disc_are_measured_within_their_error(name, figure):
+    (engine,) = engines([name])
+    if figure in (FIG11, FIG9):
+        disc = replace(figure, offset=0.0)
+        motion = whirls(disc)[0]
+        frame, expected = motion.frequency, whirl_eigenvalues(disc, motion.state)
+    else:
+        disc, frame = figure, 0.0
+        motion = self_centred_equilibria(disc)[0]
+        expected = motion.eigenvalues
+    measured, error = measured_eigenvalues(engine, disc, motion.state, duration=1.0, frame_speed=frame)
+    assert len(measured) == 5
+    assert np.max(np.abs(matched(measured, expected) - expected)) < error < 1e-5

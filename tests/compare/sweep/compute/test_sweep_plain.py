@@ -1,0 +1,114 @@
+"""Ends of single trajectories of the plain reference, for motions whose ends the theory knows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import CENTRED, FIG5, FIG5_STARTS, FIG11
+from compare.sweep.compute import work
+from compare.sweep.compute.plain import LEAST_TURNS, end_of, plain_trajectory, twice_as_long, watched_until
+from compare.sweep.compute.work import DOUBLINGS, recompute
+from compare.sweep.define.axes import Axis
+from compare.sweep.define.plan import RandomBasin
+from reference_model import simulate, sticking_radius, whirls
+from reference_model.ensemble import EndState
+
+
+def end(system, start, duration, tolerance=1e-9):
+    return end_of(plain_trajectory(system, np.array(start), 0.3 * duration, duration, tolerance))
+
+
+def test_both_motions_of_fig_5():
+    assert end(FIG5, FIG5_STARTS["equilibrium"], 300.0) == EndState.SELF_CENTRED
+    assert end(FIG5, FIG5_STARTS["whirl"], 300.0) == EndState.WHIRL
+
+
+def test_a_whirl_about_an_axis_without_offset():
+    (whirl,) = whirls(CENTRED)
+    assert end(CENTRED, whirl.state, 60.0) == EndState.WHIRL
+
+
+@pytest.mark.parametrize("speed", [0.8, -0.8])
+def test_a_pin_inside_of_the_sticking_radius_is_stuck(speed):
+    pin = replace(FIG5, friction_force=0.15, disc_speed=speed)
+    radius = 0.9 * sticking_radius(pin)
+    assert end(pin, (radius, 0.0, 0.0, speed * radius), 60.0) == EndState.STUCK
+
+
+def test_a_pin_that_sticks_beyond_the_sticking_radius_slips_and_sticks_again_and_again():
+    pin = replace(FIG5, friction_force=0.124, disc_speed=0.8)
+    assert end(pin, (0.1, 0.0, 0.03, 0.0), 300.0) == EndState.STICK_SLIP
+
+
+def test_the_modulated_cycle_of_fig_11():
+    assert end(FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), 1500.0, 1e-6) == EndState.MODULATED
+
+
+def test_a_transient_is_undecided():
+    assert end(FIG5, FIG5_STARTS["whirl"], 100.0) == EndState.UNDECIDED
+
+
+def test_a_whirl_turning_the_other_way():
+    pin = replace(FIG5, disc_speed=-1.5)
+    x, y, vx, vy = FIG5_STARTS["whirl"]
+    assert end(pin, (x, -y, vx, -vy), 300.0) == EndState.WHIRL
+
+
+STICKING = replace(FIG5, friction_force=0.124, disc_speed=0.8), (0.1, 0.0, 0.03, 0.0)
+SLIPPING = FIG5, FIG5_STARTS["whirl"]
+
+
+@pytest.mark.parametrize(("system", "start"), [STICKING, SLIPPING], ids=["sticking", "slipping"])
+def test_a_motion_that_is_simulated_on_is_the_same_as_at_once(system, start):
+    motion = twice_as_long(plain_trajectory(system, np.array(start), 3.0, 60.0, 1e-10))
+    assert motion.times[[0, -1]].tolist() == [0.0, 120.0]
+    assert 3.0 in motion.times
+    assert np.all(np.diff(motion.times) > 0.0)
+    at_once = simulate(system, start, motion.times, tolerance=1e-10)
+    np.testing.assert_allclose(motion.states, at_once.states, atol=1e-7)
+    ends = [phase.end for phase in motion.phases]
+    assert [0.0, *ends] == [*(phase.start for phase in motion.phases), 120.0]  # without gaps
+
+
+def recomputed(monkeypatch, start, time, end):
+    """Return what a start of Fig. 5 comes to and the durations that were simulated for it."""
+    durations = []
+
+    def watching(function):
+        def watched(*arguments):
+            durations.append(float((motion := function(*arguments)).times[-1]))
+            return motion
+
+        return watched
+
+    for function in (plain_trajectory, twice_as_long):
+        monkeypatch.setattr(work, function.__name__, watching(function))
+    x, y = Axis("y", 0.0, 1e-9, 2), Axis("vy", 0.0, 1e-9, 2)
+    common = {"system": FIG5, "duration": 12000.0, "tolerance": 1e-9, "seed": 1}
+    plan = RandomBasin(**common, start=start, x=x, y=y, samples=1)
+    return recompute(plan, 0, time, end), durations
+
+
+def test_a_motion_is_watched_for_as_long_again_as_the_kernel_took(monkeypatch):
+    found, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 200.0, EndState.WHIRL)
+    assert (found.end, durations) == (EndState.WHIRL, [400.0])
+    at_time = simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 200.0]).states[-1]
+    np.testing.assert_allclose(found.state, at_time, atol=1e-7)
+
+
+def test_a_motion_is_watched_for_longer_and_longer_before_it_counts_as_another(monkeypatch):
+    found, durations = recomputed(monkeypatch, FIG5_STARTS["equilibrium"], 1.0, EndState.STUCK)
+    first = 2.0 * LEAST_TURNS * 2.0 * np.pi / FIG5.disc_speed
+    assert found.end == EndState.SELF_CENTRED
+    np.testing.assert_allclose(durations, first * 2.0 ** np.arange(DOUBLINGS + 1))
+
+
+def test_what_is_undecided_is_simulated_up_to_its_time_only(monkeypatch):
+    _, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 50.0, EndState.UNDECIDED)
+    assert durations == [50.0]
+
+
+def test_what_never_turns_is_watched_too():
+    resting = replace(FIG5, stiffness=1e-300, disc_speed=0.0)
+    assert watched_until(resting, 0.0, 7.0) == 2.0 * LEAST_TURNS * 2.0 * np.pi * 7.0

@@ -1,0 +1,230 @@
+"""Sweeps in this process: what is in their stores, and resumption."""
+
+import json
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from long_sweeps import assert_same, content
+
+from compare.claims.paper_parameters import FIG5
+from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
+from compare.sweep.compute.plain import end_of, plain_trajectory
+from compare.sweep.compute.run import run
+from compare.sweep.compute.store import SweepStore
+from compare.sweep.compute.work import Chunk, compute
+from compare.sweep.define.axes import Axis
+from compare.sweep.define.distributions import Uncertain
+from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty
+from compare.sweep.show.summary import same_ends, summary
+from reference_model import simulate
+from reference_model.ensemble import EndState
+
+COMMON = {"system": FIG5, "duration": 300.0, "tolerance": 1e-9, "seed": 4}
+START = (0.1, 0.0, 0.03, 0.0)
+X, Y = Axis("x", -0.3, 0.5, 17), Axis("vx", -0.4, 0.4, 9)
+BASIN = Basin(**COMMON, start=START, x=X, y=Y, coarse=5)
+RANDOM = RandomBasin(**COMMON, start=START, x=Axis("x", -0.3, 0.5, 2), y=Axis("vx", -0.4, 0.4, 2), samples=60)
+MAP = Map(
+    **COMMON,
+    starts=(START, (0.0, 0.0, 0.0, 0.0)),
+    x=Axis("disc_speed", 1.2, 2.0, 5),
+    y=Axis("friction_force", 0.05, 0.15, 4),
+)
+
+
+@pytest.fixture(autouse=True)
+def fewer_checks(monkeypatch):
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 4)
+
+
+def silent(what, done, total):
+    pass
+
+
+class Recording(InProcess):
+    """Remembers the arguments of its tasks, and may be interrupted after some of them."""
+
+    def __init__(self, until=10**9):
+        self.calls, self.until = [], until
+
+    def run(self, tasks):
+        def counted():
+            for task in tasks:
+                if len(self.calls) == self.until:
+                    raise KeyboardInterrupt
+                self.calls.append(task)
+                yield task
+
+        yield from super().run(counted())
+
+    def simulated(self):
+        return [np.asarray(task.arguments[1]).tolist() for task in self.calls if task.function is compute]
+
+
+def swept(path, plan, chunk, executor=None):
+    store = SweepStore.open(path) if path.exists() else SweepStore.create(path, plan, chunk)
+    run(store, executor or InProcess(), silent)
+    return store
+
+
+@pytest.mark.parametrize("plan", [BASIN, RANDOM, MAP], ids=lambda plan: plan.kind)
+def test_chunks_of_any_size_give_the_same_store_to_the_last_bit(plan, tmp_path):
+    for chunk in (7, 1000):
+        swept(tmp_path / str(chunk), plan, chunk)
+    assert_same(content(tmp_path / "7"), content(tmp_path / "1000"))
+
+
+def test_a_basin_is_labelled_and_its_points_end_as_the_plain_reference_says(tmp_path):
+    result = swept(tmp_path / "s", BASIN, 50).get("result")
+    assert dict(result.sizes) == {"vx": 9, "x": 17, "end_state": 6}
+    assert (result["x"].attrs["units"], result["vx"].attrs["units"]) == ("m", "m/s")
+    assert (result["largest_radius"].attrs["units"], result["slip_power"].attrs["units"]) == ("m", "W")
+    np.testing.assert_array_equal(result["x"], X.values)
+    assert result["end"].attrs["flag_meanings"].split()[EndState.WHIRL] == "whirl"
+    for x, vx in ((0.1, -0.1), (0.4, 0.3)):
+        point = result.sel(x=x, vx=vx, method="nearest")
+        motion = simulate(FIG5, [x, 0.0, vx, 0.0], np.linspace(0.0, 400.0, 401))
+        circles = np.max(motion.radius[-50:]) > 0.5  # the whirl's radius is 0.9, the equilibrium's 0.044
+        assert int(point["end"]) == (EndState.WHIRL if circles else EndState.SELF_CENTRED)
+
+
+def test_numbers_of_a_basin_stand_at_their_points_and_only_where_it_was_simulated(tmp_path):
+    result = swept(tmp_path / "s", BASIN, 50).get("result")
+    simulated = result["simulated"].values.astype(bool)
+    assert 0 < np.count_nonzero(simulated) < simulated.size
+    for name in ("time", "least_radius", "largest_radius", "slip_power"):
+        np.testing.assert_array_equal(np.isfinite(result[name].values), simulated)
+    y, x = np.nonzero(simulated)
+    alone = compute(BASIN, y * X.points + x, None).results
+    for name in ("end", "time", "largest_radius"):
+        np.testing.assert_array_equal(result[name].values[y, x], alone[name])
+    assert len(np.unique(alone["time"])) > 20
+
+
+def test_power_of_friction_on_the_whirl_is_that_of_its_slip(tmp_path):
+    centred = replace(MAP, system=replace(FIG5, offset=0.0), starts=((1.0, 0.0, 0.0, 1.0),))
+    result = swept(tmp_path / "s", centred, 50).get("result").sel(start=0)
+    speed, load = np.meshgrid(result["disc_speed"], result["friction_force"])
+    assert np.all(result["end"] == EndState.WHIRL)
+    radius = load / (FIG5.damping * FIG5.natural_frequency)
+    np.testing.assert_allclose(result["largest_radius"], radius, rtol=1e-3)
+    np.testing.assert_allclose(
+        result["slip_power"], load * (speed - FIG5.natural_frequency) * radius, rtol=1e-3
+    )
+    assert np.max(result["modulation"]) < 1e-3
+
+
+def test_a_store_tells_how_it_was_made(tmp_path):
+    swept(tmp_path / "s", RANDOM, 50)
+    attributes = xr.open_zarr(tmp_path / "s", consolidated=False).attrs
+    plan = json.loads(attributes["plan"])
+    assert (plan["seed"], plan["tolerance"], plan["system"]["friction_force"]) == (4, 1e-9, 0.09)
+    assert json.loads(attributes["versions"])["numpy"] == np.__version__
+
+
+def test_a_random_sample_agrees_with_the_plain_reference(tmp_path, monkeypatch):
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 20)
+    check = swept(tmp_path / "s", RANDOM, 13).get("check")
+    numbers = check["trajectory"].values
+    assert check.sizes["trajectory"] == len(set(numbers.tolist())) == 20
+    assert np.max(np.abs(check["difference"])) < 1e-6
+    np.testing.assert_array_equal(check["end"], check["plain_end"])
+    found = xr.open_zarr(tmp_path / "s", group="round-0", consolidated=False)
+    np.testing.assert_array_equal(check["end"], found["end"].values[numbers])
+    np.testing.assert_array_equal(check["time"], found["time"].values[numbers])
+
+
+def test_a_kernel_that_is_wrong_is_found_by_the_plain_reference(tmp_path):
+    class Wrong(InProcess):
+        def run(self, tasks):
+            for key, found in super().run(tasks):
+                if isinstance(found, Chunk):
+                    found.results["states"] = found.results["states"] + [0.0, 0.0, 0.0, 0.01]
+                    found.results["end"] = np.full_like(found.results["end"], EndState.STUCK)
+                yield key, found
+
+    store = swept(tmp_path / "s", replace(RANDOM, duration=40.0), 13, Wrong())
+    difference = store.get("check")["difference"].values
+    np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
+    assert not same_ends(store)
+    assert (
+        f"{len(difference)} of them by the plain reference: {len(difference)} end differently"
+        in list(summary(store))[-1]
+    )
+
+
+def test_likelihood_of_the_whirl_and_what_it_depends_on(tmp_path):
+    varied = (
+        Uncertain.parse("vx=uniform(-0.4, 0.4)", FIG5),
+        Uncertain.parse("mass=uniform(0.999, 1.001)", FIG5),
+    )
+    plan = Uncertainty(**COMMON, start=START, varied=varied, samples=256)
+    store = swept(tmp_path / "s", plan, 300)
+    result = store.get("result")
+    assert result.sizes["sample"] == 512  # the independent draws
+    share = float(np.mean(result["end"].values == EndState.WHIRL))
+    assert float(result["share"][EndState.WHIRL]) == share
+    assert (
+        0.0
+        < float(result["share_low"][EndState.WHIRL])
+        < share
+        < float(result["share_high"][EndState.WHIRL])
+        < 1.0
+    )
+    by_speed, by_mass = (result["sobol_total"].sel(uncertain=name).values for name in ("vx", "mass"))
+    assert np.all(by_speed > 10.0 * np.abs(by_mass))
+    for i in (0, 200, 511):  # what is labelled belongs together
+        pin = replace(FIG5, mass=float(result["mass"][i]))
+        start = [0.1, 0.0, float(result["vx"][i]), 0.0]
+        motion = plain_trajectory(pin, np.array(start), 1.0, 400.0, 1e-9)
+        assert end_of(motion) == int(result["end"][i])
+
+
+@pytest.mark.parametrize("plan", [BASIN, RANDOM], ids=lambda plan: plan.kind)
+def test_an_interrupted_sweep_goes_on_without_computing_anything_twice(plan, tmp_path):
+    whole, first, second = Recording(), Recording(until=5), Recording()
+    swept(tmp_path / "whole", plan, 7, whole)
+    with pytest.raises(KeyboardInterrupt):
+        swept(tmp_path / "s", plan, 7, first)
+    rounds = (tmp_path / "s").glob("round-*")
+    done = sum(int((xr.open_zarr(one, consolidated=False)["checksum"] > 0).sum()) for one in rounds)
+    swept(tmp_path / "s", plan, 7, second)
+    assert 5 - AT_ONCE <= done <= 5
+    assert first.simulated()[:done] + second.simulated() == whole.simulated()
+    assert_same(content(tmp_path / "s"), content(tmp_path / "whole"))
+
+
+def test_a_finished_sweep_is_not_computed_again(tmp_path):
+    swept(tmp_path / "s", RANDOM, 7)
+    again = Recording()
+    swept(tmp_path / "s", RANDOM, 7, again)
+    assert again.calls == []
+
+
+def test_a_chunk_whose_mark_is_missing_is_computed_again(tmp_path):
+    swept(tmp_path / "s", RANDOM, 7)
+    before = content(tmp_path / "s")
+    (tmp_path / "s" / "round-0" / "checksum" / "3").unlink()
+    again = Recording()
+    swept(tmp_path / "s", RANDOM, 7, again)
+    assert again.simulated() == [list(range(21, 28))]
+    assert_same(content(tmp_path / "s"), before)
+
+
+@pytest.mark.parametrize(("compiled", "at_once"), [(True, AT_ONCE), (False, 1)])
+def test_only_what_is_compiled_runs_side_by_side(compiled, at_once):
+    running, most = [], []
+
+    def work(number):
+        running.append(number)
+        time.sleep(0.05)
+        most.append(len(running))
+        running.remove(number)
+        return -number
+
+    tasks = [Task(number, work, (number,), compiled) for number in range(2 * AT_ONCE)]
+    assert list(InProcess().run(tasks)) == [(number, -number) for number in range(2 * AT_ONCE)]
+    assert max(most) == at_once

@@ -1,0 +1,47 @@
+import numpy as np
+
+from compare.sweep.compute.sensitivity import indices
+from compare.sweep.define.distributions import uniform_rows
+
+
+def ishigami(x):
+    return np.sin(x[:, 0]) + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def table_of(function, rows, quantities):
+    """Return the results of the plan's arrangement for numbers that are uniform between −π and π."""
+    uniform = np.pi * (2.0 * uniform_rows(2, 0, rows, 2 * quantities) - 1.0)
+    first, second = uniform[:, :quantities], uniform[:, quantities:]
+    columns = [function(first), function(second)]
+    for i in range(quantities):
+        mixture = first.copy()
+        mixture[:, i] = second[:, i]
+        columns.append(function(mixture))
+    return np.stack(columns, axis=-1)
+
+
+def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
+    found = indices(table_of(ishigami, 2**14, 3)[np.newaxis])
+    # the variances of Ishigami's function with a = 7, b = 0.1
+    first = (1.0 + 0.1 * np.pi**4 / 5.0) ** 2 / 2.0
+    second = 49.0 / 8.0
+    both = 0.01 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    variance = first + second + both
+    # twice the interval of 95 % that is given
+    assert np.all(
+        np.abs(found.first[0] - np.array([first, second, 0.0]) / variance) < 2.0 * found.first_error[0]
+    )
+    total = np.array([first + both, second, both]) / variance
+    assert np.all(np.abs(found.total[0] - total) < 2.0 * found.total_error[0])
+    assert np.max(found.first_error) < 0.05
+
+
+def test_intervals_close_with_the_root_of_the_number_of_rows():
+    few, many = (np.mean(indices(table_of(ishigami, n, 3)[np.newaxis]).first_error) for n in (2**10, 2**14))
+    assert 2.0 < few / many < 8.0  # 4, by 16 groups' scatter
+
+
+def test_what_does_not_vary_has_no_indices():
+    found = indices(np.ones((1, 256, 4)))
+    assert np.all(np.isnan(found.first))
+    assert np.all(np.isnan(found.total))

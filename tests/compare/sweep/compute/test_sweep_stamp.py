@@ -1,0 +1,82 @@
+"""Which changes of the code make a sweep another one."""
+
+import subprocess
+import sys
+from shutil import copytree, ignore_patterns
+
+import pytest
+from processes import ROOT, environment
+
+from compare.run import findings_store as store
+from compare.sweep.compute.stamp import CODE, sweep_stamp
+
+BESIDE = {
+    "compare.claims.claim",
+    "compare.engines",
+    "compare.claims.paper_parameters",
+    "compare.run.findings_store",
+    "compare.claims.study",
+    "compare.sweep",
+    "compare.cli.sweep",
+    "compare.sweep.compute.executors",
+    "compare.sweep.show.figures",
+    "compare.sweep.compute.stamp",
+    "compare.sweep.show.summary",
+    "compare.text_files",
+}
+"""Names, where the work is done, what is said and drawn of it, and this stamp itself: they change no number."""
+
+
+@pytest.fixture
+def copied(tmp_path, monkeypatch):
+    for package in store.PACKAGES:
+        copytree(ROOT / package, tmp_path / package, ignore=ignore_patterns("__pycache__"))
+    monkeypatch.setattr(store, "ROOT", tmp_path)
+    return tmp_path
+
+
+def edited(path):
+    """Return the stamps before and after an edit."""
+    before = sweep_stamp()
+    path.write_text(path.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    store._digest.cache_clear()  # a process has the code that it was started with
+    return before, sweep_stamp()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "reference_model/motion/pin_equations.py",
+        "reference_model/ensemble/pin/end_states.py",
+        "compare/sweep/define/plan.py",
+    ],
+)
+def test_a_sweep_of_other_equations_or_another_plan_is_another_one(path, copied):
+    before, after = edited(copied / path)
+    assert before != after
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "compare/studies/pin/basins/claims.py",
+        "compare/figures.py",
+        "compare/sweep/show/figures.py",
+        "compare/cli/sweep.py",
+        "exudyn_models/paper/simulate.py",
+    ],
+)
+def test_what_no_number_of_a_sweep_depends_on_may_change(path, copied):
+    before, after = edited(copied / path)
+    assert before == after
+
+
+def test_the_stamp_of_sweeps_knows_all_that_computes_and_stores_them():
+    code = (
+        "import sys, compare.sweep.compute.run; print(*(n for n in sys.modules if n.startswith('compare.')))"
+    )
+    process = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True)
+    there = {f"compare.sweep.{path.stem}" for path in (ROOT / "compare" / "sweep").glob("[!_]*.py")}
+    used = there | set(process.stdout.split())
+    assert "compare.cli.trajectory_files" in used
+    assert used - BESIDE == set(CODE) - {"reference_model"}

@@ -1,0 +1,81 @@
+import re
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.sweep.define.distributions import Uncertain, uniform_rows
+
+DRAWS = 20_000
+NEVER = 1e-6
+"""Probability with which a right sample would be refused."""
+
+
+@pytest.mark.parametrize(
+    ("text", "mean", "deviation"),
+    [
+        ("offset=normal(0.1, 0.005)", 0.1, 0.005),
+        ("friction_force=uniform(0.05, 0.11)", 0.08, 0.06 / np.sqrt(12.0)),
+        ("disc_speed=triangular(1, 1, 4)", 2.0, np.sqrt(9.0 / 18.0)),
+        ("damping=lognormal(0.1, 0.5)", 0.1 * np.exp(0.125), 0.1 * np.exp(0.125) * np.sqrt(np.expm1(0.25))),
+        # a normal distribution cut off one deviation to either side: variance 1 − 2φ(1)/(2Φ(1) − 1)
+        ("mass=truncnorm(2, 1, 1, 3)", 2.0, np.sqrt(1.0 - 2.0 * 0.24197072451914337 / 0.6826894921370859)),
+    ],
+)
+def test_draws_have_the_mean_and_deviation_of_their_distribution(text, mean, deviation):
+    uncertain = Uncertain.parse(text, FIG5)
+    values = uncertain.values(uniform_rows(3, 0, DRAWS, 1)[:, 0])
+    limit = -stats.norm.ppf(NEVER / 2.0)
+    assert abs(np.mean(values) - mean) < limit * deviation / np.sqrt(DRAWS)
+    fourth = np.mean((values - mean) ** 4) / deviation**4
+    assert abs(np.std(values) / deviation - 1.0) < limit * 0.5 * np.sqrt((fourth - 1.0) / DRAWS)
+
+
+def test_the_table_of_random_numbers_is_uniform_without_correlation():
+    table = uniform_rows(5, 0, DRAWS, 6)
+    for column in table.T:
+        assert stats.kstest(column, "uniform").pvalue > NEVER
+    correlation = np.corrcoef(table.T)[np.triu_indices(6, 1)]
+    assert np.max(np.abs(correlation)) < -stats.norm.ppf(NEVER / 2.0) / np.sqrt(DRAWS)
+    assert not np.any(uniform_rows(6, 0, DRAWS, 6) == table)
+
+
+@pytest.mark.parametrize("width", [1, 4, 5])
+def test_any_part_of_the_table_is_the_same_made_alone(width):
+    whole = uniform_rows(7, 0, 100, width)
+    np.testing.assert_array_equal(uniform_rows(7, 37, 11, width), whole[37:48])
+
+
+def test_zero_among_the_random_numbers_gives_a_finite_value():
+    assert np.isfinite(Uncertain.parse("offset=normal(0, 1)", FIG5).values(np.zeros(1)))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("offset", "write it as NAME=DISTRIBUTION"),
+        ("offset=normal(0.1", "write it as NAME=DISTRIBUTION"),
+        ("offest=normal(0.1, 0.2)", "did you mean 'offset'?"),
+        ("offset=norml(0.1, 0.2)", "did you mean 'normal'?"),
+        ("offset=normal(0.1)", "it takes (mean, deviation) with deviation > 0"),
+        ("offset=normal(0.1, 0)", "with deviation > 0"),
+        ("offset=normal(0.1, x)", "offset = ' x': it must be a number"),
+        ("offset=uniform(2, 1)", "with low < high"),
+        ("offset=triangular(1, 3, 2)", "with low <= mode <= high"),
+        (
+            "friction_force=normal(0.09, 0.01)",
+            "it allows friction_force = -inf, and it must be >= 0; truncnorm",
+        ),
+        ("mass=uniform(0, 1)", "it allows mass = 0, and it must be > 0"),
+        ("hardening=uniform(0, 1)", "unknown parameter or component 'hardening'"),
+    ],
+)
+def test_what_is_no_possible_distribution_is_refused(text, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        Uncertain.parse(text, FIG5)
+
+
+def test_number_of_contact_points_is_no_uncertain_parameter():
+    with pytest.raises(ValueError, match="unknown parameter or component 'contact_points'"):
+        Uncertain.parse("contact_points=uniform(3, 6)", FIG11)

@@ -1,0 +1,158 @@
+"""The drivetrain against closed forms of its parts: rotors, torsional spring, unbalanced disc, slipping clutch."""
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from exudyn_models import PASSENGER_CAR, build_drivetrain, four_cylinder
+from exudyn_models.drivetrain.picture import draw_drivetrain
+from exudyn_models.paper.linearisation import state_matrix
+
+CENTRED = replace(PASSENGER_CAR, offset=0.0, unbalance=0.0)
+EPSILON = 1e-3
+SPEED, SLIP, TORQUE = 200.0, 20.0, 60.0
+
+
+def slipping(car=CENTRED, **options):
+    options = {
+        "normal_load": car.normal_load(TORQUE),
+        "regularisation": EPSILON,
+        "engine_speed": SPEED,
+        "gearbox_speed": SPEED - SLIP,
+    } | options
+    return build_drivetrain(car, **options)
+
+
+def test_a_centred_clutch_transmits_its_torque_and_turns_slip_into_heat():
+    """Nothing else acts on the engine: J·Δω = −M·t until slip is lost, and the heat is M·∫slip dt."""
+    motion = slipping(shaft_torque=TORQUE).run(0.04, sample_every=1e-3)
+    assert motion.slip[-1] > 3.0
+    np.testing.assert_allclose(
+        motion.engine_speed, SPEED - TORQUE * motion.times / CENTRED.engine_inertia, rtol=1e-9
+    )
+    turned = motion.engine_angle - motion.disc[:, 2]
+    np.testing.assert_allclose(motion.energy.losses["friction"][1:], TORQUE * turned[1:], rtol=1e-8)
+    assert np.max(np.abs(motion.disc[:, :2])) == 0.0
+
+
+def test_engine_disc_and_vehicle_keep_their_angular_momentum_without_torques():
+    motion = slipping(shaft_torque=30.0).run(0.04, sample_every=1e-2)
+    momentum = (
+        CENTRED.engine_inertia * motion.engine_speed
+        + CENTRED.disc_inertia * motion.disc_velocity[:, 2]
+        + CENTRED.vehicle_inertia * motion.vehicle_speed
+    )
+    np.testing.assert_allclose(momentum, momentum[0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("unbalance", [0.0, 0.02])
+def test_the_torsional_spring_swings_at_its_frequency(unbalance):
+    """Two rotors on a spring: λ² + (c/J)λ + k/J = 0 with 1/J = 1/J_d + 1/J_v, J_d about the centre of mass."""
+    car = replace(CENTRED, unbalance=unbalance, radial_stiffness=0.0, radial_damping=0.0)
+    inertia = 1.0 / (1.0 / car.disc_inertia + 1.0 / car.vehicle_inertia)
+    expected = np.roots([inertia, car.torsional_damping, car.torsional_stiffness])
+    found = np.linalg.eigvals(state_matrix(slipping(car, normal_load=0.0, gearbox_speed=0.0).mbs))
+    for value in expected:
+        assert np.min(np.abs(found - value)) < 1e-9 * abs(value)
+
+
+def test_the_initial_twist_carries_the_torque_of_the_shaft():
+    motion = slipping(normal_load=0.0, shaft_torque=30.0).run(1e-6, sample_every=1e-7, largest_step=1e-7)
+    gained = CENTRED.vehicle_inertia * (motion.vehicle_speed - motion.vehicle_speed[0])
+    np.testing.assert_allclose(gained[1:], 30.0 * motion.times[1:], rtol=1e-3)
+
+
+def test_an_unbalanced_disc_whirls_as_jeffcotts_rotor_does():
+    """m·z̈ + β·ż + C·z = m·e·s²·exp(ist): the radius of the steady whirl at the spin s."""
+    car = replace(CENTRED, unbalance=1.5e-5, stop_stiffness=0.0, vehicle_inertia=1e9)
+    spin = 250.0
+    decay = car.radial_damping / (2.0 * car.disc_mass)
+    model = slipping(car, normal_load=0.0, gearbox_speed=spin)
+    motion = model.run(16.0 / decay, sample_every=1e-3, tolerance=1e-10)
+    impedance = car.radial_stiffness - car.disc_mass * spin**2 + 1j * car.radial_damping * spin
+    expected = car.disc_mass * car.unbalance * spin**2 / abs(impedance)
+    last = motion.times > 15.0 / decay
+    np.testing.assert_allclose(np.hypot(*motion.disc[last, :2].T), expected, rtol=1e-5)
+
+
+def test_the_disc_starts_at_rest_on_its_shaft():
+    motion = slipping(PASSENGER_CAR).run(1e-5, sample_every=1e-5)
+    assert motion.disc[0].tolist() == [PASSENGER_CAR.offset, 0.0, 0.0]
+    assert motion.disc_velocity[0].tolist() == [0.0, 0.0, SPEED - SLIP]
+    assert motion.slip[0] == SLIP
+
+
+@pytest.mark.parametrize("inner", [0.0, 0.05, 0.1])
+def test_the_friction_radius_is_the_mean_radius_over_the_area(inner):
+    car = replace(PASSENGER_CAR, inner_radius=inner, outer_radius=0.1)
+    r = np.linspace(inner, 0.1, 20001) if inner < 0.1 else np.array([0.1, 0.1])
+    mean = np.trapezoid(r * r, r) / np.trapezoid(r, r) if inner < 0.1 else 0.1
+    assert car.friction_radius == pytest.approx(mean, rel=1e-8)
+
+
+def test_a_ring_in_place_of_facings_transmits_the_same_torque():
+    ring = replace(CENTRED, inner_radius=0.1, outer_radius=0.1)
+    motion = slipping(ring, shaft_torque=TORQUE).run(0.04, sample_every=1e-2)
+    expected = SPEED - TORQUE * motion.times / CENTRED.engine_inertia
+    np.testing.assert_allclose(motion.engine_speed, expected, rtol=1e-9)
+
+
+def test_a_load_that_reads_the_slip_holds_it():
+    torque = CENTRED.vehicle_inertia / (CENTRED.vehicle_inertia + CENTRED.engine_inertia) * TORQUE
+    model = slipping(engine_torque=four_cylinder(TORQUE, 0.0), shaft_torque=torque)
+    needed = CENTRED.normal_load(torque)
+    model.friction.change(normal_load=lambda time: max(0.0, needed * (1.0 + 0.2 * (model.slip() - 5.0))))
+    motion = model.run(1.0, sample_every=1e-2)
+    # The feed-forward leaves out the disc's own inertia, 1 % of the vehicle's.
+    assert motion.slip[-1] == pytest.approx(5.0, abs=0.1)
+    assert motion.energy.gains["engine"][-1] > 0.0
+    assert np.max(np.abs(motion.energy.residual)) < 1e-6 * motion.energy.turnover
+
+
+def test_four_cylinders_fire_twice_a_turn():
+    torque = four_cylinder(100.0, 0.8)
+    angles = 2.0 * math.pi * np.arange(64) / 64
+    amplitudes = np.abs(np.fft.rfft([torque(0.0, angle, 300.0) for angle in angles])) / 64
+    assert amplitudes[0] == pytest.approx(100.0)
+    assert 2.0 * amplitudes[2] == pytest.approx(80.0)
+    assert np.max(np.delete(amplitudes, [0, 2])) < 1e-12
+
+
+POSITIVE = ("engine_inertia", "disc_mass", "disc_inertia", "outer_radius", "vehicle_inertia")
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(PASSENGER_CAR)])
+def test_what_no_drivetrain_can_be_is_refused(name):
+    with pytest.raises(ValueError, match=f"{name} = nan: it must be finite"):
+        replace(PASSENGER_CAR, **{name: math.nan})
+    if name == "offset":
+        return
+    allowed = "> 0" if name in POSITIVE else ">= 0"
+    with pytest.raises(ValueError, match=f"{name} = -1: it must be {allowed}"):
+        replace(PASSENGER_CAR, **{name: -1.0})
+
+
+def test_half_a_facing_and_facings_inside_out_are_refused():
+    with pytest.raises(ValueError, match=r"faces = 1\.5: it must be a whole number >= 1"):
+        replace(PASSENGER_CAR, faces=1.5)
+    with pytest.raises(ValueError, match="outer_radius"):
+        slipping(replace(CENTRED, inner_radius=0.2))
+    with pytest.raises(ValueError, match="ripple = nan: it must be finite"):
+        four_cylinder(100.0, math.nan)
+
+
+def test_the_picture_shows_the_disc_where_it_is():
+    """Of the orange facing, the mean place on the picture moves with the disc, and not without magnification."""
+
+    def facing(x, magnification):
+        image = draw_drivetrain(
+            CENTRED, engine_angle=0.7, disc=(x, 0.0, 0.0), magnification=magnification, size=(160, 120)
+        ).astype(int)
+        orange = (image[..., 0] - image[..., 2] > 80) & (image[..., 1] < 120)
+        assert 300 < np.count_nonzero(orange) < 8000
+        return np.argwhere(orange).mean(axis=0)
+
+    assert facing(1e-3, 0.0) == pytest.approx(facing(-1e-3, 0.0), abs=1e-12)
+    assert facing(1e-3, 20.0)[1] - facing(-1e-3, 20.0)[1] > 2.0

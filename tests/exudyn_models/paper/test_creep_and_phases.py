@@ -1,0 +1,136 @@
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import reference_model
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.studies.pin.sticking_domain.claims import pin_at, safest_angle, stuck
+from exudyn_models import simulate
+from exudyn_models.forces.friction_laws import point_regularisation
+from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
+from exudyn_models.paper.phase_detection import phases
+from exudyn_models.paper.scales import settling_time
+from exudyn_models.solver.solver_run import Steps
+from reference_model.systems import DiscOnDisc, PinOnDisc
+
+EPSILON = 1e-6
+PIN = replace(FIG5, disc_speed=0.0, offset=0.0)
+RING = replace(FIG11, polar_inertia=0.5)
+SYSTEMS = [
+    replace(PIN, disc_speed=1.5),
+    RING,
+    replace(RING, contact_points=3),
+    replace(RING, contact_points=6),
+]
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        state, acceleration = rng.normal(size=system.state_size), rng.normal(size=system.state_size // 2)
+        change = np.concatenate((state[len(acceleration) :], acceleration))
+        later, before = (state + sign * 1e-6 * change for sign in (1.0, -1.0))
+        ratios = creep_ratios(system, np.array([later, before]), EPSILON)
+        expected = (ratios[0] - ratios[1]) / 2e-6
+        found = creep_ratio_rates(system, state, acceleration, EPSILON)
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_a_contact_at_rest_creeps_as_a_whole_and_one_that_slips_does_not(system):
+    x, y, omega = 0.3, -0.2, system.disc_speed
+    at_rest = [x, y, -omega * y, omega * x]
+    if isinstance(system, DiscOnDisc):
+        at_rest = [x, y, 0.4, -omega * y, omega * x, omega]
+    assert creeping(system, at_rest, EPSILON) == WHOLE
+    fast = np.array(at_rest)
+    fast[system.state_size // 2] += 1.01 * EPSILON
+    assert creeping(system, fast.tolist(), EPSILON) is None
+
+
+def test_a_point_about_which_the_disc_turns_creeps_alone():
+    disc = replace(RING, contact_points=6, disc_speed=0.0)
+    for i in range(6):
+        arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
+        spin = 0.7
+        v = -1j * spin * arm + 0.99 * point_regularisation(EPSILON, 6)
+        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) == 1 + i
+        v += 0.02 * point_regularisation(EPSILON, 6)
+        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) is None
+
+
+def motion_of_slip(speeds, durations):
+    """A pin on a resting disc along x, with slip ``speeds`` (over ε) at the ends of spans of ``durations`` (s)."""
+    times = np.concatenate(([0.0], np.cumsum(durations)))
+    speeds = EPSILON * np.array(speeds)
+    states = np.zeros((len(times), 4))
+    states[:, 2] = speeds
+    accelerations = np.zeros((len(times), 2))
+    accelerations[:-1, 0] = np.diff(speeds) / durations
+    return Steps(times, states, accelerations, 0)
+
+
+def test_slip_that_hesitates_at_the_bend_of_the_law_is_one_release():
+    short = 0.1 * settling_time(PIN, EPSILON)
+    speeds = [1e5, 3.0, 0.5, 0.5, 1.001, 0.999, 1.001, 0.998, 1.002, 3.0, 1e5]
+    steps = motion_of_slip(speeds, [1.0, short, short, 1.0, *[short] * 5, 1.0])
+    found = phases(PIN, steps, EPSILON)
+    assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
+    assert found[1].end == pytest.approx(2.0 + 2.0 * short, abs=0.01)
+    assert all(before.end == after.start for before, after in pairwise(found))
+
+
+def test_creep_that_settles_again_before_the_slip_has_got_anywhere_is_one_stick_phase():
+    short, long = 0.1 * settling_time(PIN, EPSILON), 3.0 * settling_time(PIN, EPSILON)
+    speeds = [1e5, 3.0, 0.5, 0.9, 1.1, 1.1, 0.9, 0.9, 1.1, 3.0, 1e5]
+    steps = motion_of_slip(speeds, [1.0, short, long, short, short, short, long, long, short, 1.0])
+    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip", "stick", "slip"]
+
+
+def test_slip_that_only_passes_through_zero_is_no_sticking():
+    # Pulled with twice what friction can hold, with 1 + v/ε friction against it, and 1 − v/ε along it.
+    relaxation = PIN.mass * EPSILON / PIN.friction_force
+    steps = motion_of_slip([1e5, 0.9, 0.1, 0.1, 0.9, 1e5], [1.0, relaxation, relaxation, relaxation, 1.0])
+    growth = np.array([-3.0, -2.9, -2.1, 1.9, 1.1, 1.0])
+    steps.accelerations[:, 0] = growth * PIN.friction_force / PIN.mass
+    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip"]
+
+
+def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_of_the_bend():
+    steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
+    steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero after 4e-4 s more
+    found = phases(PIN, steps, EPSILON)
+    assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
+    assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
+    # The load is the creep's share of ε, and up to m·a/μN = 1e-4 of inertia more.
+    assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + 0.5, abs=1e-4)
+
+
+NEAR_ITS_LIMIT = PinOnDisc(
+    mass=1.88, stiffness=1.3, damping=0.13, friction_force=0.175, disc_speed=0.143, offset=-0.1
+)
+"""It starts stuck where friction holds nearly all that it can, and is let go after 0.6 s."""
+
+
+def test_stick_up_to_a_release_has_an_error_of_first_order_in_the_tolerance_and_no_other():
+    place = np.array([-0.0625, -0.1218])
+    start = [*place, -NEAR_ITS_LIMIT.disc_speed * place[1], NEAR_ITS_LIMIT.disc_speed * place[0]]
+    times = np.linspace(0.0, 3.0, 31)
+    exact = reference_model.simulate(NEAR_ITS_LIMIT, start, times)
+    assert [phase.kind for phase in exact.phases] == ["stick", "slip"]
+    errors = [
+        np.max(abs(simulate(NEAR_ITS_LIMIT, start, times, tolerance=tolerance).states - exact.states))
+        for tolerance in (8e-9, 1e-9, 1.25e-10)
+    ]
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])) / 3.0, 1.0, atol=0.1)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-8])
+def test_a_pin_is_let_go_by_a_load_that_exceeds_friction_by_a_thousandth_for_a_moment(tolerance):
+    pin = pin_at(2.0)
+    start = stuck(pin, 1.001 * reference_model.sticking_radius(pin), safest_angle(pin))
+    run = simulate(pin, start, [0.0, 1.02 * np.pi / pin.disc_speed], tolerance=tolerance)
+    assert [phase.kind for phase in run.phases][:2] == ["stick", "slip"]

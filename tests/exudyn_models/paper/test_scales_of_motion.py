@@ -1,0 +1,182 @@
+"""A change of units changes nothing: neither the motion, nor how well it is computed, nor what that costs."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import reference_model
+from compare.claims.error_estimates import refined
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.studies.engines.clutch_scale.units import CLUTCH, Scale
+from exudyn_models import simulate, simulate_with_native_contact
+from exudyn_models.paper.models.build import build
+from exudyn_models.paper.nondimensional import Units
+from exudyn_models.paper.recording import Recording
+from exudyn_models.paper.turning_axes import Axes
+from exudyn_models.solver import solver_run as solving
+from exudyn_models.solver.solver_run import StepCount, solve
+from reference_model import SimulationError
+
+RING = replace(FIG11, polar_inertia=0.0072, damping=0.1, friction_force=0.09, offset=0.1)
+CASES = {
+    "pin": (FIG5, [0.1, 0.0, 0.03, 0.0]),
+    "ring": (RING, [0.1, 0.0, 0.0, 0.03, 0.0, 1.2]),
+    "six points": (replace(RING, contact_points=6), [0.1, 0.0, 0.0, 0.03, 0.0, 1.2]),
+}
+UNTIL = 6.0  # past the first stick phase of each
+TOLERANCE = 1e-8
+
+
+@cache
+def measured(name):
+    """States without a change of units, their error bar (of the largest component), and the number of steps."""
+    system, start = CASES[name]
+    states, error = refined(
+        lambda tolerance: simulate(system, start, [0.0, 4.0, UNTIL], tolerance=tolerance).states, TOLERANCE
+    )
+    return states, error.max(), simulate(system, start, [0.0, 4.0, UNTIL], tolerance=TOLERANCE).solution.steps
+
+
+def changed(name, scale):
+    """Largest change of the dimensionless motion over its error bar, and the ratio of steps, in other units."""
+    system, start = CASES[name]
+    states, error, steps = measured(name)
+    times = np.array([0.0, 4.0, UNTIL]) * scale.time
+    found = simulate(scale.system(system), scale.states(start), times, tolerance=TOLERANCE)
+    assert [phase.kind for phase in found.phases].count("stick") == 1
+    off = np.abs(found.states / scale.states(np.ones(system.state_size)) - states).max() / error
+    return off, found.solution.steps / steps
+
+
+def random_scales(count, seed=13):
+    rng = np.random.default_rng(seed)
+    exponents = rng.uniform([-9.0, -6.0, -9.0], [6.0, 6.0, 9.0], size=(count, 3))
+    return [Scale(*(10.0**row)) for row in exponents]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_changes_of_unit_leave_the_dimensionless_motion_the_same_at_the_same_cost(name):
+    for scale in random_scales(3):
+        off, steps = changed(name, scale)
+        assert off < 1.0
+        assert 0.5 < steps < 2.0
+
+
+def test_the_regularisation_is_told_in_metres_per_second():
+    scale = Scale(1e-3, 5e-3, 0.5)
+    one = simulate(FIG5, CASES["pin"][1], [0.0, 1.0])
+    other = simulate(scale.system(FIG5), scale.states(CASES["pin"][1]), [0.0, scale.time])
+    speed = FIG5.offset * FIG5.disc_speed  # the start, and the disc's turns
+    assert one.solution.regularisation == pytest.approx(1e-7 * speed)
+    assert other.solution.regularisation == pytest.approx(1e-7 * speed * scale.length / scale.time)
+
+
+def test_the_start_of_a_clutch_ends_in_the_equilibrium_as_the_paper_s_does():
+    pin = CLUTCH.system(FIG5)
+    start = CLUTCH.states([0.1, 0.0, 0.0275, 0.0])
+    times = [0.0, 60.0 * CLUTCH.time]
+    exact = reference_model.simulate(pin, start, times).at_end
+    np.testing.assert_allclose(simulate(pin, start, times).at_end[:2], exact[:2], atol=2e-4 * pin.offset)
+
+
+def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
+    omega, stiff = 300.0, 1.7e5  # the spring's own frequency is above ω, and does not matter either
+    pin = reference_model.PinOnDisc(
+        mass=1.0, stiffness=stiff, damping=10.0, friction_force=100.0, disc_speed=omega, offset=1e-4
+    )
+    found = simulate(pin, [1e-4, 0.0, 0.0, omega * 1e-4], [0.0, 0.1, 0.2])
+    assert [phase.kind for phase in found.phases] == ["stick"]
+    assert found.solution.steps <= 500
+    turned = 1e-4 * np.exp(1j * omega * found.times)
+    np.testing.assert_allclose(found.states[:, 0] + 1j * found.states[:, 1], turned, rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("system", "start"),
+    [
+        (replace(FIG5, hardening=0.3), [1.3, 0.0, 0.0, -1.3]),
+        (replace(FIG11, offset=0.1), [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]),
+        (replace(FIG11, offset=0.1, contact_points=6), [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]),
+    ],
+)
+@pytest.mark.parametrize("speed", [1.5, -0.7])
+def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
+    """Coriolis and centrifugal force, the turning ground, damper and shaft: all that axes change, at any speed."""
+    axes, start = Axes(speed), np.array(start)
+    options = {"integrator": "DOPRI5", "step": 0.1, "tolerance": 1e-12}
+    fixed = solve(build(system, start, regularisation=1e-7), 0.0, 5.0, **options)
+    turning = solve(
+        build(system, axes.start(start), regularisation=1e-7, axes_speed=speed), 0.0, 5.0, **options
+    )
+    seen = axes.fixed_steps(turning)
+    np.testing.assert_allclose(seen.states[-1], fixed.states[-1], rtol=0.0, atol=2e-11)
+    np.testing.assert_allclose(seen.accelerations[-1], fixed.accelerations[-1], rtol=0.0, atol=2e-11)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_units_make_length_time_and_mass_of_order_one(name):
+    system, start = CASES[name]
+    units = Units.of(system, np.array(start))
+    small = units.of_system(system)
+    assert small.mass == 1.0
+    assert max(small.natural_frequency, abs(small.disc_speed)) == pytest.approx(1.0)
+    assert max(np.abs(np.array(start) / units.of_states(len(start)))[:2]) <= 1.0
+    assert small.friction_force <= 1.0 + 1e-12
+
+
+def test_only_what_is_asked_for_is_kept_and_the_phases_are_the_same(monkeypatch):
+    arguments = FIG5, CASES["pin"][1], [0.0, 30.0]
+    whole = simulate(*arguments)
+    kept = []
+    add = Recording.add
+
+    def adding(recording, run, axes):
+        add(recording, run, axes)
+        kept.append(sum(len(part.times) for part in recording._kept))
+
+    monkeypatch.setattr("exudyn_models.paper.recording.MOST_KEPT", 1000)
+    monkeypatch.setattr(Recording, "add", adding)
+    thinned = simulate(*arguments)
+    assert max(kept) < whole.solution.steps / 2
+    assert [(p.kind, p.start, p.end) for p in thinned.phases] == [
+        (p.kind, p.start, p.end) for p in whole.phases
+    ]
+    np.testing.assert_array_equal(thinned.states, whole.states)
+
+
+def test_a_long_run_goes_on_from_part_to_part_as_if_it_were_one(monkeypatch):
+    start, times = [1.3, 0.0, 0.0, -1.3], [0.0, 50.0, 100.0]
+    whole = simulate(FIG5, start, times)
+    monkeypatch.setattr("exudyn_models.paper.alternating_solvers.LOOK_BACK", 200)
+    parts = simulate(FIG5, start, times)
+    np.testing.assert_allclose(parts.states, whole.states, rtol=0.0, atol=1e-9)
+    assert parts.solution.steps < 1.2 * whole.solution.steps
+
+
+@pytest.mark.parametrize("end", [1e9, 1e15])
+def test_a_run_of_far_too_many_steps_says_so_early(end, monkeypatch):
+    monkeypatch.setattr(solving, "LOOK_BACK", 500)
+    with pytest.raises(SimulationError, match=r"steps ahead .*simulate it in parts"):
+        simulate(FIG5, [1.3, 0.0, 0.0, -1.3], [0.0, end])
+
+
+def test_steps_are_counted_and_judged_by_their_pace():
+    count = StepCount(end=100.0)
+    count.steps = solving.MOST_STEPS
+    assert "more than 5,000,000 steps" in count.count(1.0)
+    slow = StepCount(end=1e9, seconds=2.0)
+    said = [slow.count(1e-3 * i) for i in range(1, solving.LOOK_BACK + 1)]
+    assert not any(said[:-1])
+    assert "steps ahead after 20,000 at 40 s after the start" in said[-1]
+
+
+def test_the_built_in_contact_follows_the_units_too():
+    scale = Scale(1e-4, 1e-3, 2.0)
+    system, start = CASES["six points"]
+    one = simulate_with_native_contact(system, start, [0.0, 2.0], tolerance=1e-8).at_end
+    other = simulate_with_native_contact(
+        scale.system(system), scale.states(start), [0.0, 2.0 * scale.time], tolerance=1e-8
+    ).at_end
+    np.testing.assert_allclose(other / scale.states(np.ones(6)), one, rtol=0.0, atol=1e-8)

@@ -1,0 +1,149 @@
+"""The closed form of the ring against arbitrary precision, quadrature, and what any mean slip speed obeys."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from reference_model.contact.elliptic import SMALL, mean_curvatures, mean_directions
+
+ROUNDING = 1e-13
+AT_REST = 1e-9  # within 1e-12 of U = W
+
+# (U + W)·E and (U − W)·K cancel to (W/U)² of themselves, and E to half of that once more.
+DIGITS = 90
+
+
+def exact_directions(slip, rim):
+    """∂P/∂U and ∂P/∂W by the modulus 4UW/(U + W)², which the code does not use."""
+    with mpmath.workdps(DIGITS):
+        U, W = mpmath.mpf(slip), mpmath.mpf(rim)
+        m = 4 * U * W / (U + W) ** 2
+        even, odd = (U + W) * mpmath.ellipe(m), (U - W) * mpmath.ellipk(m) if U != W else mpmath.mpf(0)
+        return float((even + odd) / (mpmath.pi * U)), float((even - odd) / (mpmath.pi * W))
+
+
+def exact_curvatures(slip, rim):
+    """Second derivatives of P by differences in arbitrary precision."""
+
+    def speed(U, W):
+        return 2 / mpmath.pi * (U + W) * mpmath.ellipe(4 * U * W / (U + W) ** 2)
+
+    with mpmath.workdps(DIGITS):
+        at = (mpmath.mpf(slip), mpmath.mpf(rim))
+        h = min(*at, abs(at[0] - at[1])) * mpmath.mpf(10) ** -20
+        return [float(mpmath.diff(speed, at, orders, h=h)) for orders in ((2, 0), (1, 1), (0, 2))]
+
+
+def random_arguments(count, seed=20):
+    """Pairs (U, W): half of them of any ratio from 1e-16 to 1e16, half nearer to each other the later they come."""
+    rng = np.random.default_rng(seed)
+    slip = 10.0 ** rng.uniform(-3.0, 3.0, count)
+    ratio = 10.0 ** rng.uniform(-16.0, 16.0, count)
+    near = rng.random(count) < 0.5
+    ratio[near] = 1.0 + rng.choice([-1.0, 1.0], near.sum()) * 10.0 ** rng.uniform(-16.0, -0.1, near.sum())
+    return [(u, u * k) for u, k in zip(slip.tolist(), ratio.tolist(), strict=True)]
+
+
+def test_ring_in_closed_form_is_right_for_ten_thousand_ratios_of_slip_and_spin():
+    resting = 0
+    for slip, rim in random_arguments(10_000):
+        found, exact = mean_directions(slip, rim), exact_directions(slip, rim)
+        at_rest = abs(slip - rim) <= 1e-12 * rim
+        resting += at_rest
+        assert found == pytest.approx(exact, rel=AT_REST if at_rest else ROUNDING, abs=0.0), (slip, rim)
+    assert resting > 500
+
+
+EDGES = [
+    1.0,
+    1.0 - 2.0**-53,
+    math.nextafter(1.0, 2.0),
+    1.0 - 1e-12,
+    1.0 + 1e-12,
+    1.0 + 1e-7,
+    1e-7,
+    0.3,
+    0.999,
+]
+# Where the series takes over, on both sides.
+EDGES += [math.sqrt(SMALL) * (1.0 + step) for step in (-1e-9, 1e-9)]
+EDGES += [1.0 / ratio for ratio in EDGES]
+
+
+@pytest.mark.parametrize("ratio", EDGES)
+def test_ring_is_right_at_the_edges(ratio):
+    for slip in (1e-150, 0.7, 1e150):
+        rim = slip * ratio
+        at_rest = abs(slip - rim) <= 1e-12 * rim
+        exact = exact_directions(slip, rim)
+        assert mean_directions(slip, rim) == pytest.approx(
+            exact, rel=AT_REST if at_rest else ROUNDING, abs=0.0
+        )
+
+
+def test_disc_that_only_turns_or_only_slips_has_the_limits_of_the_formula():
+    assert mean_directions(0.0, 0.3) == (0.0, 1.0)
+    assert mean_directions(0.3, 0.0) == (1.0, 0.0)
+    for small in (1e-300, 1e-30, 1e-9):
+        assert mean_directions(small, 0.5) == pytest.approx((small, 1.0), rel=1e-15)
+        assert mean_directions(0.5, small) == pytest.approx((1.0, small), rel=1e-15)
+    assert mean_directions(1e-300, 1e300) == (0.0, 1.0)
+    assert mean_directions(5e-324, 0.0) == (1.0, 0.0)
+    assert mean_directions(1.7e308, 1.7e308) == pytest.approx([2.0 / math.pi] * 2, rel=1e-15)
+    assert mean_directions(5e-324, 5e-324) == pytest.approx([2.0 / math.pi] * 2, rel=1e-15)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.3, 0.999, 1.0, 1.5, 40.0])
+def test_ring_is_the_integral_of_friction_over_its_points(ratio):
+    def at(chi):
+        x, y = 1.0 - ratio * math.cos(chi), ratio * math.sin(chi)
+        speed = math.hypot(x, y) or 1.0
+        return x / speed, (y * math.sin(chi) - x * math.cos(chi)) / speed
+
+    for i in (0, 1):
+        # By symmetry half of the circle; the point at rest is at its end.
+        integral, _ = quad(lambda chi, i=i: at(chi)[i], 0.0, math.pi, epsabs=1e-13, epsrel=1e-13, limit=400)
+        assert mean_directions(1.0, ratio)[i] == pytest.approx(integral / math.pi, abs=1e-12)
+
+
+def test_curvatures_are_the_second_derivatives():
+    arguments = [pair for pair in random_arguments(300, seed=21) if pair[0] != pair[1]]
+    arguments += [(1.0, math.sqrt(SMALL) * (1.0 + step)) for step in (-1e-9, 1e-9)]
+    for slip, rim in arguments:
+        exact = exact_curvatures(slip, rim)
+        assert mean_curvatures(slip, rim) == pytest.approx(exact, rel=ROUNDING, abs=0.0), (slip, rim)
+
+
+def test_curvatures_have_the_limits_of_the_formula():
+    assert mean_curvatures(0.0, 0.4) == pytest.approx((1.25, 0.0, 0.0), rel=1e-15)
+    assert mean_curvatures(0.4, 0.0) == pytest.approx((0.0, 0.0, 1.25), rel=1e-15)
+
+
+def test_slope_is_infinite_like_a_logarithm_where_a_point_rests():
+    for side in (1.0, -1.0):
+        slopes = [mean_curvatures(1.0, 1.0 + side * gap)[0] for gap in (1e-6, 1e-9)]
+        assert slopes[1] - slopes[0] == pytest.approx(math.log(1e3) / math.pi, rel=1e-4)
+
+
+def test_slip_and_spin_can_be_exchanged():
+    for slip, rim in random_arguments(200, seed=22):
+        assert mean_directions(slip, rim) == mean_directions(rim, slip)[::-1]
+        if slip != rim:
+            assert mean_curvatures(slip, rim) == mean_curvatures(rim, slip)[::-1]
+
+
+def test_mean_speed_lies_between_its_bounds_and_bends_upwards():
+    for slip, rim in random_arguments(500, seed=23):
+        along_slip, along_rim = mean_directions(slip, rim)
+        speed = along_slip * slip + along_rim * rim  # Euler's theorem for degree 1
+        # A mean is not below the speed of the mean slip, nor above the root of the mean square.
+        assert max(slip, rim) * (1.0 - 1e-15) <= speed <= math.hypot(slip, rim) * (1.0 + 1e-15)
+        if slip != rim:
+            by_slip, mixed, by_rim = mean_curvatures(slip, rim)
+            assert min(by_slip, by_rim) > 0.0 > mixed
+            # First derivatives are of degree 0: the matrix is singular along (U, W), and so positive semidefinite.
+            assert by_slip * slip == pytest.approx(-mixed * rim, rel=1e-14)
+            assert by_rim * rim == pytest.approx(-mixed * slip, rel=1e-14)

@@ -1,0 +1,266 @@
+"""Every formula of section 4 against a route that does not use it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from disc_equations import LARGE, disc_in_units, eq_23, mirrored
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
+
+from compare.claims.paper_parameters import FIG8, FIG11
+from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.formulas import disc as formulas
+from reference_model.formulas import pin as pin_formulas
+from reference_model.steady.stability import onset_load
+from reference_model.steady.steady_states import self_centred_equilibria, whirls
+
+ROUNDING = 1e-13
+
+
+# ---------------------------------------------------------------- (22)
+
+
+def test_expansion_of_the_slip_speed_misses_its_reciprocal_by_the_fourth_term():
+    slip, place = complex(0.3, -0.7), 1.1
+    errors = []
+    for rim_speed in (0.01, 0.005):
+        of_point = slip - 1j * rim_speed * np.exp(1j * place)  # (21)
+        exact = math.hypot(abs(slip), rim_speed) / abs(of_point)
+        errors.append(
+            [
+                form(slip, rim_speed, place) - exact
+                for form in (formulas.inverse_slip_speed, formulas.inverse_slip_speed_as_printed)
+            ]
+        )
+    three, two = np.log2(np.divide(*errors))
+    assert three == pytest.approx(3.0, abs=0.05)
+    assert two == pytest.approx(2.0, abs=0.05)
+
+
+def averaged(expansion, slip, rim_speed):
+    """Force and moment over μN, and over R, by (20) and (21) with an expansion of ν̄_r/|ν_r|, by quadrature."""
+    speed = math.hypot(abs(slip), rim_speed)
+
+    def of_point(place):
+        velocity = slip - 1j * rim_speed * np.exp(1j * place)
+        along_rim = velocity.real * math.sin(place) - velocity.imag * math.cos(place)
+        return (
+            np.array([-velocity.real, -velocity.imag, along_rim]) * expansion(slip, rim_speed, place) / speed
+        )
+
+    return [
+        quad(lambda place, i=i: of_point(place)[i], 0.0, 2.0 * np.pi)[0] / (2.0 * np.pi) for i in range(3)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("slip", "rim_speed"), [(1.0 + 0j, 1.0), (0.3 - 0.7j, -2.0), (2j, 0.1), (1e-6 + 0j, 1.0), (0j, -1.0)]
+)
+def test_23_is_the_average_of_three_terms_of_the_expansion_and_not_of_the_two_that_are_printed(
+    slip, rim_speed
+):
+    unit = replace(FIG8, friction_force=1.0, contact_radius=1.0)
+    expected = eq_23(unit)(slip.real, slip.imag, rim_speed, 0.0)
+    assert averaged(formulas.inverse_slip_speed, slip, rim_speed) == pytest.approx(expected, abs=1e-14)
+    both = 0.75 * abs(slip * rim_speed) ** 2 / (abs(slip) ** 2 + rim_speed**2) ** 2
+    two = averaged(formulas.inverse_slip_speed_as_printed, slip, rim_speed)
+    # What is missing is the term with Φ.
+    missing = both / math.hypot(abs(slip), rim_speed) * np.array([-slip.real, -slip.imag, rim_speed])
+    assert np.add(two, missing) == pytest.approx(expected, abs=1e-14)
+
+
+# ---------------------------------------------------------------- (24) to (26)
+
+
+def angles_of(disc, equilibrium):
+    """A, α and θ of (24) from a state, by plain trigonometry."""
+    radius = math.hypot(equilibrium.x, equilibrium.y)
+    rim = disc.contact_radius * (1.0 - equilibrium.spin / disc.disc_speed)
+    return math.hypot(radius, rim), math.atan2(rim, radius), math.atan2(equilibrium.y, equilibrium.x)
+
+
+DISCS = [
+    mirrored(FIG8),
+    replace(FIG8, offset=-0.1),
+    replace(FIG8, shaft_speed=3.0),
+    LARGE,
+    mirrored(LARGE),
+]
+
+
+@pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
+@pytest.mark.parametrize("disc", DISCS)
+def test_corrected_26_holds_line_by_line_at_the_steady_state_of_23(disc, share):
+    disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
+    (equilibrium,) = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
+    distance, alpha, theta = angles_of(disc, equilibrium)
+    assert formulas.squared_distance(disc, alpha) == pytest.approx(distance**2, rel=1e-12)
+    difference = 1.0 - disc.shaft_speed / disc.disc_speed
+    assert formulas.speed_difference_at(disc, distance, alpha) == pytest.approx(difference, rel=1e-12)
+    # An arccos near 1 has the rounding of 1 over its own size.
+    assert formulas.polar_angle(disc, distance, alpha) == pytest.approx(
+        theta, abs=1e-15 / abs(math.sin(theta))
+    )
+    place = formulas.place_of(disc, distance, alpha, theta)
+    assert place == pytest.approx((equilibrium.x, equilibrium.y, equilibrium.spin), rel=1e-13, abs=1e-15)
+
+
+@pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
+@pytest.mark.parametrize("disc", DISCS)
+def test_places_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, share):
+    disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
+    found = formulas.places_by_26(disc)
+    expected = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
+    assert len(found) == len(expected) == 1
+    assert found[0] == pytest.approx((expected[0].x, expected[0].y, expected[0].spin), abs=1e-12)
+    assert formulas.semicircle_residual(disc, found[0].x, found[0].y) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_26_as_printed_is_right_without_load_only():
+    errors = []
+    for load in (0.0, 0.001, 0.05, 0.09):
+        disc = replace(FIG8, friction_force=load)
+        (printed,), (corrected,) = formulas.places_by_26(disc, as_printed=True), formulas.places_by_26(disc)
+        errors.append(math.dist(printed[:2], corrected[:2]))
+    assert errors[0] == 0.0
+    assert errors == sorted(errors)
+    assert errors[1] > 2e-4
+    assert errors[3] > 0.04  # of an offset of 0.1
+
+
+def test_25_has_two_lengths_and_a_number():
+    load, shaft_damping, difference = formulas.reduced_parameters(FIG8)
+    assert load == pytest.approx(0.05, rel=1e-15)
+    assert shaft_damping == pytest.approx(0.01 * 0.8 / 0.12, rel=1e-15)
+    assert difference == pytest.approx(0.375, rel=1e-15)
+    scaled = formulas.reduced_parameters(disc_in_units(FIG8, mass=3.0, length=0.2, time=7.0))
+    assert scaled == pytest.approx((0.2 * load, 0.2 * shaft_damping, difference), rel=1e-14)
+
+
+def test_without_shaft_difference_26_gives_the_equilibrium_of_a_pin():
+    disc = replace(FIG8, shaft_speed=0.8)
+    (place,) = formulas.places_by_26(disc)
+    x, y = pin_formulas.equilibrium_position(formulas.pin_of(disc))
+    assert place == pytest.approx((x, y, 0.8), rel=1e-14)
+    assert formulas.places_by_26(replace(disc, friction_force=0.1001)) == ()
+
+
+@pytest.mark.parametrize("name", ["stiffness", "disc_speed", "shaft_damping", "offset"])
+def test_26_is_refused_where_it_has_no_value(name):
+    with pytest.raises(ValueError, match=f"{name} = 0"):
+        formulas.places_by_26(replace(FIG8, **{name: 0.0}))
+
+
+def test_angle_of_a_disc_farther_out_than_the_offset_is_refused():
+    with pytest.raises(ValueError, match=r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"):
+        formulas.polar_angle(FIG8, 0.2, 0.0)
+
+
+# ---------------------------------------------------------------- the whirl
+
+
+@pytest.mark.parametrize("law", [Ring, ThreeTermRing])
+@pytest.mark.parametrize("alpha", [0.05, 0.7, 0.9, 1.5])
+@pytest.mark.parametrize("disc", [FIG11, mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
+def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
+    contact = law(disc.contact_radius)
+    load, radius, spin = formulas.whirl_at(disc, alpha, contact)
+    found = whirls(replace(disc, friction_force=load), contact)
+    nearest = min(found, key=lambda whirl: abs(whirl.radius - radius))
+    assert (nearest.radius, nearest.spin) == pytest.approx((radius, spin), rel=1e-12)
+
+
+@pytest.mark.parametrize("alpha", [0.3, 1.2])
+def test_whirl_at_a_ratio_balances_the_forces_of_23(alpha):
+    load, radius, spin = formulas.whirl_at(FIG11, alpha, ThreeTermRing(0.12))
+    slip_y = (1.0 - 1.5) * radius  # k = 1, centre on the x axis
+    force_x, force_y, moment = eq_23(replace(FIG11, friction_force=load))(0.0, slip_y, 1.5 - spin, 0.0)
+    assert force_x == 0.0
+    assert force_y == pytest.approx(0.5 * radius, rel=ROUNDING)
+    assert moment == pytest.approx(0.015 * (spin - 1.25), rel=ROUNDING)
+    assert math.tan(alpha) == pytest.approx(0.12 * (1.5 - spin) / abs(slip_y), rel=ROUNDING)
+
+
+def test_whirl_of_hardly_any_size_takes_the_onset_load():
+    for law in (Ring, ThreeTermRing):
+        load = formulas.whirl_at(FIG11, math.pi / 2.0 - 1e-7, law(0.12)).load
+        assert load == pytest.approx(onset_load(FIG11, law(0.12)), rel=1e-13)
+        arm = formulas.whirl_arm(FIG11, law(0.12))
+        assert arm(0.0, 1.0) == pytest.approx(arm(1e-8, 1.0), rel=ROUNDING)
+        assert arm(3.0, 2.0) == pytest.approx(arm(0.3, 0.2), rel=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("changes", "alpha", "message"),
+    [
+        ({}, 0.0, "alpha = 0 rad"),
+        ({}, 1.6, r"alpha = 1\.6 rad"),
+        ({"shaft_speed": 1.5}, 1.0, "disc_speed - shaft_speed = 0 rad/s"),
+        ({"shaft_damping": 0.0}, 1.0, "shaft_damping = 0"),
+        ({"disc_speed": 0.7}, 1.0, r"disc_speed = 0\.7 rad/s"),
+        ({"damping": 0.0}, 1.0, "damping = 0"),
+        ({"contact_points": 6}, 1.0, "contact_points = 6"),
+    ],
+)
+def test_whirl_at_a_ratio_is_refused_where_there_is_none(changes, alpha, message):
+    with pytest.raises(ValueError, match=message):
+        formulas.whirl_at(replace(FIG11, **changes), alpha)
+
+
+# ---------------------------------------------------------------- sticking
+
+
+def mean_slip_speed(slip, rim):
+    """P by the trapezoidal rule, which errs by some 1/n² of the step at a kink at most."""
+    places = 2.0 * np.pi * (np.arange(4096) + 0.5) / 4096
+    return float(np.mean(np.abs(slip - rim * np.exp(1j * places))))
+
+
+@pytest.mark.parametrize("torque_share", [-0.9, 0.0, 0.05, 0.5, 0.97])
+def test_friction_holds_the_forces_inside_of_its_limit_surface(torque_share):
+    """P is the support function of the forces and moments that friction can hold: F·U + M·S <= μN·P(U, S)."""
+    disc = replace(LARGE, shaft_speed=2.2 - torque_share * 0.4 * 0.5 / 0.3)
+    held = formulas.held_pin(disc)
+    moment = abs(torque_share) * 0.4 * 0.5
+    bound = minimize_scalar(
+        lambda spin: 0.4 * mean_slip_speed(1.0, 0.5 * spin) - moment * spin,
+        bounds=(0.0, 40.0),
+        method="bounded",
+    )
+    assert held.friction_force == pytest.approx(bound.fun, rel=1e-6)
+    assert replace(held, friction_force=0.4) == formulas.pin_of(disc)
+
+
+def test_sticking_radius_of_a_disc_is_that_of_a_pin_with_less_friction():
+    disc = replace(FIG8, friction_force=0.3)
+    free = replace(disc, shaft_speed=0.8)
+    assert formulas.held_pin(free) == formulas.pin_of(free)
+    radii = [pin_formulas.sticking_radius(formulas.held_pin(d)) for d in (free, disc)]
+    assert radii[1] < radii[0]
+
+
+def test_disc_whose_shaft_asks_for_too_large_a_moment_never_sticks():
+    with pytest.raises(ValueError, match=r"moment of 0\.0024 N m.*the shaft's, 0\.003 N m"):
+        formulas.held_pin(replace(FIG8, friction_force=0.02))
+    with pytest.raises(ValueError, match="contact_points = 6"):
+        formulas.held_pin(replace(FIG8, contact_points=6))
+
+
+# ---------------------------------------------------------------- units
+
+ratios = st.floats(0.01, 100.0)
+
+
+@given(st.floats(0.01, 0.99), ratios, ratios, ratios)
+def test_units_of_26_do_not_matter(share, mass, length, time):
+    disc = replace(FIG8, friction_force=share * 0.1)
+    (one,), (two,) = (
+        formulas.places_by_26(disc),
+        formulas.places_by_26(disc_in_units(disc, mass, length, time)),
+    )
+    assert (two.x, two.y) == pytest.approx((length * one.x, length * one.y), rel=1e-9)
+    assert time * two.spin == pytest.approx(one.spin, rel=1e-10)

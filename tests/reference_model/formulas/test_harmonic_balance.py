@@ -1,0 +1,116 @@
+"""The balance of one harmonic of a whirl on a hardening support: exact without offset, of a known order with one."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from test_systems import refusal
+
+from reference_model import PinOnDisc, simulate, whirl_orbit, whirls
+from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
+from reference_model.formulas.pin import whirl_shift
+
+HARD = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=2.5, hardening=0.5)
+HARDER = PinOnDisc(mass=1.3, stiffness=1.0, damping=0.4, friction_force=0.3, disc_speed=2.0, hardening=1.5)
+MIRRORED = PinOnDisc(mass=2.0, stiffness=3.0, damping=0.8, friction_force=0.7, disc_speed=-2.5, hardening=2.0)
+CUBIC = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.1, friction_force=0.06, disc_speed=2.5, hardening=2.0)
+
+
+@pytest.mark.parametrize("pin", [HARD, HARDER, MIRRORED, CUBIC, replace(HARD, hardening=0.0)])
+def test_without_offset_the_balance_is_the_whirl(pin):
+    (whirl,) = whirls(pin)
+    found = whirl_by_harmonic_balance(pin)
+    assert found.radius == pytest.approx(whirl.radius, rel=1e-12)
+    assert found.frequency == pytest.approx(whirl.frequency, rel=1e-12)
+    assert abs(found.mean) < 1e-12 * whirl.radius
+
+
+def test_without_offset_the_amplitude_of_a_simulated_motion_is_that_of_the_balance():
+    # From half of it; all that is left of the slowest mode, exp(−0.055t), is 3e-12 after 480 s.
+    (whirl,) = whirls(HARD)
+    end = simulate(HARD, 0.5 * whirl.state, [0.0, 480.0], tolerance=1e-12)
+    assert end.radius[-1] == pytest.approx(whirl_by_harmonic_balance(HARD).radius, rel=1e-10)
+
+
+@pytest.mark.parametrize("pin", [HARD, HARDER, MIRRORED])
+@pytest.mark.parametrize("offset", [0.05, -0.1])
+def test_mean_and_first_harmonic_of_the_forces_are_those_of_the_motion_assumed(pin, offset):
+    pin = replace(pin, offset=offset)
+    found = whirl_by_harmonic_balance(pin)
+
+    def force(turn):
+        """What springs, dampers, friction and inertia leave over of (1), as a share of friction."""
+        e = found.radius * np.exp(1j * turn)
+        w = found.mean + e - pin.offset
+        v = 1j * found.frequency * e
+        slip = v - 1j * pin.disc_speed * (found.mean + e)
+        springs = (pin.stiffness + pin.hardening * abs(w) ** 2) * w
+        friction = pin.friction_force * slip / abs(slip)
+        return (
+            -pin.mass * found.frequency**2 * e + pin.damping * v + springs + friction
+        ) / pin.friction_force
+
+    def harmonic(order):
+        return [
+            quad(lambda turn, part=part: part(force(turn) * np.exp(-1j * order * turn)), 0.0, 2.0 * math.pi)[
+                0
+            ]
+            for part in (np.real, np.imag)
+        ]
+
+    assert harmonic(0) == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert harmonic(1) == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert np.abs(harmonic(2)).max() > 1e-3  # it is left out
+
+
+@pytest.mark.parametrize("pin", [HARD, HARDER, MIRRORED])
+def test_error_of_radius_and_frequency_is_of_second_order_in_the_offset_and_that_of_the_mean_of_first(pin):
+    offsets = np.array([0.002, 0.004])
+    errors = []
+    for offset in offsets:
+        balanced = whirl_by_harmonic_balance(replace(pin, offset=offset))
+        orbit = whirl_orbit(replace(pin, offset=offset), samples=64)
+        z = orbit.trajectory.states[:-1, 0] + 1j * orbit.trajectory.states[:-1, 1]
+        harmonics = np.fft.fft(z) / len(z)
+        first = harmonics[1 if pin.disc_speed > 0.0 else -1]
+        errors.append(
+            [
+                abs(abs(first) - balanced.radius),
+                abs(orbit.frequency - abs(balanced.frequency)),
+                abs(harmonics[0] - balanced.mean),
+            ]
+        )
+    orders = np.diff(np.log(errors), axis=0)[0] / np.log(2.0)
+    assert orders == pytest.approx([2.0, 2.0, 1.0], abs=0.05), errors
+    # The balance is not just the circle without offset, whose error is of the same order.
+    (whirl,) = whirls(replace(pin, offset=0.0))
+    assert errors[1][0] < 0.2 * abs(abs(first) - whirl.radius)
+
+
+def test_on_a_linear_support_the_mean_is_that_of_18_to_first_order():
+    pin = replace(HARD, hardening=0.0, offset=1e-4)
+    x, y = whirl_shift(pin)
+    assert whirl_by_harmonic_balance(pin).mean / 1e-4 == pytest.approx(complex(x, y) / 1e-4, abs=1e-6)
+
+
+def test_balance_in_a_mirror_and_turned_by_half_a_turn():
+    pin = replace(HARD, offset=0.1)
+    found = whirl_by_harmonic_balance(pin)
+    mirrored = whirl_by_harmonic_balance(replace(pin, disc_speed=-pin.disc_speed))
+    assert (mirrored.radius, mirrored.frequency) == pytest.approx((found.radius, -found.frequency), rel=1e-12)
+    assert mirrored.mean == pytest.approx(found.mean.conjugate(), rel=1e-11)
+    turned = whirl_by_harmonic_balance(replace(pin, offset=-0.1))
+    assert (turned.radius, turned.frequency) == pytest.approx((found.radius, found.frequency), rel=1e-12)
+    assert turned.mean == pytest.approx(-found.mean, rel=1e-11)
+
+
+def test_balance_that_is_none_is_refused():
+    assert refusal(whirl_by_harmonic_balance, replace(HARD, stop_stiffness=3.0)).startswith(
+        "stop_stiffness = 3 N/m"
+    )
+    assert "as fast as the disc" in refusal(whirl_by_harmonic_balance, replace(HARD, damping=0.0))
+    assert "ends by sticking" in refusal(whirl_by_harmonic_balance, replace(HARD, disc_speed=1.1))
+    with pytest.raises(RuntimeError, match="offset = 50 m: no balance of one harmonic near the whirl"):
+        whirl_by_harmonic_balance(replace(HARD, offset=50.0))

@@ -1,0 +1,630 @@
+"""Every formula of sections 2 and 3 against a route that does not use it."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from plain_engines import in_units
+from scipy.optimize import brentq, minimize_scalar, root
+
+from reference_model.formulas import pin as formulas
+from reference_model.systems import PinOnDisc
+
+ROUNDING = 1e-13  # some hundred operations on numbers of order one
+
+FIG_4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.1)
+FIG_5 = replace(FIG_4, friction_force=0.09)
+HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
+
+
+def residual_of_eq_1(pin, x, y, vx, vy, ax, ay):
+    """Left side minus right side of (1)."""
+    slip_x, slip_y = vx + pin.disc_speed * y, vy - pin.disc_speed * x
+    slip_speed = np.hypot(slip_x, slip_y)
+    return np.array(
+        [
+            pin.mass * ax + pin.damping * vx + pin.stiffness * (x - pin.offset)
+            + pin.friction_force * slip_x / slip_speed,
+            pin.mass * ay + pin.damping * vy + pin.stiffness * y + pin.friction_force * slip_y / slip_speed,
+        ]
+    )  # fmt: skip
+
+
+def residual_of_eq_1_on(pin, amplitudes, frequency, samples=64):
+    """Residual of (1), as x + iy over one period, of z = Σ amplitudes[n]·exp(in·frequency·t)."""
+    phase = 2.0 * np.pi * np.arange(samples) / samples
+    z, v, a = (
+        sum(c * (1j * n * frequency) ** order * np.exp(1j * n * phase) for n, c in amplitudes.items())
+        for order in range(3)
+    )
+    rx, ry = residual_of_eq_1(pin, z.real, z.imag, v.real, v.imag, a.real, a.imag)
+    return rx + 1j * ry
+
+
+# ---------------------------------------------------------------- (3) to (5)
+
+
+@pytest.mark.parametrize("offset", [0.1, -0.1])
+@pytest.mark.parametrize("disc_speed", [0.3, 1.5, -0.3, -1.5])
+@pytest.mark.parametrize("load_ratio", [0.0, 0.2, 0.9, 0.999])
+def test_equilibrium_solves_the_equations_of_motion(offset, disc_speed, load_ratio):
+    pin = replace(HEAVY, offset=offset, disc_speed=disc_speed)
+    pin = replace(pin, friction_force=load_ratio * formulas.largest_load_with_equilibrium(pin))
+    x, y = formulas.equilibrium_position(pin)
+    assert np.abs(residual_of_eq_1(pin, x, y, 0.0, 0.0, 0.0, 0.0)).max() < ROUNDING
+    assert formulas.semicircle_residual(pin, x, y) == pytest.approx(0.0, abs=ROUNDING)
+
+
+@pytest.mark.parametrize("offset", [0.1, -0.1])
+@pytest.mark.parametrize("disc_speed", [1.5, -1.5])
+def test_radius_and_angle_of_the_equilibrium_give_its_position(offset, disc_speed):
+    pin = replace(FIG_5, offset=offset, disc_speed=disc_speed)
+    radius, angle = formulas.equilibrium_radius(pin), formulas.equilibrium_angle(pin)
+    assert -math.pi <= angle <= math.pi
+    expected = (radius * math.cos(angle), radius * math.sin(angle))
+    assert formulas.equilibrium_position(pin) == pytest.approx(expected, rel=ROUNDING)
+
+
+def test_equilibrium_is_dragged_along_by_the_disc():
+    assert formulas.equilibrium_position(FIG_5)[1] > 0.0
+    assert formulas.equilibrium_position(replace(FIG_5, disc_speed=-1.5))[1] < 0.0
+
+
+def test_semicircle_passes_through_the_axis_and_the_relaxed_point_and_nowhere_else_on_the_x_axis():
+    x = np.array([0.0, 0.1, 0.05, 0.2])
+    residual = formulas.semicircle_residual(FIG_4, x, np.zeros(4))
+    assert residual == pytest.approx(x * (x - 0.1), abs=ROUNDING)
+
+
+def test_pin_reaches_the_axis_at_the_largest_load():
+    limit = formulas.largest_load_with_equilibrium(HEAVY)
+    at_limit = replace(HEAVY, friction_force=limit)
+    assert formulas.equilibrium_radius(at_limit) == 0.0
+    assert formulas.equilibrium_position(at_limit) == (0.0, 0.0)
+    with pytest.raises(ValueError, match=r"friction_force = 0\.7803 N.* = 0\.765 N \(eq\. 5\)"):
+        formulas.equilibrium_radius(replace(HEAVY, friction_force=1.02 * limit))
+
+
+def test_radius_keeps_its_digits_near_the_largest_load():
+    offset, load = 0.7, 0.7 * (1.0 - 1e-12)
+    pin = replace(FIG_4, offset=offset, friction_force=load)
+    exact = float(Fraction(offset) ** 2 - Fraction(load) ** 2)
+    assert formulas.equilibrium_radius(pin) ** 2 == pytest.approx(exact, rel=1e-15, abs=0.0)
+
+
+def test_without_friction_the_springs_relax():
+    pin = replace(FIG_4, friction_force=0.0, disc_speed=0.0)
+    assert formulas.equilibrium_position(pin) == pytest.approx((0.1, 0.0), rel=1e-15)
+    assert formulas.equilibrium_position(replace(pin, offset=0.0)) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"disc_speed": 0.0}, "disc_speed = 0 rad/s"),
+        ({"stiffness": 0.0}, "stiffness = 0 N/m"),
+        ({"offset": 0.0, "friction_force": 0.0}, "offset = 0 m"),
+    ],
+)
+def test_equilibrium_without_an_angle_is_refused(changes, message):
+    with pytest.raises(ValueError, match=message):
+        formulas.equilibrium_angle(replace(FIG_5, **changes))
+
+
+# ---------------------------------------------------------------- (7) to (9)
+
+STUCK = [
+    replace(FIG_4, disc_speed=speed, offset=offset, friction_force=0.3)
+    for speed in (0.7, 2.0, -0.7, -2.0)
+    for offset in (0.1, -0.1)
+]
+
+
+def force_on_a_stuck_pin(pin, radius, disc_angle):
+    """Left side of (6), as a complex number, for a pin that turns with the disc."""
+    z = radius * np.exp(1j * np.asarray(disc_angle))
+    v, a = 1j * pin.disc_speed * z, -(pin.disc_speed**2) * z
+    return pin.mass * a + pin.damping * v + pin.stiffness * (z - pin.offset)
+
+
+@pytest.mark.parametrize("pin", [*STUCK, HEAVY])
+def test_holding_force_is_what_the_equations_of_motion_ask_for(pin):
+    angle = np.linspace(-3.0, 7.0, 23)
+    expected = np.abs(force_on_a_stuck_pin(pin, 0.4, angle)) ** 2
+    assert formulas.squared_holding_force(pin, 0.4, angle) == pytest.approx(expected, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("pin", STUCK)
+@pytest.mark.parametrize("excess", [1.001, 1.02, 1.3])
+def test_pin_lets_go_when_friction_can_no_longer_hold_it(pin, excess):
+    radius = excess * formulas.sticking_radius(pin)
+
+    def spare_at(time, start):
+        return pin.friction_force - abs(force_on_a_stuck_pin(pin, radius, start + pin.disc_speed * time))
+
+    times = np.linspace(0.0, 2.0 * np.pi / abs(pin.disc_speed), 4001)
+    for start in np.linspace(-9.0, 9.0, 13):
+        first = int(np.argmax(spare_at(times, start) < 0.0))
+        expected = (
+            brentq(spare_at, times[first - 1], times[first], args=(start,), xtol=1e-15) if first else 0.0
+        )
+        # The force passes its limit at an angle: its rounding, divided by its slope, is the error in time.
+        found = formulas.release_time(pin, radius, start)
+        assert found == pytest.approx(expected, abs=1e-11), f"start at {start} rad"
+        if found > 0.0:
+            turn = formulas.turn_until_release(pin, radius, start)
+            assert turn == pytest.approx(found * abs(pin.disc_speed), rel=1e-15)
+
+
+def test_release_is_the_same_after_whole_turns_of_the_disc():
+    radius = 1.1 * formulas.sticking_radius(STUCK[0])
+    times = [formulas.release_time(STUCK[0], radius, 1.0 + 2.0 * math.pi * n) for n in (-2, 0, 5)]
+    assert times == pytest.approx([times[1]] * 3, abs=1e-13)
+    assert times[0] > 0.0
+
+
+@pytest.mark.parametrize("pin", STUCK)
+def test_pin_within_the_sticking_radius_never_lets_go(pin):
+    assert formulas.release_time(pin, 0.999 * formulas.sticking_radius(pin), 1.0) == math.inf
+
+
+@pytest.mark.parametrize("pin", STUCK)
+def test_pin_far_out_is_not_held_at_all(pin):
+    assert formulas.release_time(pin, 10.0 * formulas.sticking_radius(pin), 1.0) == 0.0
+
+
+def test_pin_on_the_axis_sticks_for_ever_or_not_at_all():
+    assert formulas.release_time(FIG_4, 0.0, 0.0) == math.inf
+    assert formulas.release_time(FIG_5, 0.0, 0.0) == 0.0
+
+
+def test_pin_on_a_disc_at_rest_sticks_for_ever_where_the_springs_are_weaker_than_friction():
+    pin = replace(FIG_4, disc_speed=0.0)  # holds up to 0.12 m from (0.1, 0)
+    assert formulas.release_time(pin, 0.2, 0.0) == math.inf
+    assert formulas.release_time(pin, 0.2, math.pi) == 0.0
+    assert formulas.release_time(replace(pin, disc_speed=-0.0), 0.2, 0.0) == math.inf
+
+
+def test_negative_radius_is_refused():
+    with pytest.raises(ValueError, match=r"radius = -0\.1 m"):
+        formulas.turn_until_release(FIG_4, -0.1, 0.0)
+
+
+@pytest.mark.parametrize("pin", STUCK)
+def test_at_the_sticking_radius_the_largest_holding_force_of_a_turn_is_the_friction_force(pin):
+    radius = formulas.sticking_radius(pin)
+    angles = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    # The grid misses the peak by 1.6e-4 rad at most: by some 1e-8 of the force.
+    largest = np.sqrt(formulas.squared_holding_force(pin, radius, angles).max())
+    assert largest == pytest.approx(pin.friction_force, rel=3e-8)
+    assert formulas.sticking_margin(pin, radius) == pytest.approx(0.0, abs=ROUNDING)
+    assert formulas.sticking_margin(pin, 0.9 * radius) > 0.0 > formulas.sticking_margin(pin, 1.1 * radius)
+
+
+@pytest.mark.parametrize("offset", [0.1, -0.1])
+@pytest.mark.parametrize("friction_force", [0.0, 0.05, 0.1])
+def test_sticking_radius_is_refused_where_friction_cannot_hold_the_pin_on_the_axis(offset, friction_force):
+    pin = replace(FIG_4, offset=offset, friction_force=friction_force)
+    with pytest.raises(ValueError, match=rf"friction_force = {friction_force:g} N.* = 0\.1 N \(eq\. 9\)"):
+        formulas.sticking_radius(pin)
+
+
+def test_undamped_pin_sticks_everywhere_at_its_natural_frequency():
+    assert formulas.sticking_radius(replace(FIG_4, damping=0.0, disc_speed=-1.0)) == math.inf
+
+
+@pytest.mark.parametrize("pin", [FIG_4, replace(HEAVY, friction_force=1.0)])
+def test_sticking_domain_is_largest_at_its_resonance(pin):
+    found = minimize_scalar(
+        lambda speed: -formulas.sticking_radius(replace(pin, disc_speed=speed)),
+        bounds=(0.0, 3.0),
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
+    # A maximum is located to the root of the rounding of its value.
+    assert formulas.resonant_disc_speed(pin) == pytest.approx(found.x, rel=1e-7)
+
+
+@pytest.mark.parametrize("damping", [2.0, 3.0])
+def test_strongly_damped_sticking_domain_has_no_resonance(damping):
+    pin = replace(FIG_4, damping=damping, stiffness=2.0, friction_force=1.0)  # limit √(2mC) = 2
+    at_rest, turning = (formulas.sticking_radius(replace(pin, disc_speed=speed)) for speed in (0.0, 0.1))
+    assert at_rest > turning
+    with pytest.raises(ValueError, match=rf"damping = {damping:g} N s/m.* = 2 N s/m"):
+        formulas.resonant_disc_speed(pin)
+
+
+# ---------------------------------------------------------------- (11) to (16)
+
+
+@pytest.mark.parametrize("disc_speed", [1.01, 1.6, 9.0, -1.6])
+def test_whirl_solves_the_equations_of_motion(disc_speed):
+    pin = replace(HEAVY, offset=0.0, disc_speed=disc_speed * HEAVY.natural_frequency)
+    frequency = formulas.whirl_frequency(pin)
+    residual = residual_of_eq_1_on(pin, {1: formulas.whirl_radius(pin)}, frequency)
+    assert np.abs(residual).max() < ROUNDING
+    assert frequency * disc_speed > 0.0
+
+
+@pytest.mark.parametrize("frequency", [1.0, -1.0])
+def test_slow_disc_brakes_the_whirl_instead_of_driving_it(frequency):
+    slow = replace(FIG_4, offset=0.0, disc_speed=0.9)
+    residual = residual_of_eq_1_on(slow, {1: formulas.whirl_radius(FIG_4)}, frequency)
+    # Friction and damping, each of magnitude μN, add up instead of balancing.
+    assert np.abs(residual) == pytest.approx(2.0 * slow.friction_force, rel=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),
+        ({"disc_speed": -0.5}, r"disc_speed = -0\.5 rad/s"),
+        ({"damping": 0.0}, "damping = 0"),
+        ({"friction_force": 0.0}, "friction_force = 0"),
+        ({"stiffness": 0.0}, "stiffness = 0"),
+    ],
+)
+@pytest.mark.parametrize(
+    "formula",
+    [
+        formulas.whirl_radius,
+        formulas.whirl_frequency,
+        formulas.whirl_shift,
+        formulas.first_order_whirl_shift,
+        formulas.whirl_shift_error_limit,
+        formulas.third_order_of_whirl_shift,
+    ],
+)
+def test_formulas_of_the_whirl_are_refused_where_there_is_none(formula, changes, message):
+    with pytest.raises(ValueError, match=message):
+        formula(replace(FIG_4, **changes))
+
+
+def polar_rates_of_eq_10(pin, rho, rho_rate, turning_speed):
+    """Time derivatives of ρ, ρ̇ and ψ̇ by (10) without offset; takes complex arguments."""
+    lag = rho * (pin.disc_speed - turning_speed)
+    slip_speed = np.sqrt(rho_rate**2 + lag**2)
+    friction = pin.friction_force / slip_speed
+    radial = (
+        rho * turning_speed**2
+        - (pin.damping * rho_rate + pin.stiffness * rho + friction * rho_rate) / pin.mass
+    )
+    tangential = (friction * lag - pin.damping * rho * turning_speed) / pin.mass
+    return np.array([rho_rate, radial, (tangential - 2.0 * rho_rate * turning_speed) / rho])
+
+
+@pytest.mark.parametrize("pin", [FIG_4, replace(HEAVY, disc_speed=1.9)])
+def test_variational_matrix_is_the_derivative_of_the_polar_equations(pin):
+    whirl = np.array([formulas.whirl_radius(pin), 0.0, formulas.whirl_frequency(pin)], dtype=complex)
+    step = 1e-20  # complex step: no cancellation
+    derivative = np.column_stack(
+        [polar_rates_of_eq_10(pin, *(whirl + 1j * step * e)).imag / step for e in np.eye(3)]
+    )
+    assert formulas.variational_matrix(pin) == pytest.approx(derivative, abs=1e-12)
+
+
+def pins_below_and_above_resonance():
+    for damping in (0.01, 0.1, 0.5, 1.0, 2.5, 8.0):
+        for disc_speed in (0.0, 0.05, 0.15, 0.3, 0.4, 0.6, 0.8, 0.95, 0.999, 1.001, 1.1, 1.5, 3.0, 20.0):
+            yield replace(FIG_4, damping=damping, disc_speed=disc_speed)
+
+
+def test_corrected_13_is_the_determinant_of_12():
+    for pin in pins_below_and_above_resonance():
+        determinant = np.poly(formulas.variational_matrix(pin))
+        # Relative to the largest term: the smaller coefficients carry its rounding.
+        error = np.abs(np.subtract(formulas.characteristic_coefficients(pin), determinant)).max()
+        assert error < 1e-12 * np.abs(determinant).max()
+
+
+def test_printed_13_is_the_determinant_of_12_only_where_damping_over_mass_happens_to_be_one():
+    for pin in pins_below_and_above_resonance():
+        error = (
+            formulas.characteristic_coefficients_as_printed(pin)[1]
+            - np.poly(formulas.variational_matrix(pin))[1]
+        )
+        assert error == pytest.approx(1.0 - pin.damping / pin.mass, abs=1e-9)
+
+
+def test_printed_13_depends_on_the_unit_of_time_and_the_corrected_one_does_not():
+    in_seconds, in_halves = FIG_4, in_units(FIG_4, mass=1.0, length=1.0, time=2.0)
+    corrected, printed = (
+        np.sort_complex(np.roots(form(in_halves))) - 2.0**-1 * np.sort_complex(np.roots(form(in_seconds)))
+        for form in (formulas.characteristic_coefficients, formulas.characteristic_coefficients_as_printed)
+    )
+    assert np.abs(corrected).max() < ROUNDING
+    assert np.abs(printed).max() > 0.1
+
+
+def test_16_is_necessary_and_sufficient_for_all_roots_of_13_to_decay():
+    verdicts = []
+    for pin in pins_below_and_above_resonance():
+        decays = np.linalg.eigvals(formulas.variational_matrix(pin)).real.max() < 0.0
+        assert (formulas.upper_branch_margin(pin) > 0.0) == decays, pin
+        verdicts.append(decays)
+    assert 0.2 < np.mean(verdicts) < 0.9  # both kinds are there
+
+
+def test_14_holds_exactly_where_the_coefficients_of_13_are_positive():
+    for pin in pins_below_and_above_resonance():
+        _, quadratic, linear, _ = formulas.characteristic_coefficients(pin)
+        assert [margin > 0.0 for margin in formulas.coefficient_margins(pin)] == [
+            quadratic > 0.0,
+            linear > 0.0,
+        ], pin
+
+
+def test_conditions_14_end_where_a_coefficient_of_13_vanishes():
+    pin = replace(FIG_4, damping=1.0)  # 4k²m²/β² = 4
+    at_first, at_second = (replace(pin, disc_speed=ratio / (ratio - 1.0)) for ratio in (-1.0, -4.0))
+    assert formulas.characteristic_coefficients(at_first)[1] == pytest.approx(0.0, abs=ROUNDING)
+    assert formulas.coefficient_margins(at_first)[0] == pytest.approx(0.0, abs=ROUNDING)
+    assert formulas.characteristic_coefficients(at_second)[2] == pytest.approx(0.0, abs=ROUNDING)
+    assert formulas.coefficient_margins(at_second)[1] == pytest.approx(0.0, abs=ROUNDING)
+
+
+@pytest.mark.parametrize("damping", [0.1, 1.0, 5.0])
+def test_condition_16_ends_where_a_pair_of_roots_of_13_is_imaginary(damping):
+    pin = replace(FIG_4, damping=damping, disc_speed=0.0)
+    threshold = -formulas.upper_branch_margin(pin)  # ω/(ω − k) = 0 at rest
+    pair = np.roots(
+        formulas.characteristic_coefficients(replace(pin, disc_speed=threshold / (threshold - 1.0)))
+    )
+    assert sorted(abs(pair.real))[:2] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert abs(pair.imag).max() > 1.0
+
+
+def test_15_and_16_are_the_remaining_condition_of_hurwitz():
+    for pin in pins_below_and_above_resonance():
+        _, quadratic, linear, constant = formulas.characteristic_coefficients(pin)
+        either = formulas.lower_branch_margin(pin) > 0.0 or formulas.upper_branch_margin(pin) > 0.0
+        assert either == (quadratic * linear > constant), pin
+
+
+def test_14_excludes_15_and_follows_from_16():
+    below = 0
+    for pin in pins_below_and_above_resonance():
+        positive = min(formulas.coefficient_margins(pin)) > 0.0
+        below += formulas.lower_branch_margin(pin) > 0.0
+        assert not (positive and formulas.lower_branch_margin(pin) > 0.0)
+        assert positive or not formulas.upper_branch_margin(pin) > 0.0
+    assert below > 0
+
+
+def test_every_whirl_that_exists_is_stable():
+    pins = [pin for pin in pins_below_and_above_resonance() if pin.disc_speed > pin.natural_frequency]
+    assert all(formulas.upper_branch_margin(pin) > 0.0 for pin in pins)
+
+
+def test_threshold_of_16_tends_to_minus_a_half_for_weak_damping():
+    at_rest = replace(FIG_4, disc_speed=0.0)  # ω/(ω − k) = 0
+    for damping in (1e-3, 1e-9, 1e-200):
+        margin = formulas.upper_branch_margin(replace(at_rest, damping=damping))
+        assert margin == pytest.approx(0.5, abs=damping**2)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        formulas.variational_matrix,
+        formulas.characteristic_coefficients,
+        formulas.coefficient_margins,
+        formulas.lower_branch_margin,
+        formulas.upper_branch_margin,
+    ],
+)
+@pytest.mark.parametrize("disc_speed", [1.0, -1.0])
+def test_characteristic_equation_is_refused_at_the_natural_frequency(formula, disc_speed):
+    with pytest.raises(ValueError, match=f"disc_speed = {disc_speed:g} rad/s: ω/"):
+        formula(replace(FIG_4, disc_speed=disc_speed))
+
+
+# ---------------------------------------------------------------- (17), (18) and the exact first order
+
+WHIRLING = [
+    replace(FIG_4, disc_speed=1.1),
+    replace(FIG_4, disc_speed=1.5),
+    replace(FIG_4, disc_speed=2.0),
+    replace(FIG_4, disc_speed=-1.3),
+    replace(HEAVY, disc_speed=1.9),
+]
+
+
+def whirl_with_offset(pin, harmonics=12):
+    """Amplitudes and frequency of the periodic orbit of (1), by Newton's method on its harmonics."""
+    orders = np.arange(-harmonics, harmonics + 1)
+    first = harmonics + 1
+    samples = 64
+
+    def unpack(unknowns):
+        return unknowns[: orders.size] + 1j * unknowns[orders.size : -1], unknowns[-1]
+
+    def defect(unknowns):
+        amplitudes, frequency = unpack(unknowns)
+        residual = residual_of_eq_1_on(pin, dict(zip(orders, amplitudes, strict=True)), frequency, samples)
+        balance = np.fft.fft(residual)[orders] / samples
+        return np.concatenate((balance.real, balance.imag, [amplitudes[first].imag]))
+
+    guess = np.zeros(2 * orders.size + 1)
+    guess[first], guess[-1] = formulas.whirl_radius(pin), formulas.whirl_frequency(pin)
+    found = root(defect, guess, tol=1e-14)
+    assert np.abs(found.fun).max() < 1e-13, found.message
+    amplitudes, frequency = unpack(found.x)
+    return dict(zip(orders, amplitudes, strict=True)), frequency
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
+    offsets = np.array([0.02, 0.01]) * formulas.whirl_radius(pin)
+    errors = []
+    for offset in offsets:
+        small = replace(pin, offset=offset)
+        response = formulas.first_order_whirl_response(small)
+        amplitudes, _ = whirl_with_offset(small)
+        errors.append([response.mean - amplitudes[0], response.second_harmonic - amplitudes[2]])
+        assert formulas.first_order_whirl_shift(small) == (response.mean.real, response.mean.imag)
+    orders = np.log2(np.abs(errors[0]) / np.abs(errors[1]))
+    assert orders == pytest.approx([3.0, 3.0], abs=0.05)
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_relative_error_of_18_has_the_limit_that_theory_gives(pin):
+    small = replace(pin, offset=1e-4 * formulas.whirl_radius(pin))
+    amplitudes, _ = whirl_with_offset(small)
+    found = complex(*formulas.whirl_shift(small)) / amplitudes[0] - 1.0
+    limit = formulas.whirl_shift_error_limit(pin)
+    assert limit == pytest.approx(formulas.whirl_shift_error_limit(replace(pin, offset=0.0)), rel=1e-15)
+    assert found == pytest.approx(limit, abs=1e-6)  # of order (wX0/ρ_c)², w = ω/(ω − k) <= 11
+
+
+@pytest.mark.parametrize("pin", [pin for pin in WHIRLING if pin.disc_speed > 0.0])
+def test_first_order_response_solves_the_linearised_polar_equations(pin):
+    k, rate = pin.natural_frequency, pin.damping / pin.mass
+    ratio = pin.disc_speed / (pin.disc_speed - k)
+    matrix = [
+        [-(k**2) + 1j * k * rate * ratio, -2j * k**2],
+        [2j * k**2 + k * rate, -(k**2) + 1j * k * rate],
+    ]
+    radial, tangential = np.linalg.solve(matrix, k**2 * pin.offset * np.array([1.0, 1j]))
+    response = formulas.first_order_whirl_response(pin)
+    mean = (np.conj(radial) + 1j * np.conj(tangential)) / 2.0
+    assert response == pytest.approx((mean, (radial + 1j * tangential) / 2.0), rel=ROUNDING)
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_18_balances_the_mean_force_on_a_shifted_circle(pin):
+    def mean_force(offset):
+        shifted = replace(pin, offset=offset)
+        circle = {0: complex(*formulas.whirl_shift(shifted)), 1: formulas.whirl_radius(pin)}
+        return abs(residual_of_eq_1_on(shifted, circle, formulas.whirl_frequency(pin)).mean())
+
+    offset = 0.02 * formulas.whirl_radius(pin)
+    assert np.log2(mean_force(offset) / mean_force(offset / 2.0)) == pytest.approx(3.0, abs=0.05)
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
+    """What the formula leaves out is of the order d relative to it, and halves with the damping."""
+    offset, errors = 2e-3, []
+    for damping in (0.02, 0.01):
+        # Damping and load fall together, so that the radius of the whirl remains.
+        weak = replace(
+            pin, damping=damping * pin.mass * pin.natural_frequency, friction_force=1.0, offset=0.0
+        )
+        load = pin.stiffness * weak.damping / (pin.mass * pin.natural_frequency)  # ρ_c = 1 m
+        small = replace(weak, friction_force=load, offset=offset)
+        first = complex(*formulas.first_order_whirl_shift(small))
+        relative = whirl_with_offset(small)[0][0] / first - 1.0
+        errors.append(abs(relative / (1j * formulas.third_order_of_whirl_shift(small)) - 1.0))
+    assert errors[1] < 0.1
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
+
+
+def test_18_is_exact_in_first_order_at_twice_the_natural_frequency_only():
+    limits = {
+        ratio: abs(formulas.whirl_shift_error_limit(replace(FIG_4, disc_speed=ratio)))
+        for ratio in (1.05, 1.5, 1.9, 2.0, 2.1, 5.0, -2.0)
+    }
+    assert [ratio for ratio, limit in limits.items() if limit < 1e-15] == [2.0, -2.0]
+    # The error that the first harmonic leaves: a few per cent near resonance, a tenth of one far above.
+    assert 0.01 < limits[1.05] < 0.5
+    assert limits[5.0] < 1.5e-3
+
+
+def test_18_loses_all_of_the_shift_at_resonance():
+    limit = formulas.whirl_shift_error_limit(replace(FIG_4, disc_speed=1.0 + 1e-9))
+    assert limit == pytest.approx(-1.0, abs=1e-6)
+
+
+# ---------------------------------------------------------------- symmetries and units
+
+# Dimension of each result in powers of mass, length and time.
+POLAR = {
+    formulas.equilibrium_radius: (0, 1, 0),
+    formulas.largest_load_with_equilibrium: (1, 1, -2),
+    formulas.sticking_radius: (0, 1, 0),
+    formulas.resonant_disc_speed: (0, 0, -1),
+    formulas.whirl_radius: (0, 1, 0),
+    formulas.lower_branch_margin: (0, 0, 0),
+    formulas.upper_branch_margin: (0, 0, 0),
+}
+POINTS = {
+    formulas.equilibrium_position: (0, 1, 0),
+    formulas.whirl_shift: (0, 1, 0),
+    formulas.first_order_whirl_shift: (0, 1, 0),
+}
+TURNING = {formulas.equilibrium_angle: (0, 0, 0), formulas.whirl_frequency: (0, 0, -1)}
+
+ratios = st.floats(0.1, 10.0)
+
+
+@st.composite
+def pins(draw):
+    """Pins with a whirl, a resonance of sticking, and either an equilibrium or lasting sticking."""
+    mass, stiffness = draw(ratios), draw(ratios)
+    sign = st.sampled_from([-1.0, 1.0])
+    return PinOnDisc(
+        mass=mass,
+        stiffness=stiffness,
+        damping=draw(st.floats(0.01, 1.4)) * math.sqrt(mass * stiffness),
+        friction_force=draw(st.one_of(st.floats(0.01, 0.99), st.floats(1.01, 5.0))) * stiffness * 0.3,
+        disc_speed=draw(sign) * draw(st.floats(1.01, 5.0)) * math.sqrt(stiffness / mass),
+        offset=0.3 * draw(sign),
+    )
+
+
+def applicable(formulas_with_dimension, pin):
+    """Leave out (3) above the largest load and (9) below."""
+    above = pin.friction_force > formulas.largest_load_with_equilibrium(pin)
+    for formula, dimension in formulas_with_dimension.items():
+        belongs_to_3 = formula.__name__.startswith("equilibrium")
+        belongs_to_9 = formula is formulas.sticking_radius
+        if not (belongs_to_3 and above) and not (belongs_to_9 and not above):
+            yield formula, dimension
+
+
+@given(pins(), ratios, ratios, ratios)
+def test_units_do_not_matter(pin, mass, length, time):
+    other = in_units(pin, mass, length, time)
+    for formula, dimension in applicable(POLAR | POINTS | TURNING, pin):
+        factor = math.prod(unit**power for unit, power in zip((mass, length, time), dimension, strict=True))
+        expected = factor * np.array(formula(pin))
+        # Near (5), (9) and resonance a difference of parameters has lost two digits.
+        assert formula(other) == pytest.approx(expected, rel=1e-11, abs=1e-11 * np.abs(expected).max())
+    assert formulas.whirl_shift_error_limit(other) == pytest.approx(
+        formulas.whirl_shift_error_limit(pin), abs=1e-11
+    )
+
+
+@given(pins())
+def test_disc_turning_the_other_way_mirrors_the_motion(pin):
+    mirrored = replace(pin, disc_speed=-pin.disc_speed)
+    for formula, _ in applicable(POLAR, pin):
+        assert formula(mirrored) == formula(pin)
+    for formula, _ in applicable(POINTS, pin):
+        x, y = formula(pin)
+        assert formula(mirrored) == (x, -y)
+    for formula, _ in applicable(TURNING, pin):
+        assert formula(mirrored) == -formula(pin)
+    assert formulas.whirl_shift_error_limit(mirrored) == formulas.whirl_shift_error_limit(pin).conjugate()
+    assert formulas.squared_holding_force(mirrored, 0.2, -0.7) == pytest.approx(
+        float(formulas.squared_holding_force(pin, 0.2, 0.7)), rel=1e-14
+    )
+    assert formulas.release_time(mirrored, 0.2, -0.7) == formulas.release_time(pin, 0.2, 0.7)
+
+
+@given(pins())
+def test_offset_on_the_other_side_turns_the_motion_by_half_a_turn(pin):
+    turned = replace(pin, offset=-pin.offset)
+    for formula, _ in applicable(POLAR, pin):
+        assert formula(turned) == formula(pin)
+    for formula, _ in applicable(POINTS, pin):
+        x, y = formula(pin)
+        assert formula(turned) == (-x, -y)
+    assert formulas.whirl_shift_error_limit(turned) == formulas.whirl_shift_error_limit(pin)
+    time = formulas.release_time(pin, 0.2, 0.7)
+    assert formulas.release_time(turned, 0.2, 0.7 + math.pi) == pytest.approx(time, abs=1e-13)

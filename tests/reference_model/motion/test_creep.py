@@ -1,0 +1,121 @@
+"""Slip that decays for ever or is slow for long, and states between the steps of a strongly damped motion."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from reference_model import DiscOnDisc, PinOnDisc, simulate
+from reference_model.motion import stepper as stepping
+
+CREEPING = PinOnDisc(mass=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0)
+HARDENING = PinOnDisc(
+    mass=1.0, stiffness=1.0, damping=18.33447359460056, friction_force=0.23857615288586362,
+    disc_speed=0.015113070308458439, offset=0.0, hardening=7.5004186926367495,
+)  # fmt: skip
+
+
+@pytest.fixture
+def few_steps(monkeypatch):
+    """Let a motion that takes very many steps fail, rather than take very long."""
+    monkeypatch.setattr(stepping, "MOST_STEPS", 3_000)
+
+
+def smoothed(pin, state, times, epsilon):
+    """The motion with friction v/√(v² + ε²) in axes that turn with the disc, by an implicit method."""
+    omega = pin.disc_speed
+
+    def rates(_, y):
+        z, w = complex(y[0], y[1]), complex(y[2], y[3])
+        pull = (omega**2 - 1j * omega * pin.damping - pin.stiffness) * z - (pin.damping + 2j * omega) * w
+        a = pull - pin.friction_force * w / math.hypot(abs(w), epsilon)
+        return [w.real, w.imag, a.real, a.imag]
+
+    z, v = complex(state[0], state[1]), complex(state[2], state[3])
+    w = v - 1j * omega * z
+    run = solve_ivp(
+        rates, (0.0, times[-1]), [z.real, z.imag, w.real, w.imag], method="Radau", t_eval=times,
+        rtol=1e-9, atol=1e-12,
+    )  # fmt: skip
+    turn = np.exp(1j * omega * times)
+    z, w = (run.y[0] + 1j * run.y[1]) * turn, (run.y[2] + 1j * run.y[3]) * turn
+    v = w + 1j * omega * z
+    return np.column_stack((z.real, z.imag, v.real, v.imag))
+
+
+@pytest.mark.usefixtures("few_steps")
+def test_pin_that_creeps_towards_its_last_radius_slips_for_ever_at_the_slower_of_two_rates():
+    start, times = [0.5, 0.0, 0.0, 0.0], np.linspace(0.0, 400.0, 801)
+    creeping = simulate(CREEPING, start, times)
+    assert [phase.kind for phase in creeping.phases] == ["slip"]
+    # There the pull, |ω² − k² − iωβ/m| times the radius, is what friction can hold.
+    pull = math.hypot(0.5**2 - 1.0, 0.5 * 2.0)
+    assert creeping.radius[-1] == pytest.approx(0.1 / pull, rel=1e-9)
+    # s'' + (β/m)·s' + (k² − ω²)·s = 0: of the roots −1/2 and −3/2 the slower one is left.
+    late = (times >= 15.0) & (times <= 30.0)
+    rate = np.polyfit(times[late], np.log(creeping.slip_speed[late]), 1)[0]
+    assert rate == pytest.approx(-0.5, abs=1e-4)
+
+
+@pytest.mark.usefixtures("few_steps")
+def test_creeping_pin_is_the_limit_of_smoothed_friction():
+    start, times = [0.5, 0.0, 0.0, 0.0], np.linspace(0.0, 12.0, 13)
+    exact = simulate(CREEPING, start, times).states
+    errors = [np.abs(exact - smoothed(CREEPING, start, times, epsilon)).max() for epsilon in (1e-5, 1e-6)]
+    assert errors[0] < 1e-4
+    assert errors[1] < 0.2 * errors[0]
+
+
+@pytest.mark.parametrize("pin", [CREEPING, HARDENING], ids=["linear", "hardening"])
+def test_closed_end_of_a_creep_does_not_depend_on_the_tolerance(pin):
+    start, times = [-0.3, 0.2, -0.1, 0.3], np.linspace(0.0, 300.0, 61)
+    default, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
+    assert [phase.kind for phase in default.phases] == [phase.kind for phase in tight.phases]
+    assert np.abs(default.states - tight.states).max() < 1e-9 * np.abs(tight.states).max()
+    assert default.solution.steps < 3_000
+
+
+@pytest.mark.usefixtures("few_steps")
+def test_disc_on_points_without_shaft_damping_that_turns_with_the_master_disc_creeps_like_the_pin():
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0,
+        contact_radius=0.3, shaft_damping=0.0, shaft_speed=0.0, contact_points=24,
+    )  # fmt: skip
+    times = np.linspace(0.0, 60.0, 61)
+    found = simulate(disc, [0.5, 0.0, 0.0, 0.0, 0.0, 0.5], times)
+    expected = simulate(CREEPING, [0.5, 0.0, 0.0, 0.0], times)
+    assert [phase.kind for phase in found.phases] == ["slip"]
+    assert np.abs(found.states[:, [0, 1, 3, 4]] - expected.states).max() < 1e-9
+
+
+@pytest.mark.usefixtures("few_steps")
+@pytest.mark.parametrize("stiffer", [1e4, 1e8])
+def test_strongly_damped_pin_without_friction_follows_its_slow_root(stiffer):
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=stiffer, friction_force=0.0, disc_speed=1.0, offset=0.0)
+    times = np.linspace(0.0, 50.0, 11)
+    found = simulate(pin, [1.0, 0.0, 0.0, 0.0], times)
+    slow = 2.0 / (stiffer + math.sqrt(stiffer**2 - 4.0))
+    fast = 1.0 / slow
+    x = (fast * np.exp(-slow * times) - slow * np.exp(-fast * times)) / (fast - slow)
+    assert found.states[:, 0] == pytest.approx(x, abs=1e-9)
+
+
+@pytest.mark.parametrize("damping", [2.0, 4.0, 8.3458546, 20.0])
+def test_states_between_the_steps_of_a_strongly_damped_pin_are_as_accurate_as_at_its_end(damping):
+    pin = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=damping, friction_force=0.00348404708, disc_speed=3.83354141,
+        offset=2.108728,
+    )  # fmt: skip
+    start = [0.01498423, -0.0328726, 0.04863351, -0.1851470]
+    times = np.linspace(0.0, 27.656, 1001)
+    found, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-13))
+    # The unit of length is X0, that of time 1/ω. Both the step and its interpolant may be off by the tolerance.
+    scales = pin.offset * np.array([1.0, 1.0, pin.disc_speed, pin.disc_speed])
+    assert (np.abs(found.states - tight.states) / scales).max() < 2e-9
+
+
+@pytest.mark.parametrize("value", [1e300, -1e200, 1e60])
+def test_state_whose_powers_overflow_is_refused_by_name(value):
+    with pytest.raises(ValueError, match=r"initial_state\[2\] = .* it must not be larger than 1e\+50"):
+        simulate(CREEPING, [0.1, 0.0, value, 0.0], [0.0, 1.0])

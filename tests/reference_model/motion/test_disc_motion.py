@@ -1,0 +1,451 @@
+"""Simulated motions of the friction disc against conservation laws, closed forms, eq. 7, and plain integrators."""
+
+import cmath
+import math
+from dataclasses import fields, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from plain_disc_engines import friction_of_pivot, just_released_disc, slide_disc, smoothed_disc, stuck_disc
+
+from compare.claims.paper_parameters import FIG11
+from reference_model import PinOnDisc, power_balance, simulate
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Pin, PointsOnRing, Ring, ThreeTermRing
+from reference_model.motion.exact import simulate_with
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.stepper import Thresholds
+from reference_model.motion.stick import release_delay
+from reference_model.systems import DiscOnDisc
+
+STICKY = DiscOnDisc(
+    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
+    contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
+)  # fmt: skip
+FREE = DiscOnDisc(
+    mass=2.0, polar_inertia=2.0 * 0.3**2, stiffness=0.0, damping=0.0, friction_force=0.4, disc_speed=0.0,
+    contact_radius=0.3, shaft_damping=0.0, shaft_speed=0.0,
+)  # fmt: skip
+STARTS = ([0.1, 0.0, 0.0, 0.03, 0.0, 1.5], [0.1, 0.0, 0.0, 0.0, 0.15, 1.5])
+THROWS = ([0.0, 0.0, 0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.3, 0.4, -6.0], [0.0, 0.0, 0.0, 2.0, 0.0, 0.01])
+LAWS = {
+    "ring": (None, None),
+    "three terms": (None, ThreeTermRing(0.12)),
+    "six points": (6, None),
+    "three points": (3, None),
+}
+
+
+def kinds(trajectory):
+    return [phase.kind for phase in trajectory.phases]
+
+
+def of_law(disc, law):
+    points, contact = LAWS[law]
+    return replace(disc, contact_points=points), contact
+
+
+# ---------------------------------------------------------------- slip
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("start", [[0.5, 0.1, 0.3, 0.0, 0.4, 0.2], [0.05, 0.0, 0.0, 0.0, 0.05, -1.0]])
+def test_slip_agrees_with_eq_19_integrated_plainly(law, start):
+    disc, contact = of_law(FIG11, law)
+    times = np.linspace(0.0, 10.0, 21)
+    plain = slide_disc(disc, start, times, contact)
+    assert kinds(simulate(disc, start, times, contact=contact)) == ["slip"]
+    errors = [
+        np.abs(simulate(disc, start, times, tolerance=tolerance, contact=contact).states - plain).max()
+        for tolerance in (1e-9, 1e-12)
+    ]
+    assert errors[0] < 1e-9 * 10
+    assert errors[1] < 1e-11  # the plain integrator's own: a kink or logarithm in a step
+
+
+def test_thin_annulus_slips_and_sticks_like_the_ring_with_an_error_of_second_order_in_its_width():
+    disc, start, times = STICKY, STARTS[0], np.linspace(0.0, 20.0, 31)
+    ring = simulate(disc, start, times)
+    errors = []
+    for half_width in (2e-3, 1e-3):
+        facing = Annulus(disc.contact_radius - half_width, disc.contact_radius + half_width)
+        annulus = simulate(disc, start, times, contact=facing)
+        assert kinds(annulus) == kinds(ring)
+        errors.append(np.abs(annulus.states - ring.states).max())
+    assert "stick" in kinds(ring)
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize("start", [[0.395575, -0.553647, 0.0, 1.2747005841951533, 0.5507301118799482, 0.799]])
+def test_crossing_the_logarithm_of_the_ring_at_equal_speeds_keeps_the_tolerance(start):
+    # U and R|S| cross five times in these 8 s. Without landing on the crossings the error is 1e-7.
+    disc = DiscOnDisc(
+        mass=0.8863, polar_inertia=0.01014, stiffness=1.943, damping=0.3917, friction_force=0.04138, disc_speed=1.264,
+        contact_radius=0.1603, shaft_damping=0.001154, shaft_speed=-1.842,
+    )  # fmt: skip
+    times = np.linspace(0.0, 8.0, 81)
+    tight = simulate(disc, start, times, tolerance=1e-14)
+    sliding = np.hypot(*tight.slip_velocity.T) - disc.contact_radius * np.abs(
+        disc.disc_speed - tight.states[:, 5]
+    )
+    assert np.sum(np.diff(np.sign(sliding)) != 0.0) >= 4
+    tolerances = np.array([1e-8, 1e-9, 1e-10, 1e-11, 1e-12])
+    errors = [
+        np.abs(simulate(disc, start, times, tolerance=tolerance).states - tight.states).max()
+        for tolerance in tolerances
+    ]
+    # A single one goes by how the steps happen to fall.
+    assert np.mean(np.log10(errors / tolerances)) < 1.0, errors
+
+
+def test_without_friction_the_disc_is_a_damped_oscillator_and_a_spin_that_decays():
+    disc = replace(FIG11, friction_force=0.0, offset=0.1, shaft_damping=0.3)
+    times = np.linspace(0.0, 20.0, 41)
+    trajectory = simulate(disc, [0.3, -0.2, 0.4, -0.1, 0.4, -2.0], times)
+    spin = 1.25 + (-2.0 - 1.25) * np.exp(-0.3 * times)
+    angle = 0.4 + 1.25 * times + (-2.0 - 1.25) / 0.3 * (1.0 - np.exp(-0.3 * times))
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0, disc_speed=1.5, offset=0.1)
+    centre = simulate(pin, [0.3, -0.2, -0.1, 0.4], times, tolerance=1e-13)
+    expected = np.column_stack((centre.states[:, :2], angle, centre.states[:, 2:], spin))
+    assert np.abs(trajectory.states - expected).max() < 1e-9 * 30
+    assert kinds(trajectory) == ["slip"]
+
+
+@pytest.mark.parametrize("points", [None, 6])
+def test_without_any_force_the_disc_goes_straight_on_and_turns_evenly(points):
+    disc = replace(FREE, friction_force=0.0, disc_speed=1.0, contact_points=points)
+    trajectory = simulate(disc, [1.0, 2.0, 0.5, 0.5, -0.25, 3.0], [0.0, 8.0])
+    assert trajectory.at_end == pytest.approx([5.0, 0.0, 24.5, 0.5, -0.25, 3.0], abs=1e-9 * 8)
+
+
+def test_many_points_tend_to_the_continuous_ring():
+    times, start = np.linspace(0.0, 20.0, 41), [0.5, 0.1, 0.3, 0.0, 0.4, 0.2]
+    ring = simulate(FIG11, start, times).states
+    errors = [
+        np.abs(simulate(replace(FIG11, contact_points=n), start, times).states - ring).max()
+        for n in (6, 12, 24, 48)
+    ]
+    # U ≠ R|S| but for moments, in which one point in n is wrong: the sum falls faster than 1/n.
+    assert all(after < 0.5 * before for before, after in pairwise(errors)), errors
+
+
+@pytest.mark.parametrize("points", [None, 5])
+def test_disc_on_a_small_circle_moves_like_the_pin(points):
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+    times = np.linspace(0.0, 7.0, 71)
+    expected = simulate(pin, [0.1, 0.0, 0.03, 0.0], times, tolerance=1e-12).states
+    errors = []
+    for radius in (4e-4, 1e-4):
+        disc = replace(STICKY, contact_radius=radius, contact_points=points, shaft_damping=0.0)
+        states = simulate(disc, [0.1, 0.0, 0.0, 0.03, 0.0, 1.4], times).states
+        errors.append(np.abs(states[:, [0, 1, 3, 4]] - expected).max())
+    # The rim's slip R·S makes the friction at rest smooth: an error like R, up to powers of a release.
+    assert errors[0] < 1e-3
+    assert errors[1] < 0.5 * errors[0]
+
+
+# ---------------------------------------------------------------- symmetries
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("start", STARTS)
+def test_master_disc_and_shaft_that_turn_the_other_way_give_the_mirrored_motion(law, start):
+    disc, contact = of_law(STICKY, law)
+    times = np.linspace(0.0, 12.0, 61)
+    mirror = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
+    plain = simulate(disc, start, times, contact=contact)
+    other = simulate(
+        replace(disc, disc_speed=-1.5, shaft_speed=-1.25), mirror * np.array(start), times, contact=contact
+    )
+    assert kinds(plain) == kinds(other)
+    assert np.abs(mirror * plain.states - other.states).max() < 1e-8
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_turned_start_gives_the_turned_motion_without_offset(law):
+    disc, contact = of_law(replace(STICKY, offset=0.0), law)
+    times, turn = np.linspace(0.0, 12.0, 61), 0.7
+    start = np.array([0.3, 0.1, 0.2, -0.4, 0.15, 1.0])
+    c, s = math.cos(turn), math.sin(turn)
+    rotation = np.eye(6)
+    for i in (0, 3):
+        rotation[i : i + 2, i : i + 2] = [[c, -s], [s, c]]
+    shift = np.array([0.0, 0.0, turn, 0.0, 0.0, 0.0])
+    plain, other = (
+        simulate(disc, state, times, contact=contact).states for state in (start, rotation @ start + shift)
+    )
+    assert np.abs(plain @ rotation.T + shift - other).max() < 1e-8
+
+
+@pytest.mark.parametrize("points", [3, 6])
+def test_disc_on_n_points_is_the_same_after_an_nth_of_a_turn_and_not_before(points):
+    disc = replace(STICKY, contact_points=points)
+    times, part = np.linspace(0.0, 12.0, 61), 2.0 * math.pi / points
+    whole, same, half = (
+        simulate(disc, [0.1, 0.0, angle, 0.0, 0.15, 1.5], times).states - [0.0, 0.0, angle, 0.0, 0.0, 0.0]
+        for angle in (0.0, part, part / 2.0)
+    )
+    assert np.abs(same - whole).max() < 1e-8
+    assert np.abs(half - whole).max() > 1e-6
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("mass", "length", "time"), [(1e3, 1e-3, 1.0), (1e-2, 20.0, 1e-4), (5.0, 3.0, 1e5)])
+def test_motion_is_the_same_in_any_units(law, mass, length, time):
+    disc, contact = of_law(STICKY, law)
+    other_contact = None if contact is None else ThreeTermRing(0.12 * length)
+    other = replace(
+        disc, mass=disc.mass * mass, polar_inertia=disc.polar_inertia * mass * length**2,
+        stiffness=disc.stiffness * mass / time**2, damping=disc.damping * mass / time,
+        friction_force=disc.friction_force * mass * length / time**2, disc_speed=disc.disc_speed / time,
+        offset=disc.offset * length, contact_radius=disc.contact_radius * length,
+        shaft_damping=disc.shaft_damping * mass * length**2 / time, shaft_speed=disc.shaft_speed / time,
+    )  # fmt: skip
+    scale = np.array([length, length, 1.0, length / time, length / time, 1.0 / time])
+    times = np.linspace(0.0, 12.0, 61)
+    plain = simulate(disc, STARTS[1], times, contact=contact)
+    scaled = simulate(other, scale * np.array(STARTS[1]), time * times, contact=other_contact)
+    assert kinds(plain) == kinds(scaled)
+    # The same steps but for rounding. It grows at a release, but stays below the tolerance.
+    assert abs(scaled.solution.steps - plain.solution.steps) <= 1  # rounding may tip one over
+    assert np.abs(plain.states - scaled.states / scale).max() < 1e-9
+
+
+# ---------------------------------------------------------------- stick
+
+
+def test_stuck_disc_is_a_stuck_pin_with_the_friction_that_the_moment_leaves():
+    # On the limit surface of the ring, k = W/U: F = (2/π)E(k²), M/R = (2/π)·k·B(k²); here through AGM-free sums.
+    angles = (np.arange(20000) + 0.5) * 2.0 * math.pi / 20000
+    moment = (
+        STICKY.shaft_damping
+        * (STICKY.disc_speed - STICKY.shaft_speed)
+        / (STICKY.friction_force * STICKY.contact_radius)
+    )
+
+    def surface(k):
+        speed = np.sqrt(1.0 + k**2 - 2.0 * k * np.cos(angles))
+        return np.mean((1.0 - k * np.cos(angles)) / speed), np.mean((k - np.cos(angles)) / speed)
+
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if surface(middle)[1] < moment else (low, middle)
+    pin = PinOnDisc(
+        mass=1.0,
+        stiffness=1.0,
+        damping=0.1,
+        friction_force=0.09 * surface(low)[0],
+        disc_speed=1.5,
+        offset=0.1,
+    )
+    released = 0
+    for angle in np.linspace(0.0, 6.0, 25):
+        z = 0.05 * cmath.exp(1j * angle)
+        trajectory = simulate(STICKY, stuck_disc(STICKY, z, 0.3), [0.0, 20.0])
+        expected = release_delay(SlipMotion.of(pin), z)
+        if kinds(trajectory)[0] == "stick":
+            assert trajectory.phases[0].end == pytest.approx(min(expected, 20.0), abs=1e-10)
+            released += expected < 20.0
+    assert released >= 5
+
+
+@pytest.mark.parametrize("points", [None, 3, 6])
+@pytest.mark.parametrize("margin", [0.99, 1.01])
+def test_disc_at_the_axis_sticks_as_long_as_the_moment_of_its_shaft_is_below_friction(points, margin):
+    # b(ω − Ω) against μN·R: at the axis nothing pulls at the centre.
+    b = margin * STICKY.friction_force * STICKY.contact_radius / 0.25
+    disc = replace(STICKY, offset=0.0, shaft_damping=b, contact_points=points)
+    trajectory = simulate(disc, stuck_disc(disc, 0j, 0.2), np.linspace(0.0, 30.0, 31))
+    assert kinds(trajectory) == (["stick"] if margin < 1.0 else ["slip"])
+    if margin > 1.0:
+        # It then slips by what the damper has over friction: b(ω − Ω − S) = μN·R.
+        slip = 0.25 - STICKY.friction_force * STICKY.contact_radius / b
+        decay = math.exp(-b / disc.polar_inertia * 30.0)
+        assert 1.5 - trajectory.at_end[5] == pytest.approx(slip * (1.0 - decay), rel=1e-7)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("start", STARTS)
+def test_phases_follow_each_other_and_stuck_states_turn_with_the_master_disc(law, start):
+    disc, contact = of_law(STICKY, law)
+    trajectory = simulate(disc, start, np.linspace(0.0, 30.0, 3001), contact=contact)
+    assert len(trajectory.stick_phases) >= 2
+    assert trajectory.phases[0].start == 0.0
+    assert trajectory.phases[-1].end == 30.0
+    for before, after in pairwise(trajectory.phases):
+        assert before.end == after.start
+        assert before.kind != after.kind
+        assert before.end > before.start
+    for phase in trajectory.stick_phases:
+        x, y, angle = phase.initial_state[:3]
+        assert phase.initial_state == pytest.approx(stuck_disc(disc, complex(x, y), angle), abs=1e-14)
+        inside = (trajectory.times >= phase.start) & (trajectory.times <= phase.end)
+        turned = 1.5 * (trajectory.times[inside] - phase.start)
+        z = complex(x, y) * np.exp(1j * turned)
+        assert np.abs(trajectory.states[inside, 0] + 1j * trajectory.states[inside, 1] - z).max() < 1e-14
+        assert np.abs(trajectory.states[inside, 2] - angle - turned).max() < 1e-13
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("start", STARTS)
+def test_default_tolerance_is_reached_through_slip_stick_and_pivots(law, start):
+    disc, contact = of_law(STICKY, law)
+    times = np.linspace(0.0, 30.0, 301)
+    default, tight = (
+        simulate(disc, start, times, tolerance=tolerance, contact=contact) for tolerance in (1e-9, 1e-13)
+    )
+    assert kinds(default) == kinds(tight)
+    found, expected = ([phase.start for phase in run.phases] for run in (default, tight))
+    assert found == pytest.approx(expected, abs=1e-7)
+    assert default.stick_times == pytest.approx(tight.stick_times, abs=1e-8)
+    assert np.abs(default.states - tight.states).max() < 1e-8
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+@pytest.mark.parametrize("threshold", [field.name for field in fields(Thresholds)])
+@pytest.mark.parametrize("law", ["ring", "three points"])
+def test_motion_does_not_depend_on_any_threshold(law, threshold, factor):
+    disc, contact = of_law(STICKY, law)
+    times = np.linspace(0.0, 12.0, 61)
+    other = replace(Thresholds(), **{threshold: factor * getattr(Thresholds(), threshold)})
+    plain = simulate(disc, STARTS[0], times, contact=contact)
+    changed = simulate_with(other, disc, STARTS[0], times, contact=contact)
+    assert kinds(plain) == kinds(changed)
+    assert np.abs(plain.states - changed.states).max() < 1e-8
+
+
+@pytest.mark.parametrize("law", ["ring", "six points"])
+def test_slip_after_a_release_is_the_one_that_starts_from_its_leading_order(law):
+    disc, contact = of_law(STICKY, law)
+    trajectory = simulate(disc, STARTS[1], np.linspace(0.0, 30.0, 301), contact=contact, tolerance=1e-12)
+    release = trajectory.stick_phases[0]
+    errors = []
+    for delay in (4e-3, 1e-3):
+        shortly = just_released_disc(disc, release, delay)
+        times = [release.end + delay, release.end + 0.2]
+        states = slide_disc(disc, shortly, times, contact, method="Radau", rtol=1e-10, atol=1e-13)
+        exact = simulate(disc, release.initial_state, [release.start, *times], tolerance=1e-12)
+        errors.append(np.abs(states[-1] - exact.states[-1]).max())
+    # Slip of ½κt² is wrong by its next order in time: four times the delay, 64 times the error.
+    assert errors[0] < 1e-6
+    assert errors[1] < 0.05 * errors[0]
+
+
+@pytest.mark.parametrize(("points", "start"), [(6, STARTS[0]), (5, STARTS[0]), (3, STARTS[1])])
+def test_motion_with_pivots_and_stick_is_the_limit_of_smoothed_friction(points, start):
+    disc = replace(STICKY, contact_points=points)
+    times = np.linspace(0.0, 11.0, 56)
+    exact = simulate(disc, start, times)
+    assert {"pivot", "stick"} <= set(kinds(exact))
+    before = times < exact.stick_phases[0].end
+    errors = [np.abs(exact.states - smoothed_disc(disc, start, times, epsilon)) for epsilon in (1e-5, 1e-6)]
+    # The smoothed law creeps in proportion to ε; a release makes that ε^0.8.
+    assert errors[1][before].max() < 1e-5
+    assert errors[1][before].max() < 0.15 * errors[0][before].max()
+    assert errors[1].max() < 10**-0.75 * errors[0].max()
+
+
+def test_in_a_pivot_one_point_rests_on_the_master_disc_while_the_disc_turns():
+    disc = replace(STICKY, contact_points=5)
+    trajectory = simulate(disc, STARTS[0], np.linspace(0.0, 12.0, 12001))
+    pivots = [phase for phase in trajectory.phases if phase.kind == "pivot"]
+    assert pivots
+    for pivot in pivots:
+        inside = (trajectory.times >= pivot.start) & (trajectory.times <= pivot.end)
+        states = trajectory.states[inside]
+        arms = np.array([PointsOnRing(0.12, 5).arms(angle) for angle in states[:, 2]])
+        z, v = states[:, 0] + 1j * states[:, 1], states[:, 3] + 1j * states[:, 4]
+        slip = v[:, None] + 1j * states[:, 5:] * arms - 1.5j * (z[:, None] + arms)
+        least = np.abs(slip).max(axis=0)
+        assert np.sum(least < 1e-14) == 1
+        assert len(states) > 2
+
+
+@pytest.mark.parametrize(("points", "start"), [(5, STARTS[0]), (6, STARTS[1]), (3, STARTS[0])])
+def test_pivot_holds_as_long_as_its_friction_is_within_the_share_of_one_point(points, start):
+    disc = replace(STICKY, contact_points=points)
+    trajectory = simulate(disc, start, np.linspace(0.0, 20.0, 20001), tolerance=1e-12)
+    let_go = 0
+    for pivot, after in pairwise(trajectory.phases):
+        if pivot.kind != "pivot":
+            continue
+        inside = (trajectory.times > pivot.start) & (trajectory.times < pivot.end)
+        state = pivot.initial_state
+        arms = np.array(PointsOnRing(0.12, points).arms(state[2]))
+        slip = (
+            complex(state[3], state[4]) + 1j * state[5] * arms - 1.5j * (complex(state[0], state[1]) + arms)
+        )
+        point = int(np.argmin(abs(slip)))
+        forces = [abs(friction_of_pivot(disc, state, point)) for state in trajectory.states[inside]]
+        assert max(forces, default=0.0) < 0.09 / points
+        if after.kind == "slip":
+            force = abs(friction_of_pivot(disc, after.initial_state, point))
+            assert force == pytest.approx(0.09 / points, rel=1e-9)
+            let_go += 1
+    assert let_go >= 1
+
+
+# ---------------------------------------------------------------- a ring thrown on a resting table
+
+
+@pytest.mark.parametrize(
+    "start", [[0.0, 0.0, 0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.3, 0.4, -6.0], [0, 0, 0, 2.0, 0, 0.01]]
+)
+def test_sliding_and_spinning_of_a_free_ring_stop_together_and_in_the_ratio_one(start):
+    trajectory = simulate(FREE, start, np.linspace(0.0, 40.0, 11))
+    assert kinds(trajectory) == ["slip", "stick"]
+    stop = trajectory.phases[1].start
+    left = stop * 2.0 ** -np.arange(1.0, 29.0)
+    before = simulate(FREE, start, [0.0, *(stop - left)], tolerance=1e-13).states[1:]
+    sliding, rim = np.hypot(before[:, 3], before[:, 4]), 0.3 * np.abs(before[:, 5])
+    distance = np.abs(sliding / rim - 1.0)
+    # The logarithm in the ring's law draws the ratio to 1 faster than any power of the time that is left.
+    resolved = (distance * sliding)[
+        1:
+    ] > 1e-11  # ten times what the closed form for coming to rest leaves out
+    assert np.all(distance[1:][resolved] < distance[:-1][resolved])
+    near = resolved & (distance[:-1] < 0.1)
+    assert np.any(near)
+    assert np.all(distance[1:][near] < 0.1 * distance[:-1][near])
+    assert distance[-1] < 1e-6
+    # In the end 2/π of full friction works on either.
+    rate = 2.0 / math.pi * FREE.friction_force / FREE.mass
+    assert sliding[-1] == pytest.approx(rate * left[-1], rel=1e-3)
+    assert rim[-1] == pytest.approx(rate * left[-1], rel=1e-3)
+
+
+def test_free_ring_slides_longer_when_it_spins_and_turns_the_heat_of_all_its_energy():
+    times = np.linspace(0.0, 20.0, 4001)
+    straight, spinning = (simulate(FREE, [0.0, 0.0, 0.0, 1.0, 0.0, spin], times) for spin in (0.0, 5.0))
+    assert straight.phases[1].start == pytest.approx(2.0 / 0.4, rel=1e-9)
+    assert spinning.at_end[0] > straight.at_end[0]
+    balance = power_balance(spinning)
+    energy = 0.5 * 2.0 * 1.0 + 0.5 * 2.0 * 0.09 * 25.0
+    assert balance.friction_heat[-1] == pytest.approx(energy, rel=1e-5)
+    assert np.all(balance.drive_work == 0.0)
+
+
+@pytest.mark.parametrize(("inertia", "spin"), [(1e9, 1.3), (1.0, 1e6), (1e-4, 1.3)])
+def test_accuracy_of_the_place_depends_on_neither_inertia_nor_spin(inertia, spin):
+    disc, start = replace(FIG11, polar_inertia=inertia), [0.02, 0.0, 0.0, 0.0, 0.0, spin]
+    coarse, fine = (
+        simulate(disc, start, np.linspace(0.0, 10.0, 51), tolerance=tolerance) for tolerance in (1e-9, 1e-12)
+    )
+    assert np.abs(coarse.states[:, :2] - fine.states[:, :2]).max() < 1e-8 * fine.radius.max()
+
+
+# ---------------------------------------------------------------- what is refused
+
+
+def test_contact_that_the_system_cannot_have_is_refused():
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5)
+    with pytest.raises(ValueError, match=r"contact = Ring\(radius=0.1\): a pin touches in one point"):
+        simulate(pin, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0], contact=Ring(0.1))
+    with pytest.raises(ValueError, match=r"contact = Pin\(\): a disc that touches in one point"):
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact=Pin())
+    with pytest.raises(ValueError, match=r"contact = ring: it must be an isotropic law"):
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact="ring")
+    with pytest.raises(ValueError, match="DiscOnDisc takes 6 numbers"):
+        simulate(FIG11, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])

@@ -1,0 +1,538 @@
+"""Simulated motions of the pin against closed forms, eq. 7, and integrators that share nothing with them."""
+
+import cmath
+import math
+from dataclasses import fields, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from plain_engines import (
+    creep,
+    error_bound,
+    growth,
+    just_released,
+    pull_on_stuck_pin,
+    release_after,
+    slide,
+    stick_time_bounds,
+    stuck_state,
+    turned_with_disc,
+)
+
+from reference_model import PinOnDisc, SimulationError, simulate
+from reference_model.formulas import pin as formulas
+from reference_model.motion import stepper as stepping
+from reference_model.motion.exact import simulate_with
+from reference_model.motion.pin_equations import simulate_polar_form
+from reference_model.motion.stepper import Thresholds
+
+FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
+HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
+TO_EQUILIBRIUM, TO_WHIRL = [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0]  # the starts of Fig. 5
+
+
+def event_times(trajectory):
+    return np.array([phase.start for phase in trajectory.phases[1:]])
+
+
+def kinds(trajectory):
+    return [phase.kind for phase in trajectory.phases]
+
+
+def assert_phases_fit(trajectory):
+    """Phases follow each other without gaps, alternate, last, and start at states that belong to their kind."""
+    phases = trajectory.phases
+    pin = trajectory.system
+    assert phases[0].start == trajectory.times[0]
+    assert phases[-1].end == trajectory.times[-1]
+    for before, after in pairwise(phases):
+        assert before.end == after.start
+        assert {before.kind, after.kind} == {"slip", "stick"}
+    assert all(phase.end > phase.start for phase in phases)
+    size = np.abs(trajectory.states).max()
+    for phase in phases[1:]:
+        x, y = phase.initial_state[:2]
+        assert phase.initial_state == pytest.approx(stuck_state(pin, x, y), abs=1e-14 * size)
+    for phase in phases:
+        inside = (trajectory.times >= phase.start) & (trajectory.times <= phase.end)
+        if phase.kind == "stick":
+            speed = np.abs(trajectory.slip_speed[inside])
+            assert speed.max(initial=0.0) < 1e-14 * size * max(1.0, abs(pin.disc_speed))
+        else:
+            between = (trajectory.times > phase.start) & (trajectory.times < phase.end)
+            assert trajectory.slip_speed[between].min(initial=1.0) > 0.0
+
+
+# ---------------------------------------------------------------- slip
+
+
+@pytest.mark.parametrize("start", [[0.9, 0.0, 0.0, 0.9], [0.7, 0.1, 0.0, 0.5], [1.2, 0.0, 0.0, 1.0]])
+def test_slip_agrees_with_the_polar_form_10_after_a_hundred_seconds(start):
+    times = np.linspace(0.0, 100.0, 101)
+    polar = simulate_polar_form(FIG_5, np.array(start), times)
+    trajectory = simulate(FIG_5, start, times)
+    assert kinds(trajectory) == ["slip"]
+    assert np.abs(trajectory.at_end - polar[-1]).max() < 1e-9
+    tight = simulate(FIG_5, start, times, tolerance=1e-13)
+    # Both at their tightest: 3e-14 a step in a thousand steps, of which the phase forgets nothing.
+    assert np.abs(tight.states - polar).max() < 1e-11
+
+
+@pytest.mark.parametrize(("method", "tolerance"), [("DOP853", 3e-14), ("Radau", 1e-11), ("LSODA", 1e-13)])
+@pytest.mark.parametrize("pin", [FIG_5, HEAVY, replace(HEAVY, disc_speed=-2.2, offset=-0.15)])
+def test_slip_agrees_with_eq_1_under_other_integrators(pin, method, tolerance):
+    turn = math.copysign(1.0, pin.disc_speed)
+    start = np.array([0.9, 0.1, 0.0, 0.9 * turn])
+    times = np.linspace(0.0, 3.0, 7)
+    plain = slide(pin, start, times, method=method, rtol=tolerance, atol=tolerance).y.T
+    trajectory = simulate(pin, start, times, tolerance=1e-13)
+    assert np.abs(trajectory.states - plain).max() < error_bound(pin, 3.0, 10.0 * tolerance)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.1])
+@pytest.mark.parametrize("damping", [0.0, 0.3, 2.0 * math.sqrt(6.0), 9.0])  # the third is critical
+@pytest.mark.parametrize("disc_speed", [0.0, 1.5])
+def test_without_friction_the_pin_is_a_damped_oscillator(disc_speed, damping, offset):
+    pin = PinOnDisc(
+        mass=2.0, stiffness=3.0, damping=damping, friction_force=0.0, disc_speed=disc_speed, offset=offset
+    )
+    z0, v0 = 0.3 - 0.2j, -0.1 + 0.4j
+    times = np.linspace(0.0, 20.0, 41)
+    decay = damping / 4.0
+    rate = cmath.sqrt(decay**2 - 1.5)
+    r = z0 - offset
+    if abs(rate) < 1e-6:
+        along, across = np.exp(-decay * times), times * np.exp(-decay * times)
+    else:
+        along, across = (f(rate * times) * np.exp(-decay * times) for f in (np.cosh, np.sinh))
+        across = across / rate
+    z = offset + r * along + (v0 + decay * r) * across
+    v = v0 * along - (decay * v0 + 1.5 * r) * across
+    trajectory = simulate(pin, [z0.real, z0.imag, v0.real, v0.imag], times)
+    expected = np.column_stack((z.real, z.imag, v.real, v.imag))
+    # Errors of the oscillator do not grow: 1e-9 of a size below 1, in each of 20·1.5 units of time at most.
+    assert np.abs(trajectory.states - expected).max() < 1e-9 * 30
+    assert kinds(trajectory) == ["slip"]
+
+
+def test_without_any_force_the_pin_goes_straight_on():
+    pin = PinOnDisc(mass=3.0, stiffness=0.0, damping=0.0, friction_force=0.0, disc_speed=1.0)
+    trajectory = simulate(pin, [1.0, 2.0, 0.5, -0.25], [0.0, 8.0])
+    assert trajectory.at_end == pytest.approx([5.0, 0.0, 0.5, -0.25], abs=1e-9 * 8)
+
+
+# ---------------------------------------------------------------- a disc at rest
+
+
+@pytest.mark.parametrize(("amplitude", "half_cycles"), [(0.5, 0), (0.95, 0), (2.5, 1), (7.5, 4), (40.4, 20)])
+@pytest.mark.parametrize("angle", [0.0, 2.3])
+def test_on_a_disc_at_rest_the_amplitude_falls_by_twice_the_friction_each_half_cycle(
+    angle, amplitude, half_cycles
+):
+    # Coulomb-damped oscillator: half cycles about ±f, f = μN/C, until the turning point is within f of X0.
+    pin = PinOnDisc(mass=2.0, stiffness=3.0, damping=0.0, friction_force=0.12, disc_speed=0.0, offset=0.1)
+    f, k = 0.04, math.sqrt(1.5)
+    e = cmath.exp(1j * angle)
+    start = pin.offset + amplitude * f * e
+    duration = (half_cycles + 1) * math.pi / k
+    times = np.linspace(0.0, duration, 301)
+    trajectory = simulate(pin, [start.real, start.imag, 0.0, 0.0], times)
+
+    n = np.minimum(np.floor(times * k / math.pi), half_cycles)  # half cycles done
+    side = (-1.0) ** n
+    moving = n < half_cycles
+    swing = np.where(moving, (amplitude - 1.0 - 2.0 * n) * f, 0.0)
+    middle = np.where(moving, f, (amplitude - 2.0 * half_cycles) * f)
+    along = side * (middle + swing * np.cos(k * times - n * math.pi))
+    speed = -side * k * swing * np.sin(k * times - n * math.pi)
+    z, v = pin.offset + along * e, speed * e
+    expected = np.column_stack((z.real, z.imag, v.real, v.imag))
+    # Friction makes motions on a disc at rest draw nearer; the size is the amplitude.
+    size = amplitude * f * max(k, 1.0)
+    assert np.abs(trajectory.states - expected).max() < 1e-9 * size * k * duration
+
+    assert kinds(trajectory) == (["slip", "stick"] if half_cycles else ["stick"])
+    if half_cycles:
+        stop = trajectory.phases[1].start
+        assert stop == pytest.approx(half_cycles * math.pi / k, abs=1e-8)
+        rest = trajectory.phases[1].initial_state
+        side = (-1.0) ** half_cycles
+        place = pin.offset + side * (amplitude - 2.0 * half_cycles) * f * e
+        assert rest == pytest.approx([place.real, place.imag, 0.0, 0.0], abs=1e-8 * size)
+
+
+def test_pin_that_turns_exactly_where_friction_just_holds_it_stops_there():
+    # From 3f it swings about f to −f, where the pull of the springs is μN: both ways of rounding are right.
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.25, disc_speed=0.0)
+    trajectory = simulate(pin, [0.75, 0.0, 0.0, 0.0], np.linspace(0.0, 10.0, 101))
+    assert trajectory.at_end == pytest.approx([-0.25, 0.0, 0.0, 0.0], abs=1e-8)
+    assert kinds(trajectory) == ["slip", "stick"]
+    assert trajectory.phases[1].start == pytest.approx(math.pi, abs=1e-8)
+
+
+@pytest.mark.parametrize(("mass", "friction_force", "velocity"), [(2.0, 0.5, 3 + 4j), (1e-3, 2e-5, -1e-4j)])
+def test_free_pin_stops_after_its_momentum_over_friction(mass, friction_force, velocity):
+    pin = PinOnDisc(mass=mass, stiffness=0.0, damping=0.0, friction_force=friction_force, disc_speed=0.0)
+    stop = abs(velocity) * mass / friction_force
+    place = 1.0 - 0.5j + velocity * stop / 2.0
+    times = np.linspace(3.0, 3.0 + 2.0 * stop, 41)
+    trajectory = simulate(pin, [1.0, -0.5, velocity.real, velocity.imag], times)
+    assert kinds(trajectory) == ["slip", "stick"]
+    assert trajectory.phases[1].start - 3.0 == pytest.approx(stop, rel=1e-9)
+    assert trajectory.at_end == pytest.approx([place.real, place.imag, 0.0, 0.0], abs=1e-9 * abs(place))
+    speed = abs(velocity) * np.clip(1.0 - (times - 3.0) / stop, 0.0, None)
+    found = np.hypot(*trajectory.states[:, 2:].T)
+    assert found == pytest.approx(speed, abs=1e-9 * abs(velocity))
+
+
+def test_pin_slides_to_rest_on_a_turning_disc_without_support_like_a_coin_in_the_frame_at_rest():
+    # No springs, no dampers, ω = 0 seen from nowhere else: friction alone, against eq. 1 integrated plainly.
+    pin = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=0.3, disc_speed=0.8)
+    start, times = np.array([0.5, 0.0, 0.2, -0.3]), np.linspace(0.0, 1.0, 11)
+    trajectory = simulate(pin, start, times, tolerance=1e-12)
+    assert kinds(trajectory) == ["slip"]
+    plain = slide(pin, start, times).y.T
+    assert np.abs(trajectory.states - plain).max() < error_bound(pin, 1.0, 1e-12)
+
+
+# ---------------------------------------------------------------- stick
+
+
+@pytest.mark.parametrize("disc_speed", [0.3, FIG_6.disc_speed, formulas.resonant_disc_speed(FIG_6), -2.0])
+@pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
+def test_pin_inside_of_the_sticking_radius_turns_with_the_disc_for_ever(angle, disc_speed):
+    pin = replace(FIG_6, disc_speed=disc_speed)
+    z0 = 0.98 * formulas.sticking_radius(pin) * cmath.exp(1j * angle)
+    times = np.linspace(0.0, 200.0, 401)
+    trajectory = simulate(pin, stuck_state(pin, z0.real, z0.imag), times)
+    assert kinds(trajectory) == ["stick"]
+    z = z0 * np.exp(1j * disc_speed * times)
+    v = 1j * disc_speed * z
+    expected = np.column_stack((z.real, z.imag, v.real, v.imag))
+    # The angle is rounded to 1e-16 of up to 400 rad.
+    assert np.abs(trajectory.states - expected).max() < 1e-13 * max(abs(z0), 1.0)
+
+
+@pytest.mark.parametrize("disc_speed", [0.3, FIG_6.disc_speed, formulas.resonant_disc_speed(FIG_6), -2.0])
+@pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
+def test_pin_outside_of_the_sticking_radius_lets_go_when_7_says_and_along_the_pull(angle, disc_speed):
+    pin = replace(FIG_6, disc_speed=disc_speed)
+    radius = 1.02 * formulas.sticking_radius(pin)
+    start = stuck_state(pin, radius * math.cos(angle), radius * math.sin(angle))
+    expected = formulas.release_time(pin, radius, angle)
+    delays = np.array([0.005, 0.01, 0.02])
+    times = np.concatenate(([-1.0], -1.0 + expected + delays))
+    trajectory = simulate(pin, start, times)
+    assert kinds(trajectory) == (["stick", "slip"] if expected > 0.0 else ["slip"])
+    if expected == 0.0:  # friction can't hold it at the start already
+        return
+    release = trajectory.phases[1]
+    assert release.start + 1.0 == pytest.approx(expected, abs=1e-11)
+    let_go = turned_with_disc(pin, start, expected)
+    assert release.initial_state == pytest.approx(let_go, abs=1e-11)
+    pull = pull_on_stuck_pin(pin, let_go)
+    assert math.hypot(*pull) == pytest.approx(pin.friction_force, rel=1e-12)
+    # The pull turns by ω·delay at most while slip follows it.
+    slip = trajectory.slip_velocity[1:] @ (np.array([[1.0, 1.0j]]).T @ [[1.0]])
+    turned = np.angle(slip.ravel() / complex(*pull))
+    assert np.all(np.abs(turned) < 2.0 * abs(disc_speed) * delays)
+    # Slip grows like t²: doubling the time quadruples it, with corrections of the order of the time.
+    ratios = trajectory.slip_speed[2:] / trajectory.slip_speed[1:-1]
+    assert ratios == pytest.approx([4.0, 4.0], rel=0.1)
+
+
+@pytest.mark.parametrize("start", [TO_EQUILIBRIUM, TO_WHIRL])
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_phases_of_fig_5_follow_each_other_and_friction_holds_in_each_stick_phase(start, mirror):
+    pin = replace(FIG_5, disc_speed=mirror * FIG_5.disc_speed)
+    trajectory = simulate(pin, start, np.linspace(0.0, 80.0, 8001))
+    assert_phases_fit(trajectory)
+    assert len(trajectory.phases) == (5 if start is TO_EQUILIBRIUM else 19)
+    assert len(trajectory.stick_phases) == len(trajectory.phases) // 2
+    for phase in trajectory.stick_phases:
+        assert phase.end - phase.start > 0.1  # no chatter
+        forces = [
+            math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, phase.initial_state, delay)))
+            for delay in np.linspace(0.0, phase.end - phase.start, 101)
+        ]
+        assert max(forces[:-1]) < pin.friction_force
+        assert forces[-1] == pytest.approx(pin.friction_force, rel=1e-11)
+
+
+def test_stuck_pin_at_a_single_time_sticks_and_a_sliding_one_slips():
+    assert kinds(simulate(FIG_6, stuck_state(FIG_6, 0.01, 0.0), [2.0])) == ["stick"]
+    assert kinds(simulate(FIG_6, TO_WHIRL, [2.0])) == ["slip"]
+
+
+def test_start_at_the_very_moment_of_release_slips():
+    pin, radius, angle = FIG_6, 1.1 * formulas.sticking_radius(FIG_6), 4.0
+    held = stuck_state(pin, radius * math.cos(angle), radius * math.sin(angle))
+    release = formulas.release_time(pin, radius, angle)
+    assert release > 0.5
+    times = np.linspace(0.0, 1.0, 11)
+    trajectory = simulate(pin, turned_with_disc(pin, held, release), times)
+    assert_phases_fit(trajectory)
+    assert kinds(trajectory)[-1] == "slip"
+    assert trajectory.phases[-1].start < 1e-11  # rounding decides whether it is held for a moment
+    longer = simulate(pin, held, np.concatenate(([0.0], release + times)))
+    assert np.abs(trajectory.states - longer.states[1:]).max() < error_bound(pin, 1.0, 1e-9)
+
+
+# ---------------------------------------------------------------- releases that are hardly any
+
+
+def grazing_pin(excess, radius=0.1):
+    """A pin and a start at which the holding force of a stuck turn peaks at (1 + excess)·μN, 1.5 rad later.
+
+    And the turn in rad, before the peak, at which it passes μN, to first order: the excess is a parabola.
+    """
+    elastic, viscous = 1.0 - FIG_6.disc_speed**2, 0.1 * FIG_6.disc_speed
+    carry = math.hypot(elastic, viscous) * radius
+    pin = replace(FIG_6, friction_force=(carry + 0.1) / (1.0 + excess))
+    angle = math.pi - math.atan2(viscous, elastic) - 1.5
+    width = math.sqrt(2.0 * max(excess, 0.0) / (carry * 0.1)) * (carry + 0.1)
+    return pin, stuck_state(pin, radius * math.cos(angle), radius * math.sin(angle)), width
+
+
+@pytest.mark.parametrize("excess", [-1e-2, -1e-6, -1e-9, 0.0, 1e-15, 1e-12, 1e-9])
+def test_holding_force_that_peaks_at_its_limit_does_not_let_go(excess):
+    pin, start, _ = grazing_pin(excess)
+    trajectory = simulate(pin, start, np.linspace(0.0, 50.0, 51))
+    assert kinds(trajectory) == ["stick"]
+    assert trajectory.radius == pytest.approx(0.1, rel=1e-14)
+
+
+@pytest.mark.parametrize("excess", [2e-8, 1e-6, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1])
+def test_holding_force_that_just_exceeds_its_limit_lets_go_for_a_moment_in_each_turn(excess):
+    pin, start, width = grazing_pin(excess)
+    times = np.linspace(0.0, 7.0, 71)
+    trajectory = simulate(pin, start, times)
+    assert_phases_fit(trajectory)
+    assert kinds(trajectory)[:3] == ["stick", "slip", "stick"]
+    slip = trajectory.phases[1]
+    # The pull exceeds friction for twice the width, and slip lasts for three times: until the integral of the
+    # parabola vanishes. What is left out is smaller by a factor of the width.
+    assert slip.start == pytest.approx((1.5 - width) / pin.disc_speed, abs=0.2 * width**2)
+    assert slip.end - slip.start == pytest.approx(3.0 * width / pin.disc_speed, rel=width)
+    tight = simulate(pin, start, times, tolerance=1e-12)
+    assert event_times(trajectory) == pytest.approx(event_times(tight), abs=1e-8)
+
+
+@pytest.mark.parametrize("excess", [1e-6, 1e-3, 1e-2])
+def test_motion_through_a_momentary_release_is_the_limit_of_smoothed_friction(excess):
+    pin, start, _ = grazing_pin(excess)
+    times = np.linspace(0.0, 3.0, 16)
+    exact = simulate(pin, start, times)
+    errors = [np.abs(exact.states - creep(pin, start, times, epsilon)).max() for epsilon in (4e-8, 1e-8)]
+    # The smoothed law creeps in proportion to ε, by ε·pull/√(μN² − pull²), but for logarithms where pull = μN.
+    assert errors[0] < 4e-6
+    assert errors[1] < 0.35 * errors[0]
+
+
+# ---------------------------------------------------------------- slip that turns
+
+
+@pytest.mark.parametrize("aside", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_slip_that_friction_cannot_hold_turns_and_goes_on_head_on_or_nearly(angle, aside):
+    # On a disc at rest the pin swings out to 8 f and turns; motions that start side by side stay so.
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.05, disc_speed=0.0)
+    e = cmath.exp(1j * angle)
+    start = 0.45 * e + 1j * aside * e
+    times = np.linspace(0.0, 8.0, 33)
+    trajectory = simulate(pin, [start.real, start.imag, 0.0, 0.0], times)
+    exact = simulate(pin, [0.45 * e.real, 0.45 * e.imag, 0.0, 0.0], times, tolerance=1e-13)
+    allowed = growth(pin, 8.0) * aside + error_bound(pin, 8.0, 1e-9)
+    assert np.abs(trajectory.states - exact.states).max() < allowed
+    assert kinds(trajectory) == ["slip"]
+    assert trajectory.solution.evaluations < 5_000
+
+
+def slip_that_ends_head_on(pin, z0, duration):
+    """State ``duration`` before slip ends at ``z0`` against a pull that friction can't hold, found backwards."""
+    rest = stuck_state(pin, z0.real, z0.imag)
+    pull = pull_on_stuck_pin(pin, rest)
+    strength = math.hypot(*pull)
+    assert strength > pin.friction_force
+    before = 1e-9
+    slip = -pull * (1.0 + pin.friction_force / strength) * before / pin.mass
+    shortly_before = turned_with_disc(pin, rest, -before) + np.array([0.0, 0.0, *slip])
+    return slide(pin, shortly_before, [-before, -duration]).y[:, -1]
+
+
+@pytest.mark.parametrize("pin", [FIG_5, HEAVY, replace(FIG_6, disc_speed=-1.2)])
+@pytest.mark.parametrize("z0", [0.5 + 0.2j, -0.4 + 0.6j])
+@pytest.mark.parametrize("aside", [0.0, 1e-10, 1e-6])
+def test_slip_on_a_turning_disc_reverses_head_on_and_goes_on_along_the_pull(pin, z0, aside):
+    start = slip_that_ends_head_on(pin, z0, 0.3)
+    start[2:] += aside * np.array([0.6, -0.8])
+    times = np.array([0.0, 0.1, 0.2, 0.3, 0.31, 0.4])
+    trajectory = simulate(pin, start, times, tolerance=1e-12)
+    assert kinds(trajectory) == ["slip"]
+    allowed = growth(pin, 0.4) * (aside + 1e-9) + error_bound(pin, 0.4, 1e-12)
+    turning = stuck_state(pin, z0.real, z0.imag)
+    assert np.abs(trajectory.states[3] - turning).max() < allowed
+    # From there slip grows with what the pull has over friction, to first order in the 0.01 s.
+    pull = pull_on_stuck_pin(pin, turning)
+    rate = (1.0 - pin.friction_force / math.hypot(*pull)) * pull / pin.mass
+    assert trajectory.slip_velocity[4] == pytest.approx(
+        0.01 * rate, abs=0.05 * 0.01 * math.hypot(*rate) + allowed
+    )
+
+
+def test_pin_swings_through_the_axis_where_nothing_is_special_but_the_coordinates():
+    start = np.array([0.3, 0.0, -0.5, 0.0])
+    pin = replace(FIG_5, friction_force=0.05, disc_speed=0.4)
+    times = np.linspace(0.0, 1.5, 16)
+    trajectory = simulate(pin, start, times, tolerance=1e-12)
+    assert trajectory.states[:, 0].min() < 0.0 < trajectory.states[:, 0].max()
+    assert np.abs(trajectory.states - slide(pin, start, times).y.T).max() < error_bound(pin, 1.5, 1e-12)
+
+
+# ---------------------------------------------------------------- Fig. 5: event times, thresholds, cost
+
+FIG_5_TIMES = np.linspace(0.0, 400.0, 4001)
+
+
+@pytest.fixture(scope="module", params=[TO_EQUILIBRIUM, TO_WHIRL], ids=["to_equilibrium", "to_whirl"])
+def fig_5(request):
+    """Start and trajectories of one of the runs of Fig. 5 at the default tolerance and at 1e-13."""
+    start = request.param
+    return start, simulate(FIG_5, start, FIG_5_TIMES), simulate(FIG_5, start, FIG_5_TIMES, tolerance=1e-13)
+
+
+def test_fig_5_costs_few_evaluations_and_ends_within_1e_8_of_the_tight_run(fig_5):
+    start, trajectory, tight = fig_5
+    most = {"to_equilibrium": 10_000, "to_whirl": 30_000}
+    assert (
+        trajectory.solution.evaluations <= most["to_equilibrium" if start is TO_EQUILIBRIUM else "to_whirl"]
+    )
+    assert np.abs(trajectory.at_end - tight.at_end).max() < 1e-8
+    assert np.abs(trajectory.states - tight.states).max() < 1e-8
+
+
+def test_fig_5_ends_in_the_equilibrium_from_one_start_and_whirls_from_the_other(fig_5):
+    start, _, tight = fig_5
+    x, y = formulas.equilibrium_position(FIG_5)
+    if start is TO_EQUILIBRIUM:
+        # exp(−βt/2m) = 2e-9 is left of the transient after 400 s.
+        assert tight.at_end == pytest.approx([x, y, 0.0, 0.0], abs=1e-9)
+    else:
+        assert tight.radius[-200:].min() > 0.7
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+@pytest.mark.parametrize("threshold", [field.name for field in fields(Thresholds)])
+def test_stick_and_release_times_do_not_depend_on_any_threshold(fig_5, threshold, factor):
+    start, trajectory, tight = fig_5
+    other = replace(Thresholds(), **{threshold: factor * getattr(Thresholds(), threshold)})
+    changed = simulate_with(other, FIG_5, start, FIG_5_TIMES)
+    assert kinds(changed) == kinds(trajectory) == kinds(tight)
+    assert np.abs(event_times(changed) - event_times(trajectory)).max() < 1e-8
+    assert np.abs(event_times(changed) - event_times(tight)).max() < 1e-8
+    assert np.abs(changed.at_end - trajectory.at_end).max() < 1e-8
+
+
+def test_thresholds_and_tolerance_do_have_an_effect_below_that(fig_5):
+    # Were the events the same to all digits, the tests above would not have reached the thresholds.
+    start, trajectory, tight = fig_5
+    halved = simulate_with(replace(Thresholds(), slow_slip=0.25), FIG_5, start, FIG_5_TIMES)
+    assert np.abs(event_times(halved) - event_times(trajectory)).max() > 1e-14
+    assert np.abs(event_times(tight) - event_times(trajectory)).max() > 1e-14
+
+
+@pytest.mark.parametrize("start", [TO_EQUILIBRIUM, TO_WHIRL])
+def test_stick_and_release_times_agree_with_a_plain_integrator_and_a_plain_root(start):
+    expected, t, state = [], 0.0, np.array(start)
+    for _ in range(2):
+        earliest, latest, t, state = stick_time_bounds(FIG_5, state, t, longest=10.0)
+        assert latest - earliest < 1e-8
+        held = release_after(FIG_5, state, longest=2.0)
+        let_go = turned_with_disc(FIG_5, state, held)
+        release = t + held
+        expected += [(earliest + latest) / 2.0, release]
+        # Slip of ½κt² is right to some 1e-4 of its 1e-10 m/s then; what follows is stiff, so by Radau's method.
+        shortly = just_released(FIG_5, let_go, 1e-4)
+        early = slide(
+            FIG_5, shortly, [release + 1e-4, release + 0.05], method="Radau", rtol=1e-11, atol=1e-13
+        )
+        t, state = release + 0.05, early.y[:, -1]
+    found = event_times(simulate(FIG_5, start, [0.0, 15.0]))
+    assert found == pytest.approx(expected, abs=1e-8)
+
+
+# ---------------------------------------------------------------- times that are asked for
+
+
+@pytest.mark.parametrize("start", [TO_EQUILIBRIUM, TO_WHIRL])
+def test_motion_does_not_depend_on_the_times_that_are_asked_for(start):
+    dense = np.linspace(0.0, 60.0, 60_001)
+    sparse = dense[::7500]
+    odd = np.concatenate(([0.0], np.sort(np.random.default_rng(1).uniform(1e-9, 60.0, 50)), [60.0]))
+    whole, few, some, tight = (
+        simulate(FIG_5, start, times, tolerance=tolerance)
+        for times, tolerance in ((dense, 1e-9), (sparse, 1e-9), (odd, 1e-9), (odd, 1e-13))
+    )
+    assert np.array_equal(whole.states[::7500], few.states)
+    assert np.array_equal(event_times(whole), event_times(few))
+    assert np.array_equal(event_times(whole), event_times(some))
+    assert np.abs(some.states - tight.states).max() < 1e-8  # between the steps as good as at their ends
+
+
+def test_position_of_every_sample_belongs_to_the_velocities_before():
+    # Simpson's rule is wrong by h⁵ where slip is smooth, and by a jump of 2μN/m at most in one step where it ends.
+    times = np.linspace(0.0, 12.0, 12_001)
+    trajectory = simulate(FIG_5, TO_WHIRL, times)
+    x, v = trajectory.states[:, :2], trajectory.states[:, 2:]
+    h = times[1]
+    moved = h / 3.0 * (v[:-2:2] + 4.0 * v[1:-1:2] + v[2::2])
+    errors = np.abs(x[2::2] - x[:-2:2] - moved).max(axis=1)
+    assert errors.max() < h**2 * 2.0 * FIG_5.friction_force
+    assert np.sum(errors > 1e-11) <= len(trajectory.phases) - 1
+
+
+@pytest.mark.parametrize("shift", [-7.25, 1.0, 1e4])
+def test_shifted_times_give_the_same_motion(shift):
+    times = np.linspace(0.0, 20.0, 81)
+    at_zero, later = simulate(FIG_5, TO_WHIRL, times), simulate(FIG_5, TO_WHIRL, times + shift)
+    # The shifted times themselves are rounded.
+    rounding = 4.0 * np.spacing(abs(shift) + 20.0)
+    assert np.abs(later.states - at_zero.states).max() < 1e-13 + 10.0 * rounding
+    assert event_times(later) - shift == pytest.approx(event_times(at_zero), abs=1e-13 + 10.0 * rounding)
+    assert later.phases[0].start == shift
+
+
+def test_motion_continued_from_its_own_end_is_the_motion_in_one_piece():
+    for split in (2.0, 5.0, 11.0, 11.2):  # in slip, in stick, in slow slip, in stick
+        whole = simulate(FIG_5, TO_WHIRL, [0.0, split, 20.0], tolerance=1e-12)
+        rest = simulate(FIG_5, whole.states[1], [split, 20.0], tolerance=1e-12)
+        assert np.abs(rest.at_end - whole.at_end).max() < error_bound(FIG_5, 20.0 - split, 1e-12)
+
+
+# ---------------------------------------------------------------- giving up
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
+    pin = replace(FIG_5)
+    object.__setattr__(pin, "mass", 1e-300)  # which is refused where a pin is made
+    with pytest.raises(SimulationError, match="not finite"):
+        simulate(pin, [1.0, 0.0, 0.0, 0.0], [0.0, 1.0])
+
+
+def test_a_motion_of_too_many_steps_is_refused_with_its_time(monkeypatch):
+    monkeypatch.setattr(stepping, "MOST_STEPS", 50)
+    with pytest.raises(SimulationError, match=r"more than 50 steps up to t = \d+"):
+        simulate(FIG_5, TO_WHIRL, [0.0, 400.0])
+
+
+def test_a_motion_that_would_take_far_too_many_steps_is_given_up_early(monkeypatch):
+    monkeypatch.setattr(stepping, "LOOK_BACK", 200)
+    for start in (TO_WHIRL, [0.1, 0.0, 1e-9, 0.15]):
+        with pytest.raises(
+            SimulationError, match=r"more than 20,000,000 steps ahead after 200 up to t = \d+"
+        ):
+            simulate(FIG_5, start, [0.0, 1e12])
+    simulate(FIG_5, TO_WHIRL, [0.0, 400.0])

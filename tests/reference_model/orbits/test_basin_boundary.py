@@ -1,0 +1,206 @@
+"""The boundary of the basins of Fig. 5: the stable set of a stick–slip orbit."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.path import Path
+
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from reference_model import PinOnDisc, basin_boundary, boundary_point, simulate, stick_slip_orbits
+from reference_model.orbits.basin_boundary import Sides
+from reference_model.orbits.release_map import Releases
+
+RANGES = ((-0.3, 0.5), (-0.4, 0.4))
+
+
+@pytest.fixture(scope="module")
+def saddle():
+    (orbit,) = stick_slip_orbits(FIG5, tolerance=1e-11, samples=2)
+    return orbit
+
+
+@pytest.fixture(scope="module")
+def boundary(saddle):
+    """With errors of some 1e-7."""
+    return basin_boundary(with_tolerance(saddle, 1e-6), ranges=RANGES, cells=5)
+
+
+@pytest.fixture(scope="module")
+def point(saddle):
+    """Between the two starts of the paper."""
+    return boundary_point(saddle, *FIG5_STARTS.values())
+
+
+def with_tolerance(orbit, tolerance):
+    return replace(orbit, flow=replace(orbit.flow, tolerance=tolerance))
+
+
+def whirls(start, duration, tolerance):
+    return np.hypot(*simulate(FIG5, start, [0.0, duration], tolerance=tolerance).at_end[:2]) > 0.4
+
+
+# ---------------------------------------------------------------- points
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ((0.1, 0.0, -0.1, 0.0), (0.1, 0.0, -0.35, 0.0)),  # first stick after one turn, not two
+        ((0.0, 0.0, 0.0, 0.0), (0.2, 0.3, -0.3, 0.4)),
+    ],
+)
+def test_starts_on_both_sides_of_a_point_of_the_boundary_come_to_different_motions(saddle, first, second):
+    point = boundary_point(saddle, first, second)
+    along = np.subtract(second, first)
+    # The point lies between the two, on their line.
+    share = float(along @ (point - first) / (along @ along))
+    assert 0.0 < share < 1.0
+    assert point == pytest.approx(first + share * along, abs=1e-14)
+    # A deviation of 1e-10 grows by the multiplier every 6.2 s: after 45 periods, or 280 s, it is of order one.
+    step = 1e-10 * along / np.linalg.norm(along)
+    assert not whirls(point - step, 400.0, 1e-12)
+    assert whirls(point + step, 400.0, 1e-12)
+
+
+def test_boundary_of_fig_5_is_that_of_bisection_by_end_states(point):
+    low, high = FIG5_STARTS["equilibrium"][2], FIG5_STARTS["whirl"][2]
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        if whirls([0.1, 0.0, middle, 0.0], 250.0, 1e-8):
+            high = middle
+        else:
+            low = middle
+    assert low <= point[2] <= high
+
+
+def test_pin_that_starts_on_the_boundary_follows_the_saddle_as_long_as_its_error_stays_small(saddle, point):
+    trajectory = simulate(FIG5, point, [0.0, 15.0 * saddle.period], tolerance=1e-12)
+    misses = [abs(r.angle - saddle.release_angle) for r in Releases(FIG5, 1e-12).along(trajectory)]
+    assert len(misses) >= 13
+    # That of the point, 1e-10 or less, and of its release, grows by the multiplier from release to release.
+    assert np.all(np.array(misses) <= 1e-10 * saddle.multiplier ** np.arange(len(misses)))
+
+
+def test_point_comes_nearer_with_the_tolerance(saddle, point):
+    points = [
+        boundary_point(with_tolerance(saddle, tolerance), *FIG5_STARTS.values())
+        for tolerance in (1e-6, 1e-8, 1e-10)
+    ]
+    errors = [np.abs(rougher - point).max() for rougher in points]
+    assert np.all(np.array(errors) <= [1e-6, 1e-8, 1e-10]), errors
+
+
+# ---------------------------------------------------------------- curves
+
+
+def test_basin_of_the_equilibrium_of_fig_5_is_what_one_closed_curve_encloses(boundary):
+    (curve,) = boundary
+    assert curve.closed
+    steps = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
+    assert steps.max() <= 1.05 * 0.8 / 5  # a correction goes across the tangent
+    # Between two points whose tangents are acos 0.97 apart a curve keeps within a sixteenth of its step of the chord.
+    polygon, margin = Path(curve.points), steps.max() / 16.0
+    starts = np.random.default_rng(5).uniform([-0.1, -0.3], [0.35, 0.15], (40, 2))
+    told = 0
+    for x, vx in starts:
+        around = [(x + margin * np.cos(a), vx + margin * np.sin(a)) for a in np.arange(0.0, 6.2, 0.3)]
+        inside = polygon.contains_points(around)
+        if inside.all() or not inside.any():
+            assert whirls([x, 0.0, vx, 0.0], 150.0, 1e-6) != inside.all(), (x, vx)
+            told += 1
+    assert told > 25
+
+
+def test_points_of_the_curve_separate_the_basins(boundary):
+    (curve,) = boundary
+    x, vx = curve.points.T
+    anticlockwise = np.sign(np.sum(x[:-1] * vx[1:] - x[1:] * vx[:-1]))
+    for i in range(1, len(x) - 1, 8):
+        along = curve.points[i + 1] - curve.points[i - 1]
+        outward = 1e-5 * anticlockwise * np.array([along[1], -along[0]]) / np.linalg.norm(along)
+        for side in (-1.0, 1.0):
+            x0, vx0 = curve.points[i] + side * outward
+            assert whirls([x0, 0.0, vx0, 0.0], 250.0, 1e-8) == (side > 0.0), curve.points[i]
+
+
+def test_curve_through_a_rectangle_that_cuts_the_basin_ends_at_its_limits(saddle):
+    low, high = 0.0, 0.05
+    (curve,) = basin_boundary(with_tolerance(saddle, 1e-6), ranges=((low, high), (0.0, 0.15)), cells=2)
+    assert sorted(curve.ends) == [0, 2]
+    assert sorted(curve.points[[0, -1], 0]) == pytest.approx([low, high], abs=1e-9)
+    for x, vx in curve.points[[0, -1]]:
+        point = boundary_point(with_tolerance(saddle, 1e-8), (x, 0.0, 0.0, 0.0), (x, 0.0, 0.2, 0.0))
+        assert vx == pytest.approx(point[2], abs=1e-6)
+
+
+def test_other_components_and_a_state_that_they_replace_give_another_cut(saddle, point):
+    (curve,) = basin_boundary(
+        with_tolerance(saddle, 1e-6),
+        components=("vy", "y"),
+        ranges=((-0.02, 0.02), (-0.02, 0.02)),
+        others=point,
+        cells=2,
+    )
+    # It goes through the very same point, and all of its points are on the boundary.
+    assert np.min(np.linalg.norm(curve.points, axis=1)) < 0.02
+    sides = Sides.of(saddle)
+    assert sides.miss(point) == pytest.approx(0.0, abs=1e-9)
+    for vy, y in curve.points:
+        assert sides.miss([point[0], y, point[2], vy]) == pytest.approx(0.0, abs=1e-5)
+
+
+def test_boundary_between_a_cycle_and_the_whirl_of_one_pin_is_found_as_well():
+    pin = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.2328, friction_force=0.585, disc_speed=1.443, offset=0.564
+    )
+    cycle, saddle = stick_slip_orbits(pin, tolerance=1e-8, samples=2)
+    assert cycle.release_angle < saddle.release_angle
+    assert 0.0 < cycle.multiplier < 1.0 < saddle.multiplier
+    assert max(cycle.residual, saddle.residual) < 1e-7
+    second = np.array([1.5, 0.0, 0.0, 1.5])
+    point = boundary_point(saddle, cycle.state, second)
+    step = 1e-6 * (second - point) / np.linalg.norm(second - point)
+    # After 110 periods a deviation of 1e-6 would have grown by 1.137¹¹⁰ = 1e6.
+    before, behind = (
+        simulate(pin, start, [0.0, 150.0 * saddle.period]).stick_phases[-1].end / saddle.period
+        for start in (point - step, point + step)
+    )
+    assert behind < 140.0 < 148.0 < before
+
+
+# ---------------------------------------------------------------- bad input
+
+
+def test_an_orbit_without_two_sides_is_refused(saddle):
+    damped = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.85, friction_force=0.47, disc_speed=2.4, offset=0.46
+    )
+    (cycle,) = stick_slip_orbits(damped, tolerance=1e-8, samples=2)
+    with pytest.raises(ValueError, match=r"multiplier 0\.1086: only the stable set"):
+        boundary_point(cycle, (0.1, 0.0, 0.0, 0.0), (0.2, 0.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="must be a StickSlipOrbit"):
+        basin_boundary(FIG5, ranges=RANGES)
+
+
+def test_two_starts_in_one_basin_are_refused(saddle):
+    with pytest.raises(ValueError, match="comes to the same motion"):
+        boundary_point(saddle, (0.1, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"components": ("x", "x")}, "they must be two of x, y, vx, vy"),
+        ({"components": ("x", "spin")}, "they must be two of x, y, vx, vy"),
+        ({"ranges": ((0.0, 0.1), (0.2, 0.2))}, r"range of vx = 0\.2 to 0\.2: it must increase"),
+        ({"ranges": ((0.0, math.nan), (0.2, 0.3))}, "range of x = nan: it must be finite"),
+        ({"ranges": ((0.0, 0.1),)}, "two pairs of numbers"),
+        ({"others": (0.0, 0.0)}, "initial_state has shape"),
+        ({"cells": 1}, "cells = 1: it must be a whole number >= 2"),
+    ],
+)
+def test_a_rectangle_that_is_none_is_refused(saddle, options, message):
+    with pytest.raises(ValueError, match=message):
+        basin_boundary(saddle, **({"ranges": RANGES} | options))

@@ -1,0 +1,450 @@
+"""Periodic orbits: the whirl with an offset, its fold, and the branch with stick phases."""
+
+import functools
+import math
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG11
+from reference_model import PinOnDisc, last_whirl, self_centred_equilibria, simulate, whirl_orbit, whirls
+from reference_model.contact.contact_law import ThreeTermRing
+from reference_model.formulas import pin as formulas
+from reference_model.orbits.shooting import Flow, modulated_cycle, whirl_branch
+from reference_model.systems import DiscOnDisc
+
+FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
+HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
+MIRRORED = replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)
+ROUNDING = 1e-12  # of an orbit at a tolerance of 1e-12 whose errors die out
+
+
+def unbraked(pin):
+    """A disc that is like the pin: with nothing to brake it, it spins with the master disc."""
+    return DiscOnDisc(
+        **asdict(pin), polar_inertia=0.01, contact_radius=0.1, shaft_damping=0.0, shaft_speed=0.0
+    )
+
+
+def turned(z, angle):
+    z *= np.exp(1j * angle)
+    return z.real, z.imag
+
+
+@pytest.mark.parametrize("pin", [FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2)])
+def test_whirl_without_offset_is_that_of_11_with_its_eigenvalues(pin):
+    pin = replace(pin, offset=0.0)
+    orbit, (whirl,) = whirl_orbit(pin), whirls(pin)
+    assert orbit.residual <= 1e-12
+    expected = [whirl.radius, 0.0, 0.0, whirl.radius * whirl.frequency]
+    assert orbit.state == pytest.approx(expected, abs=ROUNDING * whirl.radius * 10)
+    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING)
+    assert orbit.frequency == pytest.approx(abs(whirl.frequency), rel=ROUNDING)
+    assert orbit.mean == pytest.approx([0.0, 0.0], abs=ROUNDING * whirl.radius * 10)
+    # Differences of fourth order over 3e-4 of the size: right to some 1e-14 in the pin's map, and 1e-14/3e-4.
+    multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
+    found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
+    assert found == pytest.approx(multipliers, abs=1e-9)
+    assert orbit.stable == whirl.stable
+
+
+@pytest.mark.parametrize(
+    "pin", [FIG_5, FIG_6, replace(HEAVY, offset=0.05), replace(FIG_5, disc_speed=3.0, offset=-0.1)]
+)
+def test_whirl_with_an_offset_is_periodic_and_has_a_multiplier_of_one(pin):
+    orbit = whirl_orbit(pin)
+    assert orbit.residual <= 1e-12
+    assert orbit.state[1] == 0.0
+    assert min(abs(multiplier - 1.0) for multiplier in orbit.multipliers) < 1e-5
+    states = orbit.trajectory.states
+    size = np.abs(states).max()
+    assert np.abs(states[-1] - states[0]).max() < ROUNDING * size
+    # The shooting is right if the motion comes back after three periods, found at another tolerance.
+    later = simulate(pin, orbit.state, [0.0, 3.0 * orbit.period], tolerance=1e-13)
+    assert np.abs(later.at_end - orbit.state).max() < 10 * ROUNDING * size
+    assert orbit.trajectory.times[-1] == orbit.period
+    assert orbit.system == pin
+
+
+@pytest.mark.parametrize("pin", [FIG_5, FIG_6])
+def test_mean_of_the_orbit_is_that_of_a_long_simulation_over_whole_periods(pin):
+    orbit = whirl_orbit(pin)
+    times = np.linspace(0.0, 5.0 * orbit.period, 5 * 64 + 1)
+    mean = simulate(pin, orbit.state, times, tolerance=1e-12).states[:-1, :2].mean(axis=0)
+    # 64 samples a period leave the harmonics from the 64th on.
+    assert orbit.mean == pytest.approx(mean, abs=1e-10)
+
+
+def test_whirl_on_a_disc_that_turns_the_other_way_is_mirrored():
+    orbit, mirrored = whirl_orbit(FIG_6), whirl_orbit(replace(FIG_6, disc_speed=-1.2))
+    mirror = np.array([1.0, -1.0, 1.0, -1.0])
+    assert mirrored.state == pytest.approx(mirror * orbit.state, abs=ROUNDING * 10)
+    assert mirrored.period == pytest.approx(orbit.period, rel=ROUNDING)
+    assert mirrored.mean == pytest.approx(mirror[:2] * orbit.mean, abs=ROUNDING * 10)
+
+
+@pytest.mark.parametrize("disc_speed", [1.3, 1.5, 2.0, 3.0, -1.5])
+def test_error_of_the_first_order_mean_falls_like_the_third_power_of_the_offset(disc_speed):
+    pin = replace(FIG_6, disc_speed=disc_speed)
+    errors = []
+    for offset in (0.02, 0.01):  # of the radius; the next term is smaller by (w·0.02)², w = ω/(ω − k) <= 4.4
+        small = replace(pin, offset=offset * formulas.whirl_radius(pin))
+        mean = whirl_orbit(small, samples=64).mean
+        errors.append(math.dist(mean, formulas.first_order_whirl_shift(small)))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(3.0, abs=0.05), errors
+
+
+# ---------------------------------------------------------------- where the whirl ends
+
+
+@pytest.fixture(scope="module")
+def fold():
+    return last_whirl(FIG_6)
+
+
+def test_last_whirl_is_a_fold_where_two_multipliers_are_one(fold):
+    assert fold.system.friction_force == pytest.approx(0.0783178869, abs=2e-10)
+    assert fold.residual <= 1e-12
+    first, second, *others = sorted(fold.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
+    # A double eigenvalue of a matrix known to 1e-10 is known to the root of that.
+    assert abs(first - 1.0) < 1e-5
+    assert abs(second - 1.0) < 1e-5
+    assert all(abs(other) < 0.1 for other in others)
+
+
+def test_two_whirls_exist_just_above_the_fold_and_none_just_below(fold):
+    x, load = float(fold.state[0]), fold.system.friction_force
+    sides = [whirl_orbit(FIG_6, guess=fold, at_crossing=x * factor, samples=2) for factor in (1.02, 0.98)]
+    assert all(orbit.system.friction_force > load for orbit in sides)
+    above = replace(FIG_6, friction_force=max(orbit.system.friction_force for orbit in sides))
+    outer, inner = (whirl_orbit(above, guess=orbit, samples=2) for orbit in sides)
+    assert outer.state[0] > 1.01 * x
+    assert inner.state[0] < 0.99 * x
+    assert outer.stable
+    assert not inner.stable
+    for orbit in (fold, outer, inner):
+        with pytest.raises(RuntimeError, match=r"no whirl near the guess for friction_force"):
+            whirl_orbit(replace(FIG_6, friction_force=load * (1.0 - 1e-3)), guess=orbit)
+
+
+def test_load_near_the_fold_grows_with_the_square_of_the_distance_from_it(fold):
+    x, load = float(fold.state[0]), fold.system.friction_force
+    more = [
+        whirl_orbit(FIG_6, guess=fold, at_crossing=x + step, samples=2).system.friction_force - load
+        for step in (-0.01, 0.01, -0.02, 0.02)
+    ]
+    # Even part: fourth order is left, smaller by about (0.02/x)².
+    assert (more[2] + more[3]) / (more[0] + more[1]) == pytest.approx(4.0, rel=0.02)
+
+
+def test_pin_leaves_the_neighbourhood_of_the_last_whirl_below_the_fold_and_stays_above(fold):
+    radius = {}
+    for factor in (0.97, 1.03):
+        pin = replace(FIG_6, friction_force=factor * fold.system.friction_force)
+        start = [*fold.state[:2], *fold.state[2:]] if factor < 1.0 else [0.75, 0.0, 0.0, 0.72]
+        radius[factor] = simulate(pin, start, np.linspace(0.0, 300.0, 301)).radius[-50:].max()
+    assert radius[0.97] < 0.1 < 0.6 < radius[1.03]
+
+
+def test_branch_beyond_the_fold_leads_to_orbits_with_stick_phases(fold):
+    orbit = fold
+    smooth = True
+    for x in np.arange(fold.state[0] - 0.04, 0.3, -0.04):
+        orbit = whirl_orbit(FIG_6, guess=orbit, at_crossing=float(x), tolerance=1e-11, samples=200)
+        kinds = [phase.kind for phase in orbit.trajectory.phases]
+        smooth = smooth and kinds == ["slip"]
+        assert smooth == (x > 0.5)
+    assert kinds == ["slip", "stick", "slip"]
+    assert orbit.system.friction_force == pytest.approx(0.101, abs=1e-3)
+    assert orbit.residual <= 1e-11
+    assert not orbit.stable
+    later = simulate(orbit.system, orbit.state, [0.0, 2.0 * orbit.period], tolerance=1e-13)
+    # Unstable: each turn multiplies the error of the orbit by 1.1, and the tolerances are 1e-11.
+    assert np.abs(later.at_end - orbit.state).max() < 1e-10
+    # A stick phase forgets where slip ended but for one number, the moment: two multipliers vanish.
+    small = sorted(abs(multiplier) for multiplier in orbit.multipliers)[:2]
+    assert max(small) < 1e-5
+
+
+def test_branch_goes_round_the_fold_in_steps_of_any_size(fold):
+    start = whirl_orbit(FIG_6, samples=2)
+    coarse, fine = (list(whirl_branch(start, 0.55, step=step, samples=2)) for step in (0.16, 0.08))
+    for branch in (coarse, fine):
+        x = [orbit.state[0] for orbit in branch]
+        assert np.all(np.diff(x) < 0.0)
+        assert x[0] == start.state[0]
+        assert x[-1] == 0.55
+        assert max(orbit.residual for orbit in branch) < 1e-9
+        loads = [orbit.system.friction_force for orbit in branch]
+        assert np.argmin(loads) not in (0, len(loads) - 1)
+        assert min(loads) >= fold.system.friction_force - 1e-10
+    assert len(fine) > len(coarse)
+    # Newton's method stops at a miss of 1e-9, mostly far below.
+    assert coarse[-1].state == pytest.approx(fine[-1].state, abs=1e-8)
+    assert coarse[-1].system.friction_force == pytest.approx(fine[-1].system.friction_force, abs=1e-8)
+
+
+# ---------------------------------------------------------------- the disc
+
+
+@pytest.mark.parametrize("disc", [FIG11, replace(FIG11, friction_force=0.08), MIRRORED], ids=str)
+@pytest.mark.parametrize("law", [None, ThreeTermRing(0.12)], ids=["ring", "(23)"])
+def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame(disc, law):
+    (whirl,) = whirls(disc, law)
+    orbit = whirl_orbit(disc, simulate=functools.partial(simulate, contact=law), guess=whirl, samples=2)
+    assert orbit.residual <= 1e-12
+    assert orbit.state == pytest.approx(whirl.state, abs=ROUNDING * 10)
+    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING * 10)
+    multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
+    found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
+    # Differences over 3e-4 of the size of a law that is steep near U = W.
+    assert found == pytest.approx(multipliers, abs=1e-8)
+    assert orbit.stable == whirl.stable
+
+
+def test_the_approximation_23_makes_a_stable_whirl_of_one_that_is_not():
+    ring, approximate = whirls(FIG11)[0], whirls(FIG11, ThreeTermRing(0.12))[0]
+    assert (ring.stable, approximate.stable) == (False, True)
+
+
+def test_whirl_of_a_disc_with_an_offset_is_periodic_but_for_its_angle():
+    disc = replace(FIG11, friction_force=0.08, offset=0.02)
+    orbit = whirl_orbit(disc)
+    assert orbit.residual <= 1e-12
+    assert orbit.state[[1, 2]].tolist() == [0.0, 0.0]
+    assert min(abs(multiplier - 1.0) for multiplier in orbit.multipliers) < 1e-5
+    assert len(orbit.multipliers) == 5
+    assert orbit.stable
+    assert np.hypot(*orbit.mean) > 1e-3
+    moving = [0, 1, 3, 4, 5]
+    later = simulate(
+        disc, [*orbit.state[:2], 0.7, *orbit.state[3:]], [0.0, 3.0 * orbit.period], tolerance=1e-13
+    )
+    assert later.at_end[moving] == pytest.approx(orbit.state[moving], abs=ROUNDING * 10)
+    # It spins at its mean speed, at whatever angle it began.
+    angle = orbit.trajectory.at_end[2]
+    assert later.at_end[2] == pytest.approx(0.7 + 3.0 * angle, abs=1e-10)
+
+
+def at_offset(offset):
+    return replace(FIG11, offset=offset)
+
+
+@pytest.fixture(scope="module")
+def beside_the_axis():
+    """The whirl of Fig. 11's disc at an offset so large that it no longer goes round the axis."""
+    orbit = None
+    for offset in (0.012, 0.0175, 0.0199):
+        orbit = whirl_orbit(at_offset(offset), guess=orbit and orbit.from_the_right())
+    return orbit
+
+
+def test_whirl_beside_the_axis_is_found_from_the_right_of_its_neighbours(beside_the_axis):
+    assert beside_the_axis.residual <= 1e-12
+    places = beside_the_axis.trajectory.states[:, :2] @ [1.0, 1.0j]
+    assert places.imag.min() > 0.0
+    assert abs(np.unwrap(np.angle(places))[-1] - np.angle(places[0])) < 1e-9
+    angles = np.unwrap(np.angle(places - places[:-1].mean()))
+    assert angles[-1] - angles[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
+    # The equilibrium is stable there too: it loses its stability at a smaller offset.
+    (rest,) = self_centred_equilibria(beside_the_axis.system)
+    assert (beside_the_axis.stable, rest.stable) == (True, True)
+    start = beside_the_axis.state + 0.1 * (beside_the_axis.state - rest.state)
+    outside = simulate(beside_the_axis.system, start, np.linspace(0.0, 1200.0, 12001))
+    # A tenth of the radius dies out by 0.96 a turn, of which there are 62 samples.
+    extent = np.ptp(beside_the_axis.trajectory.states[:, 0])
+    assert np.ptp(outside.states[-100:, 0]) == pytest.approx(extent, rel=(math.pi / 62) ** 2)
+    inside = simulate(beside_the_axis.system, np.add(rest.state, [1e-4, *np.zeros(5)]), [0.0, 600.0])
+    slowest = rest.eigenvalues[0].real
+    assert np.abs(inside.at_end[:2] - [rest.x, rest.y]).max() < 2e-4 * math.exp(600.0 * slowest)
+
+
+def test_an_orbit_started_from_the_right_is_the_same_orbit():
+    orbit = whirl_orbit(at_offset(0.012), samples=64)
+    other = orbit.from_the_right()
+    assert other.state[1] > 0.0
+    assert other.trajectory.states[0].tolist() == other.state.tolist()
+    assert np.delete(other.trajectory.at_end - other.state, 2) == pytest.approx(np.zeros(5), abs=1e-12)
+    assert np.ptp(other.trajectory.radius) == pytest.approx(np.ptp(orbit.trajectory.radius), rel=1e-9)
+    assert other.mean == pytest.approx(orbit.mean, abs=1e-12)
+    assert sorted(map(abs, other.multipliers)) == pytest.approx(sorted(map(abs, orbit.multipliers)), abs=1e-7)
+
+
+def test_a_whirl_beside_the_axis_is_not_found_on_the_x_axis():
+    with pytest.raises(RuntimeError, match=r"does not cross y = 0 m takes a guess that starts elsewhere"):
+        whirl_orbit(at_offset(0.0199), guess=whirl_orbit(at_offset(0.0165), samples=2))
+
+
+def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
+    pins, discs = (whirl_orbit(system, samples=2) for system in (FIG_6, unbraked(FIG_6)))
+    moving = [0, 1, 3, 4]
+    assert discs.state[moving] == pytest.approx(pins.state, abs=ROUNDING * 10)
+    assert discs.state[5] == pytest.approx(FIG_6.disc_speed, abs=ROUNDING * 10)
+    assert discs.period == pytest.approx(pins.period, rel=ROUNDING * 10)
+    extra, *others = sorted(
+        discs.multipliers, key=lambda multiplier: min(abs(multiplier - other) for other in pins.multipliers),
+        reverse=True,
+    )  # fmt: skip
+    # The torsional one: small relative spin is damped by μN·R²/(2U) (as for a ring, with U in place of W).
+    assert 0.0 < extra.real < 1.0
+    assert sorted(others, key=abs) == pytest.approx(sorted(pins.multipliers, key=abs), abs=1e-6)
+
+
+def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
+    last = last_whirl(
+        unbraked(FIG_6), guess=whirl_orbit(unbraked(replace(FIG_6, friction_force=0.08)), samples=2)
+    )
+    assert last.system.friction_force == pytest.approx(fold.system.friction_force, abs=2e-10)
+
+
+# ---------------------------------------------------------------- the modulated cycle
+
+
+@pytest.fixture(scope="module")
+def settled():
+    """Fig. 11's disc from near the axis, after it has come to its modulated cycle."""
+    return simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
+
+
+@pytest.fixture(scope="module")
+def cycle(settled):
+    return modulated_cycle(FIG11, settled)
+
+
+def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
+    assert cycle.residual <= 1e-11
+    x, y, _, vx, vy, spin = cycle.state
+    assert (y, vx) == (0.0, 0.0)
+    turns = 2.0
+    start = np.array([*turned(complex(x, y), 0.4), 5.0, *turned(complex(vx, vy), 0.4), spin])
+    later = simulate(FIG11, start, [0.0, turns * cycle.period], tolerance=1e-13).at_end
+    angle = 0.4 + turns * cycle.turn
+    expected = [*turned(complex(x, y), angle), *turned(complex(vx, vy), angle), spin]
+    assert later[[0, 1, 3, 4, 5]] == pytest.approx(expected, abs=1e-10)
+    # Where it is turned to does not divide a full turn: there are two frequencies in it.
+    assert abs(math.remainder(cycle.turn, 2.0 * math.pi)) > 0.1
+
+
+def test_modulated_cycle_is_where_motions_end_from_inside_and_outside(cycle, settled):
+    outside = simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], np.linspace(0.0, 1200.0, 12001))
+    radius, spin = cycle.trajectory.radius, cycle.trajectory.states[:, 5]
+    for trajectory in (settled, outside):
+        late = trajectory.times > trajectory.times[-1] - 1.2 * cycle.period
+        # Samples miss an extremum by half their distance, where the radius is flat to the square of the modulation.
+        assert trajectory.radius[late].max() == pytest.approx(radius.max(), rel=1e-5)
+        assert trajectory.radius[late].min() == pytest.approx(radius.min(), rel=1e-4)
+        assert np.ptp(trajectory.states[late, 5]) == pytest.approx(np.ptp(spin), rel=1e-4)
+    assert radius.min() < 0.25 * whirls(FIG11)[0].radius < whirls(FIG11)[0].radius < 0.6 * radius.max()
+
+
+def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
+    shift, turn, *others = sorted(cycle.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
+    assert abs(shift - 1.0) < 1e-5
+    assert abs(turn - 1.0) < 1e-5
+    assert all(abs(other) < 0.01 for other in others)
+    assert cycle.stable
+    assert cycle.carrier == pytest.approx(FIG11.natural_frequency, rel=0.005)
+
+
+def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
+    mirror = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])  # y = 0 and vx = 0
+    guess = replace(cycle, state=mirror * cycle.state, turn=-cycle.turn)
+    mirrored = modulated_cycle(MIRRORED, guess, samples=64)
+    assert mirrored.state == pytest.approx(mirror * cycle.state, abs=1e-10)
+    assert mirrored.turn == pytest.approx(-cycle.turn, rel=1e-10)
+    assert mirrored.carrier < 0.0
+
+
+def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle):
+    load = 0.02247
+    held = modulated_cycle(replace(FIG11, friction_force=load), cycle, tolerance=1e-9, samples=64)
+    sought = modulated_cycle(FIG11, cycle, at_crossing=float(held.state[0]), tolerance=1e-9, samples=64)
+    assert abs(load - FIG11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
+    assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
+    assert sought.period == pytest.approx(held.period, rel=1e-6)
+
+
+# ---------------------------------------------------------------- refusals
+
+
+def test_no_orbit_of_a_disc_on_single_points_is_sought(cycle):
+    six = replace(FIG11, contact_points=6)
+    for seek in (whirl_orbit, functools.partial(modulated_cycle, guess=cycle)):
+        with pytest.raises(ValueError, match=r"contact_points = 6: periodic orbits"):
+            seek(six)
+
+
+def test_no_modulated_cycle_is_sought_with_an_offset(cycle):
+    with pytest.raises(ValueError, match=r"offset = 0\.01 m: a modulated cycle"):
+        modulated_cycle(replace(FIG11, offset=0.01), cycle)
+
+
+@pytest.mark.parametrize("until", [1.0, 200.0])
+def test_a_guess_that_does_not_come_round_is_refused(until):
+    short = simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, until, 2001))
+    with pytest.raises(ValueError, match=rf"does not come round by t = {until:g} s: no two of [01] maxima"):
+        modulated_cycle(FIG11, short)
+
+
+def test_a_whirl_of_constant_radius_is_no_modulated_cycle():
+    steady = replace(FIG11, friction_force=0.03)
+    spiral = simulate(steady, [0.052, 0.0, 0.0, 0.0, 0.05, 1.345], np.linspace(0.0, 300.0, 6001))
+    with pytest.raises(
+        (RuntimeError, ValueError), match=r"no modulated cycle near the guess|does not come round"
+    ):
+        modulated_cycle(steady, spiral)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"guess": "near"}, "guess = 'near': it must be of Orbit or Whirl or None"),
+        ({"samples": 0}, "samples = 0: it must be a whole number >= 1"),
+        ({"samples": 2.5}, r"samples = 2\.5: it must be a whole number >= 1"),
+        ({"at_crossing": math.nan}, "at_crossing = nan: it must be finite"),
+        ({"at_crossing": "here"}, "at_crossing = 'here': it must be a number"),
+    ],
+)
+def test_what_shooting_cannot_start_from_is_refused(change, message):
+    with pytest.raises(ValueError, match=message):
+        whirl_orbit(FIG11, **change)
+
+
+def test_the_orbit_of_a_pin_is_no_guess_for_a_disc(cycle):
+    pin = replace(FIG_6, offset=0.0)
+    with pytest.raises(ValueError, match=r"shape \(4,\): DiscOnDisc takes 6 numbers"):
+        whirl_orbit(FIG11, guess=whirls(pin)[0])
+    with pytest.raises(ValueError, match="guess = None: it must be of Orbit or Trajectory"):
+        modulated_cycle(FIG11, None)
+
+
+def test_no_whirl_of_a_disc_is_sought_below_its_least_load():
+    with pytest.raises(ValueError, match=r"friction_force = 0\.018 N: a whirl exists only above 0\.020"):
+        whirl_orbit(replace(FIG11, friction_force=0.018))
+
+
+@pytest.mark.parametrize("load", [0.05, 0.078])
+def test_shooting_says_where_it_stopped_if_there_is_no_orbit(load):
+    with pytest.raises(RuntimeError, match=r"no whirl near the guess .*disc_speed = 1\.2 rad/s.*nearby load"):
+        whirl_orbit(replace(FIG_6, friction_force=load))
+
+
+@pytest.mark.parametrize("disc_speed", [1.0, 0.9, -0.5])
+def test_no_whirl_is_sought_below_the_natural_frequency(disc_speed):
+    with pytest.raises(ValueError, match=rf"disc_speed = {disc_speed:g} rad/s: the whirl exists only"):
+        whirl_orbit(replace(FIG_6, disc_speed=disc_speed))
+
+
+def test_orbits_of_another_engine_are_found_with_its_simulate():
+    calls = []
+
+    def engine(system, initial_state, times, *, tolerance):
+        calls.append(tolerance)
+        return simulate(system, initial_state, times, tolerance=tolerance)
+
+    orbit = whirl_orbit(FIG_5, simulate=engine, tolerance=1e-10)
+    assert set(calls) == {1e-10}
+    assert isinstance(orbit.flow, Flow)
+    assert orbit.state == pytest.approx(whirl_orbit(FIG_5).state, abs=1e-9)

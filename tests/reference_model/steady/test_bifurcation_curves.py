@@ -1,0 +1,213 @@
+"""The boundaries of the whirl's stability: found completely, exact, and where whirls gain and lose it."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG11
+from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
+from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
+from reference_model.formulas.disc import whirl_at
+from reference_model.formulas.pin import characteristic_coefficients as coefficients_of_pin
+from reference_model.steady import bifurcation_curves as module
+from reference_model.steady.bifurcation_curves import Plane, boundaries, crossings
+from reference_model.steady.stability import onset_load, whirl_eigenvalues
+from reference_model.steady.steady_states import whirls
+from reference_model.systems import DiscOnDisc, PinOnDisc
+
+RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
+LAWS = pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
+SPEED_LOAD = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+PLANES = (
+    SPEED_LOAD,
+    Plane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    Plane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    Plane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+    Plane(FIG11, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
+)
+
+traced = functools.cache(boundaries)
+
+
+def state_at(disc, alpha, law):
+    load, radius, spin = whirl_at(disc, alpha, law)
+    assert load == pytest.approx(disc.friction_force, rel=1e-12)
+    turning = np.copysign(disc.natural_frequency, disc.disc_speed)
+    return np.array([radius, 0.0, 0.0, 0.0, turning * radius, spin])
+
+
+def random_disc(rng):
+    k = rng.uniform(0.5, 2.0)
+    mass = rng.uniform(0.5, 2.0)
+    speed = rng.choice((-1.0, 1.0)) * k * rng.uniform(1.05, 3.0)
+    return DiscOnDisc(
+        mass=mass,
+        polar_inertia=rng.uniform(0.1, 2.0),
+        stiffness=mass * k**2,
+        damping=rng.uniform(0.05, 1.0),
+        friction_force=1.0,
+        disc_speed=speed,
+        contact_radius=0.12,
+        shaft_damping=rng.uniform(0.005, 0.1),
+        shaft_speed=speed + rng.uniform(-1.0, 1.0),
+    )
+
+
+@LAWS
+def test_the_characteristic_equation_has_the_eigenvalues_of_the_jacobian(law):
+    rng = np.random.default_rng(11)
+    for _ in range(40):
+        disc, alpha = random_disc(rng), rng.uniform(0.1, 1.5)
+        load, *_ = whirl_at(disc, alpha, law)
+        disc = replace(disc, friction_force=load)
+        state = state_at(disc, alpha, law)
+        expected = np.array(whirl_eigenvalues(disc, state, law)[1:])
+        coefficients = characteristic_coefficients(disc, np.cos(alpha), np.sin(alpha), law)
+        roots = np.roots([1.0, *coefficients])
+        for value in expected:
+            assert np.min(np.abs(roots - value)) < 1e-9 * np.max(np.abs(expected))
+
+
+def test_without_moment_of_friction_the_characteristic_equation_is_that_of_the_pin_times_the_torsion():
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5)
+    expected = np.polymul(coefficients_of_pin(pin), [1.0, FIG11.shaft_damping / FIG11.polar_inertia])
+    assert [1.0, *characteristic_coefficients(FIG11, 1.0, 0.3, Pin())] == pytest.approx(expected, rel=1e-14)
+
+
+@LAWS
+@pytest.mark.parametrize("plane", PLANES, ids=lambda plane: ", ".join(plane.names))
+def test_on_a_hopf_curve_the_real_part_is_zero_to_1e_10_of_the_frequency(plane, law):
+    curves = traced(plane, "Hopf", law)
+    assert curves
+    for curve in curves:
+        for values, alpha in zip(curve.parameters, curve.alpha, strict=True):
+            disc = plane.at(values)
+            pair = min(
+                whirl_eigenvalues(disc, state_at(disc, alpha, law), law)[1:], key=lambda v: abs(v.real)
+            )
+            assert abs(pair.real) <= 1e-10 * abs(pair.imag)
+
+
+@LAWS
+def test_on_a_fold_curve_the_load_over_alpha_is_stationary(law):
+    curves = traced(SPEED_LOAD, "fold", law)
+    assert curves
+    for curve in curves:
+        for values, alpha in zip(curve.parameters, curve.alpha, strict=True):
+            if abs(alpha - np.pi / 4.0) < 0.02:
+                continue  # the second derivative grows without bounds, and with it the error of differences
+            disc = SPEED_LOAD.at(values)
+            # Off the fold by a part p of the shift, the slope is 2p times the bend; the third derivative adds some
+            # shift/0.02, the distance to where friction has no derivatives.
+            low, here, high = (whirl_at(disc, alpha + shift, law).load for shift in (-1e-4, 0.0, 1e-4))
+            bend = abs(high - 2.0 * here + low)
+            assert abs(high - low) < 0.02 * bend + 1e-14 * here
+
+
+@LAWS
+def test_across_a_hopf_curve_a_whirl_changes_its_stability_and_across_a_fold_two_appear(law):
+    def unstable(load):
+        found = whirls(replace(FIG11, disc_speed=1.5, friction_force=load), law)
+        return len(found), sum(value.real > 0.0 for whirl in found for value in whirl.eigenvalues)
+
+    for kind, change in (("Hopf", 0), ("fold", 2)):
+        for load in crossings(SPEED_LOAD, kind, "disc_speed", 1.5, law):
+            (before, growing_before), (after, growing_after) = (
+                unstable(load * 0.9999),
+                unstable(load * 1.0001),
+            )
+            assert abs(after - before) == change
+            if kind == "Hopf":
+                assert abs(growing_after - growing_before) == 2
+
+
+@LAWS
+def test_the_onset_curve_is_the_closed_form(law):
+    (curve,) = traced(SPEED_LOAD, "onset", law)
+    expected = [onset_load(SPEED_LOAD.at(values), law) for values in curve.parameters]
+    assert curve.parameters[:, 1] == pytest.approx(expected, rel=1e-13)
+    assert np.all(curve.alpha == np.pi / 2.0)
+
+
+@pytest.mark.parametrize("kind", ["Hopf", "fold"])
+def test_curves_do_not_depend_on_the_step(kind):
+    coarse, fine = traced(SPEED_LOAD, kind), traced(SPEED_LOAD, kind, step=0.011)
+    assert len(coarse) == len(fine)
+    ends = [
+        np.array(sorted(c.parameters[i].tolist() for c in curves for i in (0, -1)))
+        for curves in (coarse, fine)
+    ]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("plane", PLANES[1:4], ids=lambda plane: ", ".join(plane.names))
+def test_more_lines_and_ratios_find_no_more_curves(plane, monkeypatch):
+    found = traced(plane, "Hopf")
+    monkeypatch.setattr(module, "LINES", 23)
+    monkeypatch.setattr(module, "NODES", 97)
+    assert len(boundaries(plane, "Hopf", step=0.1)) == len(found)
+
+
+def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
+    mirrored = Plane(
+        replace(FIG11, shaft_speed=-1.25),
+        SPEED_LOAD.names,
+        (-3.0, SPEED_LOAD.lower[1]),
+        (-1.3, SPEED_LOAD.upper[1]),
+    )
+    here, there = (
+        crossings(plane, "Hopf", "disc_speed", speed)
+        for plane, speed in ((SPEED_LOAD, 1.5), (mirrored, -1.5))
+    )
+    assert len(here) == 2
+    assert there == pytest.approx(here, rel=1e-12)
+
+
+def test_a_line_of_constant_damping_crosses_the_curves_in_the_inertia():
+    plane = PLANES[3]
+    (inertia,) = crossings(plane, "Hopf", "shaft_damping", FIG11.shaft_damping)
+    dampings = crossings(plane, "Hopf", "polar_inertia", inertia)
+    assert min(abs(damping / FIG11.shaft_damping - 1.0) for damping in dampings) < 1e-11
+
+
+def test_a_modulation_needs_inertia():
+    """Below some 0.13 kg m² the torsion follows at once, and the whirl is stable for every shaft damping."""
+    assert min(np.min(curve.parameters[:, 0]) for curve in traced(PLANES[3], "Hopf")) == pytest.approx(
+        0.13, abs=0.01
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"disc": replace(FIG11, offset=0.1)}, "offset = 0.1 m"),
+        ({"names": ("disc_speed", "disc_speed")}, "two of mass"),
+        ({"names": ("disc_speed", "contact_points")}, "two of mass"),
+        ({"upper": (1.2, 0.08)}, "disc_speed from 1.3 to 1.2: the range must not be empty"),
+        ({"lower": (0.9, 0.001)}, "disc_speed = 0.9 rad/s: the whirl exists only where"),
+        ({"lower": (-3.0, 0.001)}, "there is no whirl at rest"),
+        ({"lower": (1.3, 0.0)}, "friction_force = 0"),
+        (
+            {"names": ("mass", "stiffness"), "lower": (0.4, 0.5), "upper": (2.0, 1.0)},
+            "natural frequency 1.58",
+        ),
+    ],
+)
+def test_a_plane_without_whirls_is_refused(changes, message):
+    values = {"disc": FIG11, "names": SPEED_LOAD.names, "lower": SPEED_LOAD.lower, "upper": SPEED_LOAD.upper}
+    with pytest.raises(ValueError, match=message):
+        Plane(**(values | changes))
+
+
+def test_bad_questions_are_refused():
+    with pytest.raises(ValueError, match="kind = 'hopf': it must be one of Hopf, fold, onset"):
+        boundaries(SPEED_LOAD, "hopf")
+    with pytest.raises(ValueError, match="name = 'damping': it must be one of disc_speed and friction_force"):
+        crossings(SPEED_LOAD, "Hopf", "damping", 0.5)
+    with pytest.raises(ValueError, match=r"disc_speed = 4: it must lie between 1\.3 and 3"):
+        crossings(SPEED_LOAD, "Hopf", "disc_speed", 4.0)
+    points = Plane(replace(FIG11, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper)
+    with pytest.raises(ValueError, match="contact_points = 6"):
+        boundaries(points, "Hopf")

@@ -1,0 +1,503 @@
+"""All steady motions of the disc: against the equations of motion, a brute-force search, and the limiting cases."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from disc_equations import (
+    FIG_9,
+    disc_in_units,
+    eq_23,
+    mirrored,
+    points_on_ring,
+    rates,
+    rates_in_turning_axes,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipkm1
+
+from compare.claims.paper_parameters import FIG8, FIG11
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.formulas.disc import held_pin, pin_of, semicircle_residual, shaft_torque
+from reference_model.steady.stability import onset_load
+from reference_model.steady.steady_states import (
+    self_centred_equilibria,
+    smallest_load_with_whirl,
+    whirls,
+    why_no_equilibrium,
+    why_no_whirl,
+)
+from reference_model.systems import DiscOnDisc
+
+LAWS = [Ring, ThreeTermRing]
+
+
+def whirling(gain, load=1.0):
+    """Disc with b(|ω| − k)/(βkR) = ``gain``·R and R = 1 at ``load``, in the units b|ω − Ω| = 1."""
+    return DiscOnDisc(
+        mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=1.0 / gain, friction_force=load, disc_speed=2.0,
+        contact_radius=1.0, shaft_damping=1.0, shaft_speed=1.0,
+    )  # fmt: skip
+
+
+# ---------------------------------------------------------------- against the equations of motion
+
+
+def friction_of(disc, law):
+    return eq_23(disc) if law is ThreeTermRing else points_on_ring(disc, 32768)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("load", [1e-5, 0.02, 0.08, 0.1])
+@pytest.mark.parametrize(
+    "disc", [FIG8, mirrored(FIG8), replace(FIG8, offset=-0.1), replace(FIG8, shaft_speed=2.0), FIG_9]
+)
+def test_equilibrium_is_one_of_the_equations_of_motion(disc, load, law):
+    disc = replace(disc, friction_force=0.15 * load if disc is FIG_9 else load)
+    (equilibrium,) = self_centred_equilibria(disc, law(disc.contact_radius))
+    x, y, spin = equilibrium.x, equilibrium.y, equilibrium.spin
+    still = rates(disc, friction_of(disc, law), equilibrium.state)
+    assert np.delete(still, 2) == pytest.approx(0.0, abs=1e-14)
+    assert still[2] == spin
+    assert semicircle_residual(disc, x, y) == pytest.approx(0.0, abs=1e-16)
+    between = sorted((disc.shaft_speed, disc.disc_speed))
+    assert between[0] <= spin <= between[1]
+    assert y * disc.disc_speed * disc.offset >= 0.0  # dragged along
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("load", [0.0003, 0.01, 1.0])
+@pytest.mark.parametrize("disc", [FIG_9, mirrored(FIG_9), replace(FIG_9, shaft_speed=1.75)])
+def test_whirl_is_a_fixed_point_of_the_axes_that_turn_with_it(disc, load, law):
+    disc = replace(disc, friction_force=load)
+    found = whirls(disc, law(disc.contact_radius))
+    assert found
+    for whirl in found:
+        state = np.delete(whirl.state, 2)
+        still = rates_in_turning_axes(disc, friction_of(disc, law), whirl.frequency, state)
+        assert np.abs(still).max() < 1e-14 * max(1.0, whirl.radius)
+        assert whirl.frequency == math.copysign(1.0, disc.disc_speed)
+
+
+# ---------------------------------------------------------------- all of them
+
+
+def plain_shares(law, radius, slip, rim):
+    """F and M over μN as the paper and the notes to it print them, for arrays."""
+    if law is ThreeTermRing:
+        square = slip**2 + rim**2
+        both = 0.75 * (slip * rim / square) ** 2
+        force = slip / np.sqrt(square) * (1.0 - rim**2 / (2.0 * square) + both)
+        return force, radius * rim / np.sqrt(square) * (1.0 - slip**2 / (2.0 * square) + both)
+    total, difference = slip + rim, slip - rim
+    complement = (difference / total) ** 2
+    E, K = ellipe(1.0 - complement), ellipkm1(complement)
+    force = (total * E + difference * K) / (np.pi * slip)
+    return force, radius * (total * E - difference * K) / (np.pi * rim)
+
+
+def spin_at(disc, law, slip):
+    """R|S| by the torsional balance at given slips U, by bisection: b|ω − Ω| − bS falls and M grows."""
+    low, high = np.zeros_like(slip), np.full_like(slip, abs(disc.disc_speed - disc.shaft_speed))
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        moment = plain_shares(law, disc.contact_radius, slip, disc.contact_radius * middle)[1]
+        too_fast = disc.shaft_damping * (middle + 0.0) + disc.friction_force * moment > shaft_torque(disc)
+        low, high = np.where(too_fast, low, middle), np.where(too_fast, middle, high)
+    return 0.5 * (low + high)
+
+
+def brackets_of_radii(disc, law, whirl):
+    """Neighbouring radii between which the balance of forces changes its sign, of the equilibria or whirls.
+
+    From a ten thousandth of the largest radius on: below, the plain form of the law loses its digits.
+    """
+    k, speed = disc.natural_frequency, abs(disc.disc_speed)
+    largest = disc.friction_force / (disc.damping * k) if whirl else abs(disc.offset)
+    radius = largest * (
+        np.concatenate((np.geomspace(1e-4, 1e-2, 200), np.linspace(1e-2, 1.0 + 1e-9, 1500)[1:]))
+    )
+    slip = (speed - k if whirl else speed) * radius
+    spin = spin_at(disc, law, slip)
+    force = disc.friction_force * plain_shares(law, disc.contact_radius, slip, disc.contact_radius * spin)[0]
+    if whirl:
+        excess = disc.damping * k * radius - force
+    else:
+        springs = disc.stiffness * disc.offset
+        excess = (disc.stiffness * radius) ** 2 + force**2 - springs**2
+    change = np.flatnonzero(np.diff(np.sign(excess)) != 0.0)
+    return list(zip(radius[change], radius[change + 1], strict=True))
+
+
+def random_disc(rng, whirl):
+    """Disc with values of any size, for which the balances meet with luck."""
+
+    def size(least, most):
+        return 10.0 ** rng.uniform(math.log10(least), math.log10(most))
+
+    k = size(0.3, 3.0)
+    speed = rng.choice((-1.0, 1.0)) * k * (1.0 + size(0.01, 5.0) if whirl else size(0.1, 10.0))
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=size(0.1, 10.0), stiffness=k**2, damping=size(0.01, 3.0), friction_force=1.0,
+        disc_speed=speed, offset=0.0 if whirl else rng.choice((-1.0, 1.0)) * size(0.03, 3.0),
+        contact_radius=size(0.1, 3.0), shaft_damping=size(0.01, 10.0), shaft_speed=speed + rng.uniform(-2.0, 2.0),
+    )  # fmt: skip
+    unit = smallest_load_with_whirl(disc) if whirl else disc.stiffness * abs(disc.offset)
+    return replace(disc, friction_force=unit * size(0.5, 1.6))
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("whirl", [False, True])
+def test_all_steady_motions_are_found_that_a_dense_search_over_the_radius_finds(whirl, law):
+    """The search eliminates in another order: one spin belongs to each radius, and the radius is tried out."""
+    rng = np.random.default_rng(20)
+    numbers = set()
+    for _ in range(60):
+        disc = random_disc(rng, whirl)
+        contact = law(disc.contact_radius)
+        if whirl:
+            radii = sorted(motion.radius for motion in whirls(disc, contact))
+        else:
+            radii = sorted(
+                math.hypot(motion.x, motion.y) for motion in self_centred_equilibria(disc, contact)
+            )
+        left = list(radii)
+        brackets = brackets_of_radii(disc, law, whirl)
+        for low, high in brackets:
+            inside = [radius for radius in left if low * (1.0 - 1e-9) <= radius <= high * (1.0 + 1e-9)]
+            assert inside, f"{disc}: none of {radii} between {low} and {high}"
+            left.remove(inside[0])
+        assert len(left) % 2 == 0, f"{disc}: {left} besides {brackets}"  # pairs within one step of the search
+        numbers.add(len(radii))
+    assert numbers >= ({0, 1, 2} if whirl else {0, 1})
+
+
+def test_ring_has_three_whirls_where_the_centre_slips_about_as_fast_as_the_rim():
+    """Near U = W the force grows with a logarithmic slope, so that b|ω − Ω|/μN has a peak and a dip there.
+
+    For the gain 2 and R = 1 they are 1.9151 at W = 0.986·U and 1.9011 at W = 1.038·U, and at its end 2.
+    """
+    numbers = [len(whirls(whirling(2.0, 1.0 / arm))) for arm in (1.89, 1.905, 1.91, 1.92, 1.99, 2.01)]
+    assert numbers == [1, 3, 3, 1, 1, 0]
+    ratios = [2.0 * (2.0 - whirl.spin) / whirl.radius / 2.0 for whirl in whirls(whirling(2.0, 1.0 / 1.91))]
+    assert ratios == sorted(ratios)
+    assert ratios[0] < 0.986 < ratios[1] < 1.038 < ratios[2]
+
+
+@pytest.mark.parametrize(("gain", "width"), [(1.5, 9e-4), (1.2, 8e-7), (1.12, 6e-10)])
+def test_three_whirls_are_found_in_a_peak_however_narrow(gain, width):
+    """For a gain just above 1 peak and dip are exponentially close to U = W, and to each other."""
+    distances = np.geomspace(1e-14, 0.1, 4000)
+    ring = Ring(1.0)
+
+    def arm(slip, rim):
+        resistance, moment = ring.shares(slip, rim)
+        return moment + gain * resistance * rim / slip
+
+    peak = max(arm(1.0, 1.0 - d) for d in distances)
+    dip = min(arm(1.0 - d, 1.0) for d in distances)
+    assert peak - dip == pytest.approx(width, rel=0.1)
+    for part, number in ((-0.5, 1), (0.3, 3), (0.7, 3), (1.5, 1)):
+        disc = whirling(gain, 1.0 / (dip + part * (peak - dip)))
+        assert len(whirls(disc)) == number
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("gain", [5.0, 30.0])
+def test_two_whirls_meet_in_a_fold_at_the_smallest_load(gain, law):
+    disc, contact = whirling(gain), law(1.0)
+    load = smallest_load_with_whirl(disc, contact)
+    assert load < onset_load(disc, contact)
+    assert whirls(replace(disc, friction_force=load * (1.0 - 1e-12)), contact) == ()
+    outer, inner = whirls(replace(disc, friction_force=load * (1.0 + 1e-10)), contact)
+    assert 0.0 < outer.radius - inner.radius < 1e-3 * outer.radius
+    # Beside the phase another eigenvalue is almost zero, negative for one and positive for the other.
+    slow = [min(whirl.eigenvalues[1:], key=abs) for whirl in (outer, inner)]
+    assert slow[0].real < 0.0 < slow[1].real
+    assert max(map(abs, slow)) < 1e-3
+
+
+@pytest.mark.parametrize(("law", "limit"), [(Ring, 4.0), (ThreeTermRing, 0.25)])
+def test_whirl_grows_out_of_the_centred_rotation_without_a_jump_below_a_limit_of_the_gain(law, limit):
+    """Expanded at U = 0: the arm is R + gain·R/2 − (R/4)(U/W)²·(1 − gain/limit), with the limits given."""
+    contact = law(1.0)
+    for factor, jumps in ((0.98, False), (1.02, True)):
+        disc = whirling(factor * limit)
+        just_above = replace(disc, friction_force=onset_load(disc, contact) * (1.0 + 1e-7))
+        # Without a jump there is a whirl of hardly any size above the onset; with one, just below it.
+        just_below = replace(disc, friction_force=onset_load(disc, contact) * (1.0 - 1e-7))
+        small = [
+            any(whirl.radius < 0.02 * (2.0 - whirl.spin) for whirl in whirls(system, contact))
+            for system in (just_above, just_below)
+        ]
+        assert small == [not jumps, jumps]
+
+
+def test_whirl_at_the_smallest_load_of_the_ring_of_fig_11_is_the_onset_and_for_23_a_fold():
+    assert smallest_load_with_whirl(FIG11) == pytest.approx(onset_load(FIG11), rel=1e-14)
+    assert smallest_load_with_whirl(FIG11, ThreeTermRing(0.12)) < 0.97 * onset_load(FIG11)
+
+
+def test_whirl_of_fig_11_grows_on_the_ring_and_decays_by_23():
+    """The paper's own simplified equations miss the instability that its figure shows."""
+    (on_ring,), (by_23,) = whirls(FIG11), whirls(FIG11, ThreeTermRing(0.12))
+    assert not on_ring.stable
+    assert on_ring.eigenvalues[1].imag > 0.0
+    assert by_23.stable
+
+
+# ---------------------------------------------------------------- limiting cases
+
+
+NEIGHBOURS = 1.0 + np.finfo(float).eps * np.arange(-4, 5)
+"""Factors by which rounding may have changed a number."""
+
+
+def test_at_the_onset_there_is_no_whirl_of_no_size():
+    """Below the gain 2 the arm of pure spin, 1 + gain/2, is the largest; near it the arm is flat."""
+    for gain in (2.0, 1.9, 1.7, 0.3, 0.1):
+        for load in NEIGHBOURS / (1.0 + gain / 2.0):
+            assert whirls(whirling(gain, float(load))) == ()
+
+
+@pytest.mark.parametrize("gain", [0.1, 0.3, 1.0, 3.0])
+def test_whirl_at_the_middle_of_the_ratios_is_found_once(gain):
+    """By (23), U = W takes b|ω − Ω|/μN = (1 + gain)·0.9375/√2."""
+    for load in NEIGHBOURS * math.sqrt(2.0) / 0.9375 / (1.0 + gain):
+        found = whirls(whirling(gain, float(load)), ThreeTermRing(1.0))
+        assert len([whirl for whirl in found if abs(whirl.radius - 2.0 + whirl.spin) < 1e-6]) == 1
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_equilibrium_comes_to_rest_in_proportion_to_the_load_that_is_missing(law):
+    """Beside that load U and W are zero, at a ratio that they keep as they vanish."""
+    contact = law(0.12)
+
+    def spare(load):
+        return held_pin(replace(FIG8, friction_force=load), contact).friction_force - 0.1
+
+    limit = brentq(spare, 0.05, 0.2, xtol=1e-17, rtol=1e-15)
+    sizes = []
+    for missing in (4e-9, 2e-9):
+        (equilibrium,) = self_centred_equilibria(
+            replace(FIG8, friction_force=limit * (1.0 - missing)), contact
+        )
+        sizes.append((math.hypot(equilibrium.x, equilibrium.y), 0.8 - equilibrium.spin))
+    # The limit is known to 1e-15 of it, these loads to 1e-16.
+    assert np.divide(*sizes) == pytest.approx([2.0, 2.0], rel=1e-6)
+
+
+@pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 0.8}])
+@pytest.mark.parametrize("load", [0.01, 0.0999])
+def test_disc_that_does_not_spin_against_the_master_disc_rests_where_a_pin_does(changes, load):
+    disc = replace(FIG8, friction_force=load, **changes)
+    (equilibrium,) = self_centred_equilibria(disc)
+    (of_pin,) = self_centred_equilibria(pin_of(disc))
+    assert (equilibrium.x, equilibrium.y) == pytest.approx((of_pin.x, of_pin.y), rel=1e-14)
+    assert equilibrium.spin == disc.disc_speed
+    assert self_centred_equilibria(replace(disc, friction_force=0.1001)) == ()
+
+
+@pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 1.5}])
+def test_disc_that_does_not_spin_against_the_master_disc_whirls_like_a_pin(changes):
+    disc = replace(FIG11, friction_force=1e-6, **changes)
+    (whirl,) = whirls(disc)
+    (of_pin,) = whirls(pin_of(disc))
+    assert (whirl.radius, whirl.frequency, whirl.spin) == (of_pin.radius, of_pin.frequency, 1.5)
+    assert smallest_load_with_whirl(disc) == 0.0
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-8, 1e-14])
+def test_weak_shaft_lets_the_disc_turn_almost_with_the_master_disc(size):
+    """To first order M = R·W/(2U) gives S = b(ω − Ω)/(μN·R²/(2U) + b); U stays a pin's up to S²."""
+    disc = replace(FIG8, shaft_damping=size * 0.01)
+    (equilibrium,) = self_centred_equilibria(disc)
+    (of_pin,) = self_centred_equilibria(pin_of(disc))
+    slip = 0.8 * math.hypot(of_pin.x, of_pin.y)
+    expected = disc.shaft_damping * 0.3 / (0.05 * 0.12**2 / (2.0 * slip) + disc.shaft_damping)
+    assert math.hypot(equilibrium.x, equilibrium.y) == pytest.approx(slip / 0.8, rel=1e-13 + size**2)
+    assert 0.8 - equilibrium.spin == pytest.approx(expected, rel=size**2, abs=1e-15)
+
+
+def test_stiff_shaft_leaves_the_disc_its_speed():
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, shaft_damping=1e6))
+    assert equilibrium.spin == pytest.approx(0.5, abs=0.05 * 0.12 / 1e6)
+
+
+@pytest.mark.parametrize("offset", [1e-3, 1e-9, 1e-15])
+def test_small_offset_moves_the_centre_along_a_straight_line(offset):
+    """Near the axis friction is the damper μN/(2W) that turns with ω: (C − iω·μN/(2W))·z = C·X0."""
+    disc = replace(FIG8, friction_force=0.01, offset=offset)
+    (equilibrium,) = self_centred_equilibria(disc)
+    rim = 0.12 * 0.3 - 0.01 * 0.12**2 / 0.01
+    expected = offset / complex(1.0, -0.8 * 0.01 / (2.0 * rim))
+    assert complex(equilibrium.x, equilibrium.y) == pytest.approx(expected, rel=1e-12 + (offset / rim) ** 2)
+
+
+@pytest.mark.parametrize("law", [Ring, ThreeTermRing, lambda R: Annulus(0.0, R)])
+def test_disc_without_an_offset_only_spins(law):
+    disc = replace(FIG_9, friction_force=0.005)
+    contact = law(0.12)
+    (equilibrium,) = self_centred_equilibria(disc, contact)
+    moment = contact.shares(0.0, 1.0).moment
+    assert (equilibrium.x, equilibrium.y) == (0.0, 0.0)
+    assert equilibrium.spin == pytest.approx(1.25 + 0.005 * moment / 0.01, rel=1e-15)
+
+
+def test_disc_on_a_master_disc_at_rest_spins_where_its_springs_relax():
+    disc = replace(FIG8, disc_speed=0.0)
+    (equilibrium,) = self_centred_equilibria(replace(disc, friction_force=0.02))
+    assert (equilibrium.x, equilibrium.y) == (0.1, 0.0)
+    assert equilibrium.spin == pytest.approx(0.5 - 0.02 * 0.12 / 0.01, rel=1e-14)
+    assert equilibrium.stable
+    assert self_centred_equilibria(disc) == ()
+
+
+@pytest.mark.parametrize("offset", [0.1, 0.0])
+def test_without_springs_the_axis_is_an_equilibrium_and_not_a_stable_one(offset):
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, stiffness=0.0, friction_force=0.01, offset=offset))
+    assert (equilibrium.x, equilibrium.y) == (0.0, 0.0)
+    assert not equilibrium.stable
+
+
+@pytest.mark.parametrize("disc_speed", [0.8, 0.0])
+def test_without_friction_the_disc_turns_with_the_shaft_where_its_springs_relax(disc_speed):
+    (equilibrium,) = self_centred_equilibria(replace(FIG8, friction_force=0.0, disc_speed=disc_speed))
+    assert (equilibrium.x, equilibrium.y, equilibrium.spin) == (0.1, 0.0, 0.5)
+    assert equilibrium.stable
+
+
+NO_EQUILIBRIUM = [
+    ({"friction_force": 0.12}, r"friction_force = 0\.12 N: beside the moment of the shaft, 0\.003 N m, "
+     r"friction holds a force of 0\.1148\d* N, not less than that of the springs, stiffness·\|offset\| = 0\.1 N"),
+    ({"shaft_speed": 0.8, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
+    ({"shaft_damping": 0.0, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
+    ({"shaft_damping": 0.0, "offset": 0.0}, r"holds a force of 0\.05 N.*= 0 N"),
+    ({"disc_speed": 0.0, "friction_force": 0.05}, r"disc_speed = 0 rad/s.*moment of the shaft, 0\.005 N m"),
+    ({"stiffness": 0.0}, r"holds a force"),
+    ({"stiffness": 0.0, "disc_speed": 0.0}, "stiffness = 0 N/m: without springs the disc rests in every place"),
+    ({"stiffness": 0.0, "friction_force": 0.0}, "stiffness = 0 N/m"),
+    ({"shaft_damping": 0.0, "friction_force": 0.0}, "shaft_damping = 0 N m s/rad, friction_force = 0 N"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "reason"), NO_EQUILIBRIUM)
+def test_missing_equilibrium_is_explained(changes, reason):
+    disc = replace(FIG8, **changes)
+    assert self_centred_equilibria(disc) == ()
+    with pytest.raises(AssertionError, match=reason):
+        raise AssertionError(why_no_equilibrium(disc))
+
+
+NO_WHIRL = [
+    ({"friction_force": 0.0205}, r"friction_force = 0\.0205 N: a whirl exists only above 0\.0205479 N"),
+    ({"friction_force": 0.0}, "friction_force = 0"),
+    ({"damping": 0.0}, "damping = 0"),
+    ({"stiffness": 0.0}, "stiffness = 0"),
+    ({"disc_speed": 0.9}, r"disc_speed = 0\.9 rad/s.*natural frequency 1 rad/s"),
+    ({"disc_speed": -1.0}, "disc_speed = -1 rad/s"),
+]
+
+
+@pytest.mark.parametrize(("changes", "reason"), NO_WHIRL)
+def test_missing_whirl_is_explained(changes, reason):
+    disc = replace(FIG11, **changes)
+    assert whirls(disc) == ()
+    with pytest.raises(AssertionError, match=reason):
+        raise AssertionError(why_no_whirl(disc))
+
+
+def test_what_exists_needs_no_explanation():
+    assert why_no_equilibrium(FIG8) is None
+    assert why_no_whirl(FIG11) is None
+
+
+def test_missing_motions_of_a_pin_are_explained_by_its_formulas():
+    pin = pin_of(FIG8)
+    assert why_no_equilibrium(pin) is None
+    assert "(eq. 5)" in why_no_equilibrium(replace(pin, friction_force=0.2))
+    assert "sticks on the axis" in why_no_equilibrium(replace(pin, friction_force=0.1))
+    assert "natural frequency" in why_no_whirl(replace(pin, offset=0.0))
+    assert why_no_whirl(replace(pin, offset=0.0, disc_speed=1.5)) is None
+
+
+@pytest.mark.parametrize("function", [self_centred_equilibria, whirls, why_no_equilibrium, why_no_whirl])
+def test_bad_input_is_refused(function):
+    with pytest.raises(ValueError, match="contact_points = 6"):
+        function(replace(FIG11, contact_points=6))
+    with pytest.raises(ValueError, match="a pin touches in one point"):
+        function(pin_of(FIG11), Ring(0.1))
+
+
+@pytest.mark.parametrize("function", [whirls, why_no_whirl, smallest_load_with_whirl])
+def test_whirl_of_a_disc_with_an_offset_is_left_to_shooting(function):
+    with pytest.raises(ValueError, match=r"offset = 0\.1 m.*whirl_orbit"):
+        function(FIG8)
+
+
+@pytest.mark.parametrize("changes", [{"damping": 0.0}, {"stiffness": 0.0}, {"disc_speed": 1.0}])
+def test_smallest_load_is_refused_where_no_load_makes_a_whirl(changes):
+    (name,) = changes
+    with pytest.raises(ValueError, match=name):
+        smallest_load_with_whirl(replace(FIG11, friction_force=0.0, **changes))
+
+
+# ---------------------------------------------------------------- symmetries and units
+
+
+def assert_same_set(found, expected):
+    assert np.sort_complex(np.round(found, 9)) == pytest.approx(
+        np.sort_complex(np.round(expected, 9)), abs=1e-8
+    )
+
+
+discs = st.builds(
+    lambda seed, whirl: random_disc(np.random.default_rng(seed), whirl), st.integers(0, 10**6), st.booleans()
+)
+
+
+@given(discs)
+def test_disc_turning_the_other_way_has_the_mirrored_motions(disc):
+    motions = whirls if disc.offset == 0.0 else self_centred_equilibria
+    for one, other in zip(motions(disc), motions(mirrored(disc)), strict=True):
+        assert other.spin == -one.spin
+        assert_same_set(other.eigenvalues, one.eigenvalues)
+        if disc.offset == 0.0:
+            assert (other.radius, other.frequency) == (one.radius, -one.frequency)
+        else:
+            assert (other.x, other.y) == (one.x, -one.y)
+
+
+@given(discs)
+def test_offset_on_the_other_side_turns_the_equilibrium_by_half_a_turn(disc):
+    turned = replace(disc, offset=-disc.offset)
+    for one, other in zip(self_centred_equilibria(disc), self_centred_equilibria(turned), strict=True):
+        assert (other.x, other.y, other.spin) == (-one.x, -one.y, one.spin)
+
+
+units = st.floats(0.01, 100.0)
+
+
+@given(discs, units, units, units)
+def test_units_do_not_matter(disc, mass, length, time):
+    other = disc_in_units(disc, mass, length, time)
+    if disc.offset == 0.0:
+        for one, two in zip(whirls(disc), whirls(other), strict=True):
+            assert two.radius == pytest.approx(length * one.radius, rel=1e-8)
+            assert time * two.spin == pytest.approx(one.spin, rel=1e-8, abs=1e-8)
+    else:
+        for one, two in zip(self_centred_equilibria(disc), self_centred_equilibria(other), strict=True):
+            assert (two.x, two.y) == pytest.approx((length * one.x, length * one.y), rel=1e-8)
+            assert time * two.spin == pytest.approx(one.spin, rel=1e-8, abs=1e-8)
+
+
+def test_steady_motions_of_a_disc_are_immutable_values():
+    (whirl,), (equilibrium,) = whirls(FIG11), self_centred_equilibria(FIG8)
+    assert whirls(FIG11) == (whirl,)
+    assert len({whirl, equilibrium}) == 2
+    with pytest.raises(AttributeError):
+        whirl.spin = 1.0

@@ -1,0 +1,87 @@
+"""The growth of a modulation with its amplitude, against simulated motions and a normal form that is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG11
+from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.motion.exact import simulate
+from reference_model.steady.bifurcation_curves import Plane, crossings
+from reference_model.steady.lyapunov_coefficient import growth_by_amplitude, polar_rates
+from reference_model.steady.stability import turning_frame_jacobian
+from reference_model.steady.steady_states import whirls
+
+PLANE = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
+
+
+def marginal_whirl(law, which):
+    """Return a disc at ω = 1.5 rad/s on a Hopf curve, and its whirl."""
+    disc = replace(FIG11, friction_force=crossings(PLANE, "Hopf", "disc_speed", 1.5, law)[which])
+    return disc, min(whirls(disc, law), key=lambda whirl: abs(whirl.eigenvalues[1].real))
+
+
+def simulated_growth(disc, whirl, law, amplitude):
+    """Return (1/a₀² − 1/a₁²)/2 over a period of the modulation from ȧ = c·a³.
+
+    a is half the difference of the extremes of the radius, whose second harmonic drops out.
+    """
+    values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state, law))
+    pair = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
+    shift = (amplitude * whirl.radius / vectors[0, pair] * vectors[:, pair]).real
+    period = 2.0 * np.pi / abs(values[pair].imag)
+    times = np.linspace(0.0, 4.0 * period, 8001)
+    radius = simulate(
+        disc, whirl.state + np.insert(shift, 2, 0.0), times, tolerance=1e-11, contact=law
+    ).radius
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(radius)))) + 1
+    sizes, instants = [], []
+    for i in turns:
+        a, b, c = radius[i - 1 : i + 2]
+        offset = 0.5 * (a - c) / (a - 2.0 * b + c)
+        sizes.append(b - 0.25 * (a - c) * offset)
+        instants.append(times[i] + offset * (times[1] - times[0]))
+    # From the third extreme on: what the start left of the fast eigenvalues is gone.
+    extremes, instants = np.array(sizes[2:]), np.array(instants[2:])
+    swing = np.abs(np.diff(extremes)) / (2.0 * whirl.radius)
+    return (1.0 / swing[0] ** 2 - 1.0 / swing[2] ** 2) / (2.0 * (instants[2] - instants[0]))
+
+
+@pytest.mark.parametrize(
+    ("law", "which", "amplitude"), [(RING, 0, 0.05), (RING, 1, 0.006), (THREE_TERMS, 0, 0.05)]
+)
+def test_the_growth_of_simulated_modulations_is_the_cube_of_their_amplitude(law, which, amplitude):
+    """The next order is smaller by the square of the amplitude, and extrapolation leaves a tenth of it at most."""
+    disc, whirl = marginal_whirl(law, which)
+    expected = growth_by_amplitude(disc, whirl.state, law)
+    assert expected > 0.0
+    large, small = (simulated_growth(disc, whirl, law, share * amplitude) for share in (1.0, 0.5))
+    assert small + (small - large) / 3.0 == pytest.approx(expected, abs=0.1 * abs(small - large))
+    assert small == pytest.approx(expected, rel=0.01)
+
+
+def test_with_23_the_growth_changes_its_sign_along_the_curve():
+    """Near ω = Ω the border is soft, and hard at higher speeds."""
+    signs = []
+    for speed in (1.28, 2.0):
+        (load,) = crossings(replace(PLANE, lower=(1.27, 1e-3)), "Hopf", "disc_speed", speed, THREE_TERMS)
+        disc = replace(FIG11, disc_speed=speed, friction_force=load)
+        whirl = min(whirls(disc, THREE_TERMS), key=lambda whirl: abs(whirl.eigenvalues[1].real))
+        signs.append(np.sign(growth_by_amplitude(disc, whirl.state, THREE_TERMS)))
+    assert signs == [-1.0, 1.0]
+
+
+@pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
+def test_the_whirl_is_at_rest_in_polar_coordinates(law):
+    (whirl,) = whirls(FIG11, law)
+    state = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, FIG11.disc_speed - whirl.spin])
+    assert polar_rates(FIG11, law)(state) == pytest.approx(np.zeros(4), abs=1e-15)
+
+
+def test_a_whirl_with_real_eigenvalues_next_to_the_axis_is_refused():
+    disc = replace(FIG11, friction_force=0.0206)  # just above the onset
+    (whirl,) = whirls(disc)
+    with pytest.raises(ValueError, match="no pair is next to the imaginary axis"):
+        growth_by_amplitude(disc, whirl.state)

@@ -1,0 +1,521 @@
+"""Equilibria and whirls on a support that hardens and has a stop, against eq. 1 and 19, counts and simulations."""
+
+import cmath
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from disc_equations import mirrored, points_on_ring, rates, rates_in_turning_axes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from plain_engines import coulomb, in_units, support_force
+from plain_engines import rates as rates_of_pin
+from scipy.optimize import brentq
+from test_stability import assert_same_eigenvalues, derivative
+from test_systems import refusal
+
+from compare.claims.paper_parameters import FIG8, FIG11
+from reference_model import (
+    PinOnDisc,
+    modulated_cycle,
+    onset_load,
+    self_centred_equilibria,
+    simulate,
+    smallest_load_with_whirl,
+    whirl_branch,
+    whirl_orbit,
+    whirls,
+    why_no_equilibrium,
+    why_no_whirl,
+)
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.formulas import pin as formulas
+from reference_model.formulas.disc import held_pin, pin_of, polar_angle, semicircle_residual
+from reference_model.steady.lyapunov_coefficient import polar_rates
+from reference_model.steady.stability import jacobian_without_angle, sliding_jacobian, turning_frame_jacobian
+from reference_model.support import Support
+
+FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=-4.0, offset=0.15)
+SUPPORTS = [
+    {"hardening": 30.0},
+    {"stop_gap": 0.03, "stop_stiffness": 2.0},
+    {"stop_gap": 0.5, "stop_stiffness": 2.0},
+    {"hardening": 5.0, "stop_gap": 0.04, "stop_stiffness": 20.0},
+]
+STEP = 1e-6
+"""Of differences; their error is some STEP² of third derivatives up to 1e3, and 1e-15/STEP of rounding."""
+
+
+def central_differences(function, point):
+    return np.column_stack(
+        [(function(point + STEP * e) - function(point - STEP * e)) / (2.0 * STEP) for e in np.eye(len(point))]
+    )
+
+
+def in_turning_axes(pin, frequency):
+    """Rates of (1) along axes that turn."""
+
+    def turning(state):
+        turn = np.array([-state[1], state[0], -state[3], state[2]])
+        return rates_of_pin(pin, state, coulomb(pin)) - frequency * turn
+
+    return turning
+
+
+# ---------------------------------------------------------------- the pin's equilibrium
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize("base", [FIG_5, HEAVY, replace(HEAVY, offset=-0.15)])
+def test_pin_rests_in_its_equilibrium_on_the_semicircle_4(base, support):
+    pin = replace(base, **support)
+    (found,) = self_centred_equilibria(pin)
+    # Residuals in m/s²; a rounding of the place by 1e-16 moves the stop by that times C_s/m.
+    assert np.abs(rates_of_pin(pin, found.state, coulomb(pin))).max() < 1e-13
+    assert formulas.semicircle_residual(pin, found.x, found.y) == pytest.approx(0.0, abs=1e-16)
+    assert math.hypot(found.x, found.y) == pytest.approx(formulas.equilibrium_radius(pin), rel=1e-13)
+    assert math.atan2(found.y, found.x) == pytest.approx(formulas.equilibrium_angle(pin), abs=1e-13)
+    pull = math.hypot(*support_force(pin, found.state))
+    assert pull == pytest.approx(pin.friction_force, rel=1e-13)
+    jacobian = central_differences(lambda state: rates_of_pin(pin, state, coulomb(pin)), found.state)
+    assert sliding_jacobian(pin, found.state) == pytest.approx(jacobian, abs=1e-6 * np.abs(jacobian).max())
+    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-6)
+    assert found.stable
+
+
+def test_pin_comes_to_rest_in_the_equilibrium_of_its_nonlinear_support():
+    pin = replace(FIG_5, hardening=30.0, stop_gap=0.04, stop_stiffness=2.0, damping=0.3)
+    (found,) = self_centred_equilibria(pin)
+    end = simulate(pin, [0.1, 0.0, 0.0, 0.0], [0.0, 200.0]).at_end
+    # The slowest mode decays like exp(−0.15t).
+    assert end == pytest.approx(found.state, abs=1e-9)
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_equilibrium_exists_up_to_the_force_of_the_support_at_the_offset(support):
+    pin = replace(FIG_5, **support)
+    most = math.hypot(*support_force(pin, [0.0, 0.0, 0.0, 0.0]))
+    assert formulas.largest_load_with_equilibrium(pin) == pytest.approx(most, rel=1e-14)
+    assert len(self_centred_equilibria(replace(pin, friction_force=(1.0 - 1e-9) * most))) == 1
+    above = replace(pin, friction_force=(1.0 + 1e-9) * most)
+    assert self_centred_equilibria(above) == ()
+    assert "force of the support at |offset|" in why_no_equilibrium(above)
+    exactly = replace(pin, friction_force=formulas.largest_load_with_equilibrium(pin))
+    assert self_centred_equilibria(exactly) == ()
+    assert why_no_equilibrium(exactly).endswith("the pin sticks on the axis")
+
+
+def test_where_the_stop_just_begins_an_equilibrium_has_no_eigenvalues():
+    pin = replace(FIG_5, friction_force=0.0625, stop_gap=0.0625, stop_stiffness=1.0)
+    assert refusal(self_centred_equilibria, pin).startswith("deflection = stop_gap")
+
+
+def test_without_friction_the_centre_of_a_hardening_support_is_the_equilibrium():
+    (found,) = self_centred_equilibria(replace(FIG_5, friction_force=0.0, stiffness=0.0, hardening=2.0))
+    assert (found.x, found.y) == (pytest.approx(0.1, rel=1e-15), 0.0)
+    assert not found.stable  # not by its eigenvalues: for small deflections there is no stiffness
+    stop = replace(FIG_5, friction_force=0.0, stiffness=0.0, stop_gap=0.1, stop_stiffness=2.0)
+    assert self_centred_equilibria(stop) == ()  # every place within the gap is as good
+    assert "without springs" in why_no_equilibrium(stop)
+
+
+def test_a_stop_alone_holds_the_pin_against_friction():
+    pin = replace(FIG_5, stiffness=0.0, stop_gap=0.05, stop_stiffness=3.0)
+    (found,) = self_centred_equilibria(pin)
+    assert math.hypot(found.x - 0.1, found.y) == pytest.approx(0.05 + 0.09 / 3.0, rel=1e-14)
+    assert np.abs(rates_of_pin(pin, found.state, coulomb(pin))).max() < 1e-14
+
+
+# ---------------------------------------------------------------- the pin's whirl
+
+
+def centred(base, **support):
+    return replace(base, offset=0.0, **support)
+
+
+WHIRLING = [centred(replace(base, disc_speed=sign * 4.0), **s) for base in (FIG_5, HEAVY) for s in SUPPORTS[:3]
+            for sign in (1.0, -1.0)]  # fmt: skip
+
+
+@pytest.mark.parametrize("pin", WHIRLING)
+def test_whirl_is_a_fixed_point_of_eq_1_in_turning_axes_with_the_eigenvalues_of_its_differences(pin):
+    (found,) = whirls(pin)
+    turning = in_turning_axes(pin, found.frequency)
+    assert np.abs(turning(found.state)).max() < 1e-13
+    assert math.copysign(1.0, found.frequency) == math.copysign(1.0, pin.disc_speed)
+    assert abs(found.frequency) < abs(pin.disc_speed)
+    jacobian = central_differences(turning, found.state)
+    expected = turning_frame_jacobian(pin)
+    assert expected == pytest.approx(jacobian, abs=1e-6 * np.abs(jacobian).max())
+    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(expected), tolerance=1e-11)
+
+
+@given(
+    st.floats(0.1, 10.0),
+    st.floats(0.0, 10.0),
+    st.floats(0.01, 100.0),
+    st.floats(0.01, 1.0),
+    st.floats(0.01, 1.0),
+)
+def test_radius_on_a_cubic_spring_is_the_root_of_a_quadratic_equation(
+    mass, stiffness, hardening, damping, load
+):
+    # C₃ρ⁴ + Cρ² = m(μN/β)², from the balance along the circle, βκρ = μN, and across it, mκ² = C + C₃ρ².
+    right = mass * (load / damping) ** 2
+    squared = 2.0 * right / (stiffness + math.sqrt(stiffness**2 + 4.0 * hardening * right))
+    pin = PinOnDisc(
+        mass=mass,
+        stiffness=stiffness,
+        damping=damping,
+        friction_force=load,
+        hardening=hardening,
+        disc_speed=1e4,
+    )
+    (found,) = whirls(pin)
+    assert found.radius == pytest.approx(math.sqrt(squared), rel=1e-13)
+    assert found.frequency == pytest.approx(load / (damping * found.radius), rel=1e-13)
+
+
+@settings(max_examples=60)
+@given(
+    st.floats(0.0, 3.0), st.floats(0.0, 30.0), st.floats(0.01, 1.0), st.floats(0.1, 100.0), st.floats(0.02, 1.0),
+    st.floats(0.5, 6.0),
+)  # fmt: skip
+def test_pin_has_one_circle_at_most_of_all_that_balance(stiffness, hardening, gap, stop, load, speed):
+    pin = PinOnDisc(
+        mass=1.3, stiffness=stiffness, damping=0.2, friction_force=load, disc_speed=speed, hardening=hardening,
+        stop_gap=gap, stop_stiffness=stop,
+    )  # fmt: skip
+    radii = np.geomspace(1e-4, 100.0, 1001)
+    pulls = np.array([math.hypot(*support_force(pin, [rho, 0.0, 0.0, 0.0])) for rho in radii])
+    turning = np.sqrt(pulls / (pin.mass * radii))
+    drive = pin.friction_force - pin.damping * turning * radii
+    places = np.flatnonzero((np.diff(np.sign(drive)) != 0.0) & (turning[:-1] < speed) & (turning[1:] < speed))
+    found = whirls(pin)
+    assert len(found) == len(places) or abs(formulas_turning(pin) / speed - 1.0) < 0.01
+    for whirl, i in zip(found, places, strict=False):
+        assert radii[i] * (1.0 - 1e-12) <= whirl.radius <= radii[i + 1] * (1.0 + 1e-12)
+
+
+def formulas_turning(pin):
+    """Speed of turning of the circle at the speed μN/β, whether it is a whirl or not."""
+    radius = formulas.driven_radius(pin, pin.friction_force)
+    return formulas.circling_speed(pin, radius)
+
+
+@pytest.mark.parametrize("pin", [WHIRLING[0], WHIRLING[2], WHIRLING[5]])
+def test_pin_goes_on_in_its_whirl_and_comes_back_to_it(pin):
+    (found,) = whirls(pin)
+    assert found.stable
+    times = np.linspace(0.0, 50.0, 51)
+    trajectory = simulate(pin, found.state, times, tolerance=1e-12)
+    expected = found.radius * np.exp(1j * found.frequency * times)
+    assert np.abs(trajectory.states[:, 0] + 1j * trajectory.states[:, 1] - expected).max() < 1e-9
+    # Far enough away to feel the support's nonlinearity, and long enough for the slowest mode.
+    slowest = -found.eigenvalues[1].real
+    late = simulate(pin, 1.2 * found.state, [0.0, 20.0 / slowest], tolerance=1e-11)
+    assert math.hypot(*late.at_end[:2]) == pytest.approx(found.radius, rel=1e-7)
+
+
+@pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
+def test_where_the_support_would_turn_the_pin_faster_than_the_disc_turns_it_ends_by_sticking(support):
+    pin = centred(replace(FIG_5, friction_force=0.3), **support)
+    assert whirls(pin) == ()
+    reason = why_no_whirl(pin)
+    assert f"{formulas_turning(pin):g} rad/s at which the support would turn the pin" in reason
+    assert formulas_turning(pin) > pin.disc_speed
+    trajectory = simulate(pin, [0.5, 0.0, 0.0, 0.5], np.linspace(0.0, 200.0, 201))
+    assert trajectory.phases[-1].kind == "stick"
+    assert trajectory.phases[-1].end - trajectory.phases[-1].start > 50.0
+
+
+@pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
+def test_without_damping_the_circle_grows_until_the_support_turns_the_pin_as_fast_as_the_disc(support):
+    pin = centred(replace(FIG_5, damping=0.0), **support)
+    assert whirls(pin) == ()
+    assert "as fast as the disc" in why_no_whirl(pin)
+    carried = brentq(
+        lambda rho: math.hypot(*support_force(pin, [rho, 0.0, 0.0, 0.0])) - 1.5**2 * rho, 0.3, 5.0
+    )
+    trajectory = simulate(pin, [0.3, 0.0, 0.0, 0.3], np.linspace(0.0, 200.0, 201))
+    assert trajectory.phases[-1].kind == "stick"
+    # It sticks within what friction can make up for.
+    stuck = trajectory.radius[-1]
+    spare = abs(math.hypot(*support_force(pin, [stuck, 0.0, 0.0, 0.0])) - 1.5**2 * stuck)
+    assert spare < pin.friction_force
+    assert abs(stuck - carried) < 0.1 * carried
+
+
+def test_loads_between_a_weak_spring_and_a_stop_have_the_whirls_of_either():
+    pin = centred(FIG_5, stop_gap=0.5, stop_stiffness=1.0)
+    below, above = replace(pin, friction_force=0.049), replace(pin, friction_force=0.09)
+    assert whirls(below)[0].radius == pytest.approx(0.49, rel=1e-13)  # the stop is out of reach
+    assert 0.5 < whirls(above)[0].radius < 0.9
+    at_gap = replace(pin, damping=0.125, friction_force=0.0625)
+    assert refusal(whirls, at_gap).startswith("deflection = stop_gap = 0.5 m")
+
+
+# ---------------------------------------------------------------- a stop without a gap is a spring
+
+
+@pytest.mark.parametrize("disc", [FIG8, FIG11, replace(FIG8, disc_speed=1.5, offset=0.0)])
+def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
+    stop = replace(disc, stiffness=0.4, stop_stiffness=0.6)
+    for found, expected in zip(self_centred_equilibria(stop), self_centred_equilibria(disc), strict=True):
+        assert found.state == pytest.approx(expected.state, rel=1e-12)
+        assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues)
+    start, times = [0.3, 0.1, 0.0, 0.0, 0.2, 1.0], [0.0, 2.0, 8.0]
+    plain, other = (simulate(d, start, times, tolerance=1e-12).states for d in (disc, stop))
+    assert np.abs(plain - other).max() < 1e-10
+    if disc.offset == 0.0:
+        assert onset_load(stop) == pytest.approx(onset_load(disc), rel=1e-14)
+        for found, expected in zip(whirls(stop), whirls(disc), strict=True):
+            assert found.state == pytest.approx(expected.state, rel=1e-10)
+            assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues, tolerance=1e-10)
+
+
+def test_pin_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring():
+    stop = replace(FIG_5, stiffness=0.4, stop_stiffness=0.6)
+    times = np.linspace(0.0, 30.0, 31)
+    plain, other = (simulate(pin, [0.1, 0.0, 0.03, 0.0], times, tolerance=1e-12) for pin in (FIG_5, stop))
+    assert len(plain.phases) == len(other.phases) > 4
+    assert np.abs(plain.states - other.states).max() < 1e-9
+    found, expected = (self_centred_equilibria(pin)[0] for pin in (stop, FIG_5))
+    assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues)
+    found, expected = (whirls(replace(pin, offset=0.0))[0] for pin in (stop, FIG_5))
+    assert found.radius == pytest.approx(expected.radius, rel=1e-13)
+    assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues)
+
+
+# ---------------------------------------------------------------- the disc
+
+
+OF_A_DISC = [
+    {"hardening": 40.0},
+    {"stop_gap": 0.03, "stop_stiffness": 3.0},
+    {"hardening": 10.0, "stop_gap": 0.02, "stop_stiffness": 1.0},
+]
+
+
+@pytest.mark.parametrize("law", [Ring, ThreeTermRing, Annulus])
+@pytest.mark.parametrize("support", OF_A_DISC)
+@pytest.mark.parametrize("base", [FIG8, mirrored(FIG8), replace(FIG8, offset=-0.1)])
+def test_equilibrium_of_the_disc_balances_on_the_semicircle(base, support, law):
+    disc = replace(base, damping=0.1, **support)
+    contact = Annulus(0.08, 0.16) if law is Annulus else law(0.12)
+    (found,) = self_centred_equilibria(disc, contact)
+    z = complex(found.x, found.y)
+    force, moment = contact.force_and_moment(-1j * disc.disc_speed * z, disc.disc_speed - found.spin, 0.0)
+    pull = complex(*support_force(pin_of(disc), [found.x, found.y, 0.0, 0.0]))
+    assert pull + disc.friction_force * force == pytest.approx(0.0, abs=1e-13)
+    torque = disc.shaft_damping * (disc.shaft_speed - found.spin)
+    assert torque + disc.friction_force * moment == pytest.approx(0.0, abs=1e-13)
+    assert semicircle_residual(disc, found.x, found.y) == pytest.approx(0.0, abs=1e-15)
+    # The third line of (26): radius and deflection are at a right angle, on any support.
+    assert polar_angle(disc, abs(z), 0.0) == pytest.approx(cmath.phase(z), abs=1e-11)
+
+
+@pytest.mark.parametrize("support", OF_A_DISC)
+def test_eigenvalues_of_the_disc_are_those_of_eq_19(support):
+    friction_points = 32768
+    disc = replace(FIG8, damping=0.1, **support)
+    (found,) = self_centred_equilibria(disc)
+
+    def without_angle(part):
+        state = np.insert(part, 2, 0.0)
+        return np.delete(rates(disc, points_on_ring(disc, friction_points), state), 2)
+
+    jacobian = derivative(without_angle, np.delete(found.state, 2))
+    assert jacobian_without_angle(disc, found.state) == pytest.approx(
+        jacobian, abs=1e-9 * np.abs(jacobian).max()
+    )
+    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-9)
+
+
+def circles_by_radius(disc, contact):
+    """Radii of all whirls, by a search over radii in place of ratios."""
+
+    def lacking(rho):
+        turning = math.sqrt(
+            math.hypot(*support_force(pin_of(disc), [rho, 0.0, 0.0, 0.0])) / (disc.mass * rho)
+        )
+        share = disc.damping * turning * rho / disc.friction_force
+        slip = (disc.disc_speed - turning) * rho
+        if slip <= 0.0 or not 0.0 < share < 1.0:
+            return math.nan
+
+        def weaker(log_spin):
+            return contact.shares(slip, slip * math.exp(log_spin)).resistance - share
+
+        if weaker(-40.0) < 0.0 or weaker(60.0) > 0.0:
+            return math.nan
+        spin = slip * math.exp(brentq(weaker, -40.0, 60.0, xtol=1e-13, rtol=1e-15))
+        moment = disc.friction_force * contact.shares(slip, spin).moment
+        return moment + disc.shaft_damping * (spin - abs(disc.disc_speed - disc.shaft_speed))
+
+    radii = np.geomspace(1e-5, 1.0, 600)
+    values = [lacking(rho) for rho in radii.tolist()]
+    return [
+        brentq(lacking, radii[i], radii[i + 1], rtol=1e-13)
+        for i in reversed(range(len(radii) - 1))
+        if values[i] * values[i + 1] < 0.0
+    ]
+
+
+@pytest.mark.parametrize("load", [0.02, 0.0225, 0.026, 0.05, 0.09, 0.2])
+@pytest.mark.parametrize("support", [*OF_A_DISC, {"stop_gap": 0.05, "stop_stiffness": 5.0}])
+def test_disc_has_the_whirls_that_a_search_over_radii_finds(support, load):
+    disc = replace(FIG11, friction_force=load, **support)
+    expected = circles_by_radius(disc, Ring(0.12))
+    found = whirls(disc)
+    assert [whirl.radius for whirl in found] == pytest.approx(expected, rel=1e-9)
+    assert (why_no_whirl(disc) is None) == bool(found)
+    for whirl in found:
+        turning = rates_in_turning_axes(
+            disc, points_on_ring(disc, 4096), whirl.frequency, np.delete(whirl.state, 2)
+        )
+        # 4096 points differ from the ring by their distance squared over the nearness to a point at rest.
+        assert np.abs(turning).max() < 1e-6
+        assert abs(whirl.frequency) == pytest.approx(
+            math.sqrt(Support.of(disc).secant(whirl.radius)), rel=1e-14
+        )
+
+
+def test_search_over_radii_finds_whirls_at_most_of_these_loads():
+    counts = [
+        len(whirls(replace(FIG11, friction_force=load, **support)))
+        for load in (0.02, 0.0225, 0.026, 0.05, 0.09, 0.2)
+        for support in OF_A_DISC
+    ]
+    assert {0, 1} <= set(counts)
+    assert sum(counts) >= 9
+
+
+@pytest.mark.parametrize("support", OF_A_DISC)
+def test_eigenvalues_of_the_disc_s_whirl_are_those_of_eq_19(support):
+    disc = replace(FIG11, friction_force=0.05, **support)
+    (found,) = whirls(disc)
+    part = np.delete(found.state, 2)
+    friction = points_on_ring(disc, 32768)  # one of which nearly rests
+    jacobian = derivative(lambda p: rates_in_turning_axes(disc, friction, found.frequency, p), part)
+    assert turning_frame_jacobian(disc, found.state) == pytest.approx(
+        jacobian, abs=1e-9 * np.abs(jacobian).max()
+    )
+    # In polar coordinates there is no phase: the same eigenvalues but the zero.
+    polar = polar_rates(disc, Ring(0.12))
+    whirl = np.array([found.radius, 0.0, found.frequency * found.radius, disc.disc_speed - found.spin])
+    assert np.abs(polar(whirl)).max() < 1e-13
+    # A point of the ring is nearly at rest, where slopes change by 1e-5 of themselves within a step.
+    expected = np.linalg.eigvals(central_differences(polar, whirl))
+    assert_same_eigenvalues(found.eigenvalues[1:], expected, tolerance=2e-5)
+
+
+def test_disc_goes_on_in_its_whirl_on_a_nonlinear_support():
+    disc = replace(FIG11, friction_force=0.05, **OF_A_DISC[2])
+    (found,) = whirls(disc)
+    assert found.stable
+    times = np.linspace(0.0, 40.0, 41)
+    trajectory = simulate(disc, found.state, times, tolerance=1e-12)
+    assert trajectory.radius == pytest.approx(np.full(41, found.radius), rel=1e-9)
+    assert trajectory.states[:, 5] == pytest.approx(np.full(41, found.spin), rel=1e-9)
+
+
+def test_disc_that_does_not_spin_against_the_master_disc_has_the_whirl_of_the_pin():
+    disc = replace(FIG11, shaft_speed=FIG11.disc_speed, friction_force=0.05, **OF_A_DISC[2])
+    pin = pin_of(disc)
+    found, expected = whirls(disc)[0], whirls(pin)[0]
+    assert found.radius == pytest.approx(expected.radius, rel=1e-12)
+    assert found.frequency == pytest.approx(expected.frequency, rel=1e-12)
+
+
+def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
+    assert onset_load(replace(FIG11, **OF_A_DISC[2])) == onset_load(FIG11)
+    # Just above it the whirl is small, and hardly knows of them: its square grows with the load's excess.
+    load = 1.0001 * onset_load(FIG11)
+    linear, hard = (
+        whirls(replace(disc, friction_force=load)) for disc in (FIG11, replace(FIG11, hardening=40.0))
+    )
+    assert linear[-1].radius < 0.002
+    assert hard[-1].radius == pytest.approx(linear[-1].radius, rel=0.05)
+
+
+@pytest.mark.parametrize("missing", [{"damping": 0.0}, {"friction_force": 0.0}])
+def test_disc_without_damping_or_friction_has_no_whirl(missing):
+    disc = replace(FIG11, **OF_A_DISC[0] | missing)
+    assert whirls(disc) == ()
+    assert next(iter(missing)) in why_no_whirl(disc)
+
+
+def test_pin_that_stands_for_a_stuck_disc_has_its_support():
+    disc = replace(FIG8, **OF_A_DISC[2])
+    assert Support.of(held_pin(disc)) == Support.of(disc)
+    assert refusal(smallest_load_with_whirl, replace(disc, offset=0.0)).endswith("for a linear support")
+
+
+# ---------------------------------------------------------------- orbits by shooting
+
+
+@pytest.mark.parametrize("support", SUPPORTS[:3])
+def test_orbit_without_offset_is_the_whirl_with_the_multipliers_of_its_eigenvalues(support):
+    pin = centred(replace(FIG_5, disc_speed=4.0, damping=0.3, friction_force=0.2), **support)
+    (expected,) = whirls(pin)
+    orbit = whirl_orbit(pin)
+    assert orbit.frequency == pytest.approx(expected.frequency, rel=1e-9)
+    assert orbit.state == pytest.approx(expected.state, abs=1e-9)
+    multipliers = [cmath.exp(value * orbit.period) for value in expected.eigenvalues]
+    assert_same_eigenvalues(orbit.multipliers, multipliers, tolerance=1e-7)
+
+
+@pytest.mark.parametrize("support", [{"hardening": 3.0}, {"stop_gap": 0.51, "stop_stiffness": 5.0}])
+def test_orbit_with_an_offset_is_where_a_long_simulation_ends(support):
+    pin = replace(FIG_5, disc_speed=4.0, damping=0.3, friction_force=0.16, **support)
+    orbit = whirl_orbit(pin)
+    assert orbit.stable
+    if pin.stop_stiffness > 0.0:  # it goes in and out of the stop
+        d = np.hypot(orbit.trajectory.states[:, 0] - pin.offset, orbit.trajectory.states[:, 1])
+        assert d.min() < pin.stop_gap < d.max()
+    largest = abs(orbit.multipliers[1])
+    periods = math.ceil(math.log(1e-10) / math.log(largest))
+    end = simulate(pin, orbit.state * 1.05, [0.0, periods * orbit.period], tolerance=1e-12)
+    nearest = np.abs(orbit.trajectory.states - end.at_end).max(axis=1).min()
+    assert nearest < 2.0 * math.pi / 256 * np.abs(orbit.state).max()
+    radius = np.hypot(*simulate(pin, end.at_end, orbit.trajectory.times).states[:, :2].T)
+    assert radius.max() == pytest.approx(orbit.trajectory.radius.max(), rel=1e-4)
+
+
+def test_branch_of_whirls_goes_on_over_the_stop():
+    pin = centred(replace(FIG_5, disc_speed=4.0), stop_gap=0.5, stop_stiffness=2.0)
+    crossed = set()
+    for orbit in whirl_branch(whirl_orbit(pin), 0.45, samples=16):
+        (expected,) = whirls(orbit.system)
+        assert orbit.state[0] == pytest.approx(expected.radius, rel=1e-8)
+        crossed.add(expected.radius > 0.5)
+    assert crossed == {True, False}
+
+
+def test_modulated_cycle_of_a_disc_on_a_hardening_support_is_where_a_simulation_ends():
+    disc = replace(FIG11, hardening=20.0)
+    assert not whirls(disc)[0].stable
+    settled = simulate(disc, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
+    assert len(settled.phases) == 1
+    cycle = modulated_cycle(disc, settled, samples=256)
+    assert np.ptp(cycle.trajectory.radius) == pytest.approx(
+        np.ptp(settled.radius[-2000:]), rel=5e-3
+    )  # 0.1 s apart
+    # The carrier is faster than k, by the hardening's part of the centripetal force.
+    hardening = math.sqrt(1.0 + 20.0 * np.mean(cycle.trajectory.radius**2))
+    assert cycle.carrier - 1.0 == pytest.approx(hardening - 1.0, rel=0.5)
+    assert cycle.carrier > 1.001
+
+
+def test_steady_motions_are_the_same_in_any_units():
+    pin = replace(FIG_5, hardening=30.0, stop_gap=0.04, stop_stiffness=2.0, disc_speed=4.0)
+    other = in_units(pin, 1e3, 1e-2, 1e-4)
+    found, expected = self_centred_equilibria(other)[0], self_centred_equilibria(pin)[0]
+    assert [found.x, found.y] == pytest.approx([1e-2 * expected.x, 1e-2 * expected.y], rel=1e-12)
+    found, expected = whirls(replace(other, offset=0.0))[0], whirls(replace(pin, offset=0.0))[0]
+    assert found.radius == pytest.approx(1e-2 * expected.radius, rel=1e-12)
+    assert_same_eigenvalues(found.eigenvalues, [1e4 * value for value in expected.eigenvalues])

@@ -1,0 +1,474 @@
+"""Stability of equilibrium and whirl against the equations of motion, and which of them exist."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from disc_equations import (
+    LARGE,
+    disc_in_units,
+    eq_23,
+    mirrored,
+    points_on_ring,
+    rates,
+    rates_in_turning_axes,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+from plain_engines import in_units
+
+from compare.claims.paper_parameters import FIG8, FIG11
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
+from reference_model.formulas import pin as formulas
+from reference_model.steady.stability import (
+    equilibrium_eigenvalues,
+    onset_load,
+    sliding_jacobian,
+    turning_frame_jacobian,
+    whirl_eigenvalues,
+)
+from reference_model.steady.steady_states import self_centred_equilibria, whirls
+from reference_model.systems import PinOnDisc
+
+FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
+CENTRED = replace(FIG_5, offset=0.0)
+CENTRED_HEAVY = replace(HEAVY, offset=0.0)
+
+WHIRLING = replace(LARGE, disc_speed=3.0, offset=0.0, friction_force=1.5)
+
+COMPLEX_STEP = 1e-20
+
+
+def rates_of_eq_1(pin, state):
+    """Right side of (1) as a first-order system; takes complex arguments."""
+    x, y, vx, vy = state
+    slip_x, slip_y = vx + pin.disc_speed * y, vy - pin.disc_speed * x
+    friction = pin.friction_force / np.sqrt(slip_x**2 + slip_y**2)
+    return np.array(
+        [
+            vx,
+            vy,
+            -(pin.damping * vx + pin.stiffness * (x - pin.offset) + friction * slip_x) / pin.mass,
+            -(pin.damping * vy + pin.stiffness * y + friction * slip_y) / pin.mass,
+        ]
+    )
+
+
+def pin_rates_in_turning_axes(pin, frequency, state):
+    """Rates of (1) for position and velocity along axes that turn at ``frequency``."""
+    turn = np.array([-state[1], state[0], -state[3], state[2]])
+    return rates_of_eq_1(pin, state) - frequency * turn
+
+
+def derivative(function, point):
+    """Jacobian by complex steps, free of cancellation."""
+    point = np.asarray(point, dtype=complex)
+    columns = [function(point + 1j * COMPLEX_STEP * e).imag / COMPLEX_STEP for e in np.eye(point.size)]
+    return np.column_stack(columns)
+
+
+def assert_same_eigenvalues(found, expected, tolerance=1e-12):
+    """Compare as sets: each to the nearest that is left."""
+    left = list(expected)
+    assert len(found) == len(left)
+    scale = np.abs(left).max()
+    for value in found:
+        nearest = min(left, key=lambda other: abs(other - value))
+        assert abs(nearest - value) <= tolerance * scale, f"{value} not in {expected}"
+        left.remove(nearest)
+
+
+# ---------------------------------------------------------------- Jacobians
+
+coordinates = st.floats(-2.0, 2.0)
+
+
+@given(st.lists(coordinates, min_size=4, max_size=4), st.sampled_from([1.5, -0.4]))
+def test_sliding_jacobian_is_the_derivative_of_the_equations_of_motion(state, disc_speed):
+    pin = replace(HEAVY, disc_speed=disc_speed)
+    slip = math.hypot(state[2] + disc_speed * state[1], state[3] - disc_speed * state[0])
+    if slip > 1e-3:
+        expected = derivative(lambda s: rates_of_eq_1(pin, s), state)
+        assert sliding_jacobian(pin, state) == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
+
+
+def test_stuck_pin_has_no_jacobian():
+    with pytest.raises(ValueError, match=r"slip = 0 m/s: the pin is at rest"):
+        sliding_jacobian(FIG_5, [0.25, 0.0, 0.0, 0.375])
+
+
+def test_without_friction_the_stuck_pin_is_an_oscillator():
+    jacobian = sliding_jacobian(replace(FIG_5, friction_force=0.0), [0.25, 0.0, 0.0, 0.375])
+    expected = np.kron([[0.0, 1.0], [-1.0, -0.1]], np.eye(2))
+    assert jacobian == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize("pin", [CENTRED, CENTRED_HEAVY, replace(CENTRED, disc_speed=-3.0)])
+def test_whirl_is_a_fixed_point_of_the_turning_frame_and_has_the_jacobian_there(pin):
+    radius, frequency = formulas.whirl_radius(pin), formulas.whirl_frequency(pin)
+    state = [radius, 0.0, 0.0, frequency * radius]
+    assert np.abs(pin_rates_in_turning_axes(pin, frequency, state)).max() < 1e-14 * radius
+    expected = derivative(lambda s: pin_rates_in_turning_axes(pin, frequency, s), state)
+    assert turning_frame_jacobian(pin) == pytest.approx(expected, abs=1e-12)
+
+
+disc_states = st.lists(coordinates, min_size=6, max_size=6)
+
+
+def slip_ratio(disc, state):
+    """U over R|S|."""
+    x, y, _, vx, vy, spin = state
+    rim = disc.contact_radius * abs(disc.disc_speed - spin)
+    return math.hypot(vx + disc.disc_speed * y, vy - disc.disc_speed * x) / max(rim, 1e-300)
+
+
+def assert_is_derivative(jacobian, function, state, tolerance):
+    expected = derivative(function, state)
+    assert jacobian == pytest.approx(expected, abs=tolerance * np.abs(expected).max())
+
+
+@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, shaft_damping=0.0)]))
+def test_jacobian_of_a_disc_on_points_is_the_derivative_of_eq_19(state, disc):
+    disc = replace(disc, contact_points=6)
+    places = state[2] + 2.0 * math.pi * np.arange(6) / 6
+    slip = complex(state[3] + disc.disc_speed * state[1], state[4] - disc.disc_speed * state[0])
+    of_points = slip - 1j * (disc.disc_speed - state[5]) * disc.contact_radius * np.exp(1j * places)
+    if np.abs(of_points).min() > 1e-3:
+        friction = points_on_ring(disc, 6)
+        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
+
+
+@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, stiffness=0.0)]))
+def test_jacobian_of_a_disc_on_the_ring_is_the_derivative_of_eq_19(state, disc):
+    ratio = slip_ratio(disc, state)
+    if ratio < 0.95 or ratio > 1.05:
+        friction = points_on_ring(disc, 1024)  # these converge like (the smaller ratio)^n: 1e-22
+        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
+
+
+@given(disc_states)
+def test_jacobian_of_a_disc_on_another_contact_is_the_derivative_of_eq_23(state):
+    if slip_ratio(LARGE, state) > 1e-3:
+        jacobian = sliding_jacobian(LARGE, state, ThreeTermRing(LARGE.contact_radius))
+        assert_is_derivative(jacobian, lambda s: rates(LARGE, eq_23(LARGE), s), state, 1e-10)
+
+
+def test_without_friction_a_disc_has_a_jacobian_at_rest_too():
+    jacobian = sliding_jacobian(replace(FIG11, friction_force=0.0), [0.0, 0.0, 0.0, 0.0, 0.0, 1.5])
+    assert jacobian[3:, 3:] == pytest.approx(-np.diag([0.5, 0.5, 0.015]), abs=1e-15)
+
+
+@pytest.mark.parametrize("contact_points", [None, 6])
+def test_stuck_disc_has_no_jacobian(contact_points):
+    with pytest.raises(ValueError, match="at rest"):
+        sliding_jacobian(replace(FIG11, contact_points=contact_points), [0.25, 0.0, 0.0, 0.0, 0.375, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("disc", "contact", "friction"),
+    [
+        (FIG11, None, points_on_ring(FIG11, 4096)),
+        (mirrored(FIG11), None, points_on_ring(mirrored(FIG11), 4096)),
+        (FIG11, ThreeTermRing(0.12), eq_23(FIG11)),
+        (WHIRLING, ThreeTermRing(0.5), eq_23(WHIRLING)),
+    ],
+)
+def test_whirl_of_a_disc_is_a_fixed_point_of_the_turning_frame_and_has_the_jacobian_there(
+    disc, contact, friction
+):
+    (whirl,) = whirls(disc, contact)
+    state = np.delete(whirl.state, 2)
+    still = rates_in_turning_axes(disc, friction, whirl.frequency, state)
+    assert np.abs(still).max() < 1e-14
+    jacobian = turning_frame_jacobian(disc, whirl.state, contact)
+    assert_is_derivative(
+        jacobian, lambda s: rates_in_turning_axes(disc, friction, whirl.frequency, s), state, 1e-10
+    )
+    assert whirl.eigenvalues == whirl_eigenvalues(disc, whirl.state, contact)
+    assert whirl.eigenvalues[0] == 0.0
+    assert_same_eigenvalues(whirl.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-11)
+
+
+def test_whirl_does_not_depend_on_where_its_centre_starts():
+    (whirl,) = whirls(FIG11)
+    opposite = whirl.state * [-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]
+    assert_same_eigenvalues(whirl_eigenvalues(FIG11, opposite), whirl.eigenvalues)
+
+
+def test_states_that_are_none_of_a_steady_motion_are_refused():
+    for function in (turning_frame_jacobian, whirl_eigenvalues):
+        with pytest.raises(ValueError, match="state = None: a disc may have several whirls"):
+            function(FIG11)
+        with pytest.raises(ValueError, match=r"x = 0\.1 m, y = 0\.2 m"):
+            function(FIG11, [0.1, 0.2, 0.0, 0.0, 0.1, 1.0])
+        with pytest.raises(ValueError, match="contact_points = 6"):
+            function(replace(FIG11, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.1, 1.0])
+    with pytest.raises(ValueError, match="state = None"):
+        equilibrium_eigenvalues(FIG8)
+    with pytest.raises(ValueError, match="contact_points = 6"):
+        equilibrium_eigenvalues(replace(FIG8, contact_points=6), [0.1, 0.0, 0.0, 0.0, 0.0, 0.6])
+    with pytest.raises(ValueError, match="a pin touches in one point"):
+        sliding_jacobian(FIG_5, [0.1, 0.0, 0.0, 0.0], Pin())
+
+
+# ---------------------------------------------------------------- eigenvalues
+
+
+@pytest.mark.parametrize("disc_speed", [0.01, 0.8, 3.0, -0.8])
+@pytest.mark.parametrize("load_ratio", [0.0, 0.1, 0.5, 0.99])
+@pytest.mark.parametrize("pin", [FIG_5, replace(HEAVY, offset=-0.15), replace(FIG_5, damping=4.0)])
+def test_eigenvalues_of_the_equilibrium_are_those_of_its_jacobian(pin, load_ratio, disc_speed):
+    load = load_ratio * formulas.largest_load_with_equilibrium(pin)
+    pin = replace(pin, friction_force=load, disc_speed=disc_speed)
+    state = [*formulas.equilibrium_position(pin), 0.0, 0.0]
+    expected = np.linalg.eigvals(derivative(lambda s: rates_of_eq_1(pin, s), state))
+    # The general solver finds nearly equal eigenvalues (weak friction) only to the root of rounding.
+    assert_same_eigenvalues(equilibrium_eigenvalues(pin), expected, tolerance=1e-8)
+
+
+@pytest.mark.parametrize("disc_speed", [1.001, 1.2, 2.0, 30.0, -1.2])
+@pytest.mark.parametrize("damping", [0.01, 0.1, 1.0, 8.0])
+def test_eigenvalues_of_the_whirl_are_the_roots_of_corrected_13_and_a_zero_for_the_phase(damping, disc_speed):
+    pin = replace(CENTRED, damping=damping, disc_speed=disc_speed)
+    eigenvalues = whirl_eigenvalues(pin)
+    assert eigenvalues[0] == 0.0
+    roots = np.roots(formulas.characteristic_coefficients(pin))
+    assert_same_eigenvalues(eigenvalues[1:], roots, tolerance=1e-11)
+    assert_same_eigenvalues(eigenvalues, np.linalg.eigvals(turning_frame_jacobian(pin)), tolerance=1e-11)
+
+
+def test_eigenvalues_of_the_whirl_are_not_the_roots_of_13_as_printed():
+    roots = np.roots(formulas.characteristic_coefficients_as_printed(CENTRED))
+    nearest = [min(abs(value - root) for root in roots) for value in whirl_eigenvalues(CENTRED)[1:]]
+    assert max(nearest) > 0.4  # of a frequency of 2
+
+
+def test_eigenvalues_do_not_depend_on_the_size_of_the_whirl():
+    loads = [replace(CENTRED, friction_force=load) for load in (1e-6, 1.0, 1e6)]
+    for pin in loads:
+        assert_same_eigenvalues(whirl_eigenvalues(pin), whirl_eigenvalues(CENTRED))
+
+
+@pytest.mark.parametrize("pin", [CENTRED, CENTRED_HEAVY])
+def test_whirl_that_turns_the_other_way_is_as_stable(pin):
+    mirrored = replace(pin, disc_speed=-pin.disc_speed)
+    assert_same_eigenvalues(whirl_eigenvalues(mirrored), whirl_eigenvalues(pin))
+
+
+def test_eigenvalues_come_with_the_slowest_decay_first():
+    for eigenvalues in (equilibrium_eigenvalues(FIG_5), whirl_eigenvalues(CENTRED)):
+        assert list(np.diff([value.real for value in eigenvalues]) <= 0.0) == [True] * 3
+        upper = [value for value in eigenvalues if value.imag > 0.0]
+        followers = [eigenvalues[eigenvalues.index(value) + 1] for value in upper]
+        assert upper
+        assert followers == [value.conjugate() for value in upper]
+
+
+def test_slow_eigenvalue_of_a_strongly_damped_equilibrium_keeps_its_digits():
+    slowest = equilibrium_eigenvalues(replace(FIG_5, damping=1e8, friction_force=0.0))[0]
+    assert slowest == pytest.approx(-1e-8, rel=1e-14, abs=0.0)
+
+
+units = st.floats(0.01, 100.0)
+
+
+@given(units, units, units)
+def test_eigenvalues_scale_with_the_unit_of_time_alone(mass, length, time):
+    for eigenvalues, pin in ((equilibrium_eigenvalues, FIG_5), (whirl_eigenvalues, CENTRED)):
+        expected = np.array(eigenvalues(pin)) / time
+        assert_same_eigenvalues(eigenvalues(in_units(pin, mass, length, time)), expected, tolerance=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("motions", "disc"),
+    [
+        (self_centred_equilibria, FIG8),
+        (self_centred_equilibria, LARGE),
+        (whirls, FIG11),
+        (whirls, WHIRLING),
+    ],
+)
+def test_eigenvalues_of_a_disc_scale_with_the_unit_of_time_alone(motions, disc):
+    (motion,) = motions(disc)
+    (same,) = motions(disc_in_units(disc, mass=30.0, length=0.05, time=0.2))
+    assert_same_eigenvalues(same.eigenvalues, np.array(motion.eigenvalues) / 0.2, tolerance=1e-10)
+
+
+@pytest.mark.parametrize("disc", [FIG8, replace(FIG8, disc_speed=-0.8), LARGE])
+def test_disc_that_does_not_spin_against_the_master_disc_has_the_eigenvalues_of_a_pin_and_one_of_the_spin(
+    disc,
+):
+    disc = replace(disc, shaft_speed=disc.disc_speed)
+    pin = PinOnDisc(
+        mass=disc.mass, stiffness=disc.stiffness, damping=disc.damping, friction_force=disc.friction_force,
+        disc_speed=disc.disc_speed, offset=disc.offset,
+    )  # fmt: skip
+    (equilibrium,) = self_centred_equilibria(disc)
+    # Of pure slip U the moment grows like μN·R·W/(2U).
+    slip = abs(disc.disc_speed) * math.hypot(equilibrium.x, equilibrium.y)
+    resistance = disc.shaft_damping + disc.friction_force * disc.contact_radius**2 / (2.0 * slip)
+    expected = [*equilibrium_eigenvalues(pin), -resistance / disc.polar_inertia]
+    assert_same_eigenvalues(equilibrium.eigenvalues, expected, tolerance=1e-12)
+
+
+# ---------------------------------------------------------------- the onset
+
+TURNING = [
+    replace(FIG11, disc_speed=speed, shaft_speed=shaft)
+    for speed in (1.5, -1.5, 4.0)
+    for shaft in (1.25, -1.25, 9.0)
+]
+
+
+@pytest.mark.parametrize(
+    "law", [Ring, ThreeTermRing, lambda R: Annulus(0.5 * R, R), lambda R: Annulus(0.0, R)]
+)
+@pytest.mark.parametrize("disc", [*TURNING, replace(LARGE, offset=0.0)])
+def test_centred_rotation_loses_its_stability_at_the_onset_with_the_natural_frequency(disc, law):
+    contact = law(disc.contact_radius)
+    load = onset_load(disc, contact)
+    (at_onset,) = self_centred_equilibria(replace(disc, friction_force=load), contact)
+    assert (at_onset.x, at_onset.y) == (0.0, 0.0)
+    critical = max(at_onset.eigenvalues, key=lambda value: value.real)
+    k = disc.natural_frequency
+    assert critical.real == pytest.approx(0.0, abs=1e-13 * k)
+    assert abs(critical.imag) == pytest.approx(k, rel=1e-13)
+    below, above = (
+        self_centred_equilibria(replace(disc, friction_force=factor * load), contact)[0].stable
+        for factor in (1.0 - 1e-9, 1.0 + 1e-9)
+    )
+    assert below
+    assert not above
+
+
+def test_onset_on_the_ring_is_that_of_rotating_damping():
+    """By hand: W = 0.12·0.25 − μN·0.0144/0.015 and μN·0.5/(2W) = 0.5 give μN = 0.03/1.46."""
+    assert onset_load(FIG11) == pytest.approx(0.03 / 1.46, rel=1e-14)
+
+
+def test_without_damping_any_friction_makes_a_fast_disc_unstable():
+    disc = replace(FIG11, damping=0.0)
+    assert onset_load(disc) == 0.0
+    assert not self_centred_equilibria(replace(disc, friction_force=1e-6))[0].stable
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.5, 1.0, -1.0])
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.999])
+def test_centred_rotation_over_a_slow_master_disc_is_stable_at_every_load(speed, share):
+    disc = replace(FIG11, disc_speed=speed, shaft_speed=speed - 0.25)
+    with pytest.raises(ValueError, match=f"disc_speed = {speed:g} rad/s.*natural frequency 1 rad/s"):
+        onset_load(disc)
+    disc = replace(disc, friction_force=share * 0.015 * 0.25 / 0.12)  # of the load at which it sticks
+    assert self_centred_equilibria(disc)[0].stable
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"offset": 0.1}, r"offset = 0\.1 m"),
+        ({"shaft_damping": 0.0}, "shaft_damping = 0 N m s/rad"),
+        ({"shaft_speed": 1.5}, "disc_speed - shaft_speed = 0 rad/s"),
+        ({"contact_points": 6}, "contact_points = 6"),
+    ],
+)
+def test_onset_is_refused_where_there_is_none(changes, message):
+    with pytest.raises(ValueError, match=message):
+        onset_load(replace(FIG11, **changes))
+
+
+# ---------------------------------------------------------------- which equilibria exist
+
+
+@pytest.mark.parametrize("disc_speed", [0.1, 1.0, 40.0, -0.7])
+@pytest.mark.parametrize("offset", [0.1, -0.1])
+@pytest.mark.parametrize("load_ratio", [0.0, 1e-6, 0.5, 0.999999])
+@pytest.mark.parametrize("damping", [0.01, 5.0])
+def test_equilibrium_is_stable_wherever_it_exists(damping, load_ratio, offset, disc_speed):
+    pin = replace(FIG_5, damping=damping, offset=offset, disc_speed=disc_speed)
+    pin = replace(pin, friction_force=load_ratio * formulas.largest_load_with_equilibrium(pin))
+    (equilibrium,) = self_centred_equilibria(pin)
+    assert (equilibrium.x, equilibrium.y) == formulas.equilibrium_position(pin)
+    assert equilibrium.eigenvalues == equilibrium_eigenvalues(pin)
+    assert equilibrium.stable
+
+
+@pytest.mark.parametrize("load", [0.0, 1e-9, 0.05, 0.09])
+def test_undamped_equilibrium_is_not_stable_because_friction_resists_radial_motion_only(load):
+    (equilibrium,) = self_centred_equilibria(replace(FIG_5, damping=0.0, friction_force=load))
+    assert equilibrium.eigenvalues[0] == 1j
+    assert not equilibrium.stable
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"friction_force": 0.11},
+        {"friction_force": 0.11, "offset": -0.1},
+        {"friction_force": 0.1},  # on the axis, where nothing slides
+        {"offset": 0.0},
+        {"disc_speed": 0.0},
+        {"stiffness": 0.0},
+        {"stiffness": 0.0, "friction_force": 0.0},
+    ],
+)
+def test_no_sliding_equilibrium(changes):
+    assert self_centred_equilibria(replace(FIG_5, **changes)) == ()
+
+
+def test_equilibrium_on_the_axis_has_no_eigenvalues():
+    with pytest.raises(ValueError, match=r"friction_force = 0\.1 N = stiffness.*does not slide"):
+        equilibrium_eigenvalues(replace(FIG_5, friction_force=0.1))
+
+
+@pytest.mark.parametrize("offset", [0.1, 0.0])
+@pytest.mark.parametrize("disc_speed", [0.0, 1.5])
+def test_without_friction_the_pin_rests_where_the_springs_relax(offset, disc_speed):
+    pin = replace(FIG_5, friction_force=0.0, offset=offset, disc_speed=disc_speed)
+    (equilibrium,) = self_centred_equilibria(pin)
+    assert (equilibrium.x, equilibrium.y) == pytest.approx((offset, 0.0), rel=1e-15)
+    assert equilibrium.stable
+
+
+# ---------------------------------------------------------------- which whirls exist
+
+
+@pytest.mark.parametrize("damping", [1e-10, 0.1, 10.0])
+@pytest.mark.parametrize("disc_speed", [1.0 + 1e-9, 1.5, 1e4, -1.5])
+def test_whirl_is_stable_wherever_it_exists(damping, disc_speed):
+    pin = replace(CENTRED, damping=damping, disc_speed=disc_speed)
+    (whirl,) = whirls(pin)
+    assert (whirl.radius, whirl.frequency) == (formulas.whirl_radius(pin), formulas.whirl_frequency(pin))
+    assert whirl.eigenvalues == whirl_eigenvalues(pin)
+    assert whirl.stable
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"disc_speed": 1.0},
+        {"disc_speed": -1.0},
+        {"disc_speed": 0.5},
+        {"disc_speed": 0.0},
+        {"damping": 0.0},
+        {"stiffness": 0.0},
+        {"friction_force": 0.0},
+    ],
+)
+def test_no_whirl(changes):
+    assert whirls(replace(CENTRED, **changes)) == ()
+
+
+def test_whirl_with_an_offset_is_left_to_shooting():
+    with pytest.raises(ValueError, match=r"offset = 0\.1 m.*whirl_orbit"):
+        whirls(FIG_5)
+
+
+def test_steady_states_are_immutable_values():
+    (whirl,), (equilibrium,) = whirls(CENTRED), self_centred_equilibria(FIG_5)
+    assert whirls(CENTRED) == (whirl,)
+    assert len({whirl, equilibrium}) == 2
+    with pytest.raises(AttributeError):
+        whirl.radius = 1.0
