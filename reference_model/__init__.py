@@ -21,10 +21,10 @@ from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing
 from reference_model.formulas.pin import sticking_radius
 from reference_model.formulas.power_balance import PowerBalance, power_balance
-from reference_model.motion.exact import simulate
 from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
 from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
 from reference_model.orbits.shooting import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
+from reference_model.simulation import simulate
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
     SelfCentredEquilibrium,

@@ -46,55 +46,6 @@ METHOD = (
 )
 
 
-def simulate(
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-    contact: Contact | None = None,
-    compiled: bool = False,
-) -> Trajectory:
-    """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
-
-    Parameters
-    ----------
-    system : PinOnDisc or DiscOnDisc
-        The parameters.
-    initial_state : array-like of shape (4,) or (6,)
-        At ``times[0]``: of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle in rad, vx, vy and the spin in
-        rad/s. A state that turns with the master disc starts stuck if friction can hold it.
-    times : array-like of shape (n,)
-        Increasing, in s.
-    tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2.
-    contact : Contact or None
-        The law of friction of a disc if it is not that of its parameters.
-    compiled : bool
-        Whether the compiled kernel of :mod:`ensemble` is to do it, where speed matters. It is another implementation
-        of the same physics, for linear supports and the laws of the parameters; the first run of a kind of contact
-        on a machine waits for the compiler.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    ValueError
-        For a state, times, tolerance or contact that are not as above, or a system that compiled code does not know.
-    SimulationError
-        If the integrator gives up.
-
-    """
-    if compiled:
-        # Here, since the plain one is to start without the compiler.
-        from reference_model.ensemble.single_run import simulate_compiled
-
-        return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)
-    return simulate_with(Thresholds(), system, initial_state, times, tolerance=tolerance, contact=contact)
-
-
 def simulate_with(
     thresholds: Thresholds,
     system: System,
@@ -104,7 +55,7 @@ def simulate_with(
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Do as ``simulate`` with other thresholds, to measure that they do not matter."""
+    """Do as :func:`reference_model.simulate`, with thresholds of which tests measure that they do not matter."""
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
     times = checked_times(times)

@@ -25,9 +25,9 @@ from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import newton
 
 from reference_model.contact.contact_law import require_whole
-from reference_model.motion.exact import simulate
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.orbits.shooting import Flow, Orbit
+from reference_model.simulation import simulate
 from reference_model.support import require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system
 from reference_model.trajectory import Trajectory

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from reference_model.contact.contact_law import isotropic_contact_of, require_whole
-from reference_model.motion.exact import simulate as reference_simulate
+from reference_model.simulation import simulate as reference_simulate
 from reference_model.steady.steady_states import Whirl, whirls, why_no_whirl
 from reference_model.systems import (
     ANGLE,

@@ -27,7 +27,8 @@ from reference_model.ensemble.disc.trapping import REGION, known_regions
 from reference_model.ensemble.end_states import HANDED_OVER, Ensemble, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
-from reference_model.motion.exact import simulate
+from reference_model.motion.exact import simulate_with
+from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
@@ -165,7 +166,7 @@ def _through_rest(
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
         inside = asked[(asked > t) & (asked < end)]
-        motion = simulate(disc, state, [t, *inside, end], tolerance=tolerance)
+        motion = simulate_with(Thresholds(), disc, state, [t, *inside, end], tolerance=tolerance)
         t, state, last = end, motion.at_end, motion.phases[-1]
         stuck = last.kind == "stick" and last.end - last.start >= turn
         yield motion, stuck

@@ -7,7 +7,7 @@ import pytest
 
 from compare.claims.paper_parameters import FIG11
 from reference_model.contact.contact_law import Ring, ThreeTermRing
-from reference_model.motion.exact import simulate
+from reference_model.simulation import simulate
 from reference_model.steady.bifurcation_curves import Plane, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude, polar_rates
 from reference_model.steady.stability import turning_frame_jacobian

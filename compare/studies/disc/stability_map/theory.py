@@ -21,7 +21,7 @@ from compare.studies.toolkit.common import ComplexArray, at_each, eigenvalues_wi
 from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTermRing
 from reference_model.formulas.disc import whirl_at
 from reference_model.formulas.pin import upper_branch_margin
-from reference_model.motion.exact import simulate
+from reference_model.simulation import simulate
 from reference_model.steady.bifurcation_curves import Boundary, Kind, Plane, boundaries, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
 from reference_model.steady.stability import (
