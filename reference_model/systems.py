@@ -226,6 +226,19 @@ class DiscOnDisc(_SupportedMass):
 
 System: TypeAlias = PinOnDisc | DiscOnDisc
 
+COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
+    PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
+    DiscOnDisc: (
+        ("x", "m"),
+        ("y", "m"),
+        ("angle", "rad"),
+        ("vx", "m/s"),
+        ("vy", "m/s"),
+        ("spin", "rad/s"),
+    ),
+}
+"""Name and unit of each state of a system."""
+
 LARGEST_STATE = 1e50
 """Largest size of a component of a state in its SI unit: energies, and forces of hardening springs, stay finite."""
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from compare.sweep.define.refinement import Ends, mixed
 from reference_model.ensemble import EndState
+
+Ends = NDArray[np.uint8]
+BoolArray = NDArray[np.bool_]
 
 CONFIDENCE = 0.95
 
@@ -61,6 +64,13 @@ def of_grid(ends: Ends) -> dict[EndState, Share]:
             float(np.mean(possible)),
         )
     return shares
+
+
+def mixed(ends: Ends) -> BoolArray:
+    """Return which cells have corners that differ, of one less along each axis than ``ends``."""
+    corner = ends[:-1, :-1]
+    result: BoolArray = (corner != ends[1:, :-1]) | (corner != ends[:-1, 1:]) | (corner != ends[1:, 1:])
+    return result
 
 
 def _corners(chosen: np.ndarray) -> np.ndarray:

@@ -9,21 +9,8 @@ from pathlib import Path
 from typing import IO
 
 from compare.run.findings_store import version_of
-from reference_model.systems import DiscOnDisc, PinOnDisc, System
+from reference_model.systems import COLUMNS
 from reference_model.trajectory import Trajectory
-
-COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
-    PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
-    DiscOnDisc: (
-        ("x", "m"),
-        ("y", "m"),
-        ("angle", "rad"),
-        ("vx", "m/s"),
-        ("vy", "m/s"),
-        ("spin", "rad/s"),
-    ),
-}
-"""Name and unit of each state of a system."""
 
 
 def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:

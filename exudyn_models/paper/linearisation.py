@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import exudyn as exu
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from exudyn_models.paper.creep import creep_ratios
 from exudyn_models.paper.models.build import build
-from exudyn_models.solver.solver_run import quiet
-from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System, checked_state
+from exudyn_models.solver.linear_matrices import state_matrix
+from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
 REGULARISATION = 1e-12
 """ε in m/s: friction is Coulomb's wherever the contact slips by more."""
@@ -48,43 +45,3 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
     if isinstance(system, DiscOnDisc) and system.contact_points is None:
         matrix = np.delete(np.delete(matrix, ANGLE, 0), ANGLE, 1)
     return np.asarray(np.linalg.eigvals(matrix), dtype=complex)
-
-
-def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
-    """Return A of d(x, ẋ)/dt = A·(x, ẋ), small motions about the initial values of an assembled model.
-
-    x are its coordinates of second order, or ``own`` of them. Where loads or a friction's normal load are functions
-    of the user's that read the motion by themselves, they are taken as they are at that state.
-    """
-    mass, stiffness, damping = (part[own, own] for part in matrices_of_model(mbs))
-    lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
-    upper = np.hstack((np.zeros_like(mass), np.eye(len(mass))))
-    return np.vstack((upper, lower))
-
-
-def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return M, K and D of small motions M·ẍ + D·ẋ + K·x = 0 about the initial values at the time t in s.
-
-    Of an assembled model and all of its coordinates of second order. Its sensors do not notice.
-    """
-    solver: Any = exu.MainSolverStatic()  # its Jacobian holds no terms of a time integration
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = settings.solution.sensors.active = False
-    settings.staticSolver.loadStepStart = t
-    size = mbs.systemData.ODE2Size()
-
-    def part(matrix: Any) -> FloatArray:
-        return np.array(matrix)[:size, :size]
-
-    def jacobian(**factors: float) -> FloatArray:
-        zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
-        solver.ComputeJacobianODE2RHS(mbs, **(zero | factors))
-        return part(solver.GetSystemJacobian())
-
-    with quiet():
-        solver.InitializeSolver(mbs, settings)
-        solver.ComputeMassMatrix(mbs)
-        mass = part(solver.GetSystemMassMatrix())
-        stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
-        solver.FinalizeSolver(mbs, settings)
-    return mass, stiffness, damping

@@ -12,7 +12,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.paper.models.supported_body import Model
+from exudyn_models.solver.model import Model
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 

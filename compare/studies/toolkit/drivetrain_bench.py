@@ -16,7 +16,7 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import change_as_error
-from compare.studies.toolkit.common import ComplexArray
+from compare.claims.linearised_flow import ComplexArray
 from reference_model import Annulus, DiscOnDisc
 from reference_model.systems import FloatArray
 

@@ -14,7 +14,7 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, change_as_error
 from compare.claims.study import Data
-from compare.studies.toolkit.common import at_each, remaining_transient
+from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (
     BRAKE,
     RPM,
@@ -26,6 +26,7 @@ from compare.studies.toolkit.drivetrain_bench import (
     parameters_of,
     start_disc,
 )
+from compare.studies.toolkit.study_parameters import at_each
 from reference_model import SpinningEquilibrium, SpinningWhirl, self_centred_equilibria, whirls
 from reference_model.systems import FloatArray
 

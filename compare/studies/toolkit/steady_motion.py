@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import root
 
+from compare.claims.linearised_flow import rotated
 from compare.engines import Engine
-from compare.studies.toolkit.common import turned
 from reference_model.steady.stability import sliding_jacobian
 from reference_model.steady.steady_states import SelfCentredEquilibrium, Whirl
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
@@ -112,7 +112,7 @@ def steady_motion(
             return np.full(unknowns.shape, np.nan)
         state, time, turn = parts(unknowns)
         end = engine.simulate(disc, state, [0.0, time], tolerance=tolerance).at_end
-        away = turned(end, -turn) - state
+        away = rotated(end, -turn) - state
         return np.append(np.delete(away, ANGLE) / sizes, away[ANGLE] - share)
 
     first = np.append(np.delete(guess, ANGLE) / sizes, 1.0)
@@ -125,7 +125,7 @@ def steady_motion(
     state, time, turn = parts(found.x)
     times = np.linspace(0.0, time, SAMPLES + 1)
     states = engine.simulate(disc, state, times, tolerance=tolerance).states
-    return SteadyMotion(turned(states, -turn * times / time), time, turn / time, (share + turn) / time)
+    return SteadyMotion(rotated(states, -turn * times / time), time, turn / time, (share + turn) / time)
 
 
 def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float:
@@ -183,7 +183,7 @@ def mode_growth(
     # Two samples a radian: in these axes no slow mode oscillates much faster than with the natural frequency.
     times = np.linspace(0.0, duration, 2 * math.ceil(disc.natural_frequency * duration) + 1)
     outwards, inwards = (
-        turned(
+        rotated(
             engine.simulate(
                 disc, motion.state + sign * np.asarray(displacement), times, tolerance=tolerance
             ).states,

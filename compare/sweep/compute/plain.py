@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from compare.cli.trajectory_files import COLUMNS
 from reference_model import simulate
 from reference_model.ensemble import EndState
-from reference_model.systems import FloatArray, System
+from reference_model.systems import COLUMNS, FloatArray, System
 from reference_model.trajectory import Trajectory
 
 WATCHED = 0.5

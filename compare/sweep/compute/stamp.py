@@ -6,7 +6,6 @@ from compare.run.findings_store import stamp
 
 CODE = (
     "reference_model",
-    "compare.cli.trajectory_files",  # the order of a state's components
     "compare.sweep.define.axes",
     "compare.sweep.compute.curves",
     "compare.sweep.define.distributions",

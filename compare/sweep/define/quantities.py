@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import NamedTuple
 
-from compare.cli.trajectory_files import COLUMNS
-from reference_model.systems import System
+from reference_model.systems import COLUMNS, System
 
 _PARAMETERS = {
     "mass": ("m", "kg"),

@@ -15,8 +15,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from compare.claims.shares import Ends, mixed
+
 IntArray = NDArray[np.int64]
-Ends = NDArray[np.uint8]
 BoolArray = NDArray[np.bool_]
 
 Lines: TypeAlias = tuple[IntArray, IntArray]
@@ -109,13 +110,6 @@ def first_stride(shape: tuple[int, int], coarse: int) -> int:
     while (min(shape) - 1) // (2 * stride) + 1 >= coarse:
         stride *= 2
     return stride
-
-
-def mixed(ends: Ends) -> BoolArray:
-    """Return which cells have corners that differ, of one less along each axis than ``ends``."""
-    corner = ends[:-1, :-1]
-    result: BoolArray = (corner != ends[1:, :-1]) | (corner != ends[:-1, 1:]) | (corner != ends[1:, 1:])
-    return result
 
 
 def _cells(lines: IntArray, finer: IntArray) -> tuple[IntArray, IntArray]:

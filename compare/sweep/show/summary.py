@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from compare.cli.trajectory_files import COLUMNS
 from compare.sweep.compute.run import CHECK, RESULT
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.plan import Uncertainty
 from reference_model.ensemble import EndState
+from reference_model.systems import COLUMNS
 
 QUANTILES = (0.05, 0.5, 0.95)
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from exudyn_models.paper.models.disc_on_disc import build_disc_on_disc
 from exudyn_models.paper.models.pin_on_disc import build_pin_on_disc
-from exudyn_models.paper.models.supported_body import Model
 from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
+from exudyn_models.solver.model import Model
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 

@@ -7,8 +7,9 @@ from typing import Any
 import exudyn as exu
 import exudyn.itemInterface
 
-from exudyn_models.paper.models.supported_body import Model, add_master, add_supported_body, assembled
+from exudyn_models.paper.models.supported_body import add_master, add_supported_body, assembled
 from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
+from exudyn_models.solver.model import Model
 from reference_model.systems import DiscOnDisc, FloatArray
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import exudyn as exu
 
-from exudyn_models.paper.models.supported_body import Model, add_master, add_supported_body, assembled
+from exudyn_models.paper.models.supported_body import add_master, add_supported_body, assembled
 from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
+from exudyn_models.solver.model import Model
 from reference_model.systems import FloatArray, PinOnDisc
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
@@ -10,6 +9,7 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.parts.radial_support import add_radial_support
+from exudyn_models.solver.model import Model
 from reference_model.systems import FloatArray, System
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -20,28 +20,6 @@ MASTER_INERTIA = 1e30
 With this inertia a torque of 1 N m changes ω by 1e-30 rad/s in a second, so that ω stays what it is to the last bit.
 Constraints would do the same for implicit solvers only; explicit ones ignore them without a word.
 """
-
-
-@dataclass(frozen=True)
-class Model:
-    """An assembled model of a system, of which the state of one body is recorded.
-
-    Parameters
-    ----------
-    container, mbs : SystemContainer, MainSystem
-        ``container`` owns ``mbs`` and must live as long.
-    first, size : int
-        The body's coordinates that belong to the state: ``mbs``'s coordinates first, ..., first + size − 1.
-    sensors : tuple
-        They store the coordinates of the body's node and their first and second time derivatives at every step.
-
-    """
-
-    container: Any
-    mbs: Any
-    first: int
-    size: int
-    sensors: tuple[Any, Any, Any]
 
 
 def add_master(mbs: Any, speed: float) -> Any:

@@ -17,7 +17,7 @@ from compare.engines import Engine
 from compare.studies.disc.contact_laws.integrals import ring_by_quadrature, sum_of_points
 from compare.studies.disc.contact_laws.pictures import draw
 from compare.studies.disc.contact_laws.theory import theory
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 DISCS = {"ring": FIG11, "points6": replace(FIG11, contact_points=6)}

@@ -13,6 +13,7 @@ from scipy.interpolate import KroghInterpolator
 from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.fig08.pictures import draw
@@ -24,8 +25,8 @@ from compare.studies.disc.fig08.theory import (
     theory,
     with_load,
 )
-from compare.studies.toolkit.common import at_each, parameters_of, real_and_imaginary
 from compare.studies.toolkit.steady_motion import steady_motion
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import simulate
 from reference_model.formulas.disc import places_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, ROUNDING, refined
+from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.fig08.theory import equilibrium_of, with_load
@@ -30,8 +31,8 @@ from compare.studies.disc.fig09.theory import (
     theory,
 )
 from compare.studies.pin.sticking_domain.claims import first_release, safest_angle, stuck
-from compare.studies.toolkit.common import at_each, parameters_of, real_and_imaginary, turned
 from compare.studies.toolkit.steady_motion import mode_growth, sharpness, steady_motion
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, simulate, whirl_orbit
 from reference_model.formulas.disc import held_pin
 from reference_model.formulas.pin import release_time, sticking_radius
@@ -526,7 +527,7 @@ def stays_claim(engine: Engine, loads: Sequence[float]) -> tuple[Claim, FloatArr
             start, _ = stuck_at(with_load(RING, load), INSIDE)
             run = engine.simulate(with_load(RING, load), start, [0.0, revolution], tolerance=tolerance)
             slips[tolerance] += sum(phase.kind != "stick" for phase in run.phases)
-            away = turned(run.at_end, -2.0 * math.pi) - start
+            away = rotated(run.at_end, -2.0 * math.pi) - start
             size = float(np.hypot(*start[:2]))
             rows.append((*away[:3] / (size, size, 1.0), away[-1] / RING.disc_speed))
             found[i] = run.radius[-1], run.at_end[-1]
@@ -613,7 +614,7 @@ def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
     start, release = stuck_at(disc, OUTSIDE[-1])
     end = 1.5 * release
     run = engine.simulate(disc, start, [0.0, end], tolerance=tolerance)
-    away = turned(run.at_end, -disc.disc_speed * end) - start
+    away = rotated(run.at_end, -disc.disc_speed * end) - start
     return np.array([*away[:2] / np.hypot(*start[:2]), away[-1] / disc.disc_speed])
 
 

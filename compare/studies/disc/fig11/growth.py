@@ -12,10 +12,11 @@ from scipy.stats import t as student
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.engines import Engine
-from compare.studies.toolkit.common import ComplexArray, parameters_of, turned
 from compare.studies.toolkit.fig11_motion import DISCS, RING, SOURCE
 from compare.studies.toolkit.steady_motion import steady_motion
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import simulate, whirls
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.steady.stability import turning_frame_jacobian
@@ -127,7 +128,7 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     period, turn = motion.period, motion.frequency * motion.period
 
     def returned(state: FloatArray) -> FloatArray:
-        return turned(simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end, -turn)
+        return rotated(simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end, -turn)
 
     step = STEP * guess[0]
     columns = [
@@ -165,7 +166,7 @@ def deviation(
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
     outwards, inwards = (
-        turned(
+        rotated(
             engine.simulate(disc, whirl.displaced(sign * amplitude), times, tolerance=tolerance).states,
             -turns * whirl.turn,
         )
@@ -281,7 +282,7 @@ def departure(
     turns = np.arange(round(until / whirl.period) + 1)
     times = turns * whirl.period
     run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-8)
-    away = turned(run.states, -turns * whirl.turn) - whirl.state
+    away = rotated(run.states, -turns * whirl.turn) - whirl.state
     away[:, ANGLE] -= turns * whirl.advance
     sizes = np.abs(away @ whirl.projection) / whirl.radius
     return np.asarray(times, dtype=float), np.asarray(sizes)

@@ -15,11 +15,12 @@ from scipy.optimize import brentq
 from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import ComplexArray
 from compare.claims.paper_parameters import FIG8, FIG11
 from compare.claims.study import Findings
 from compare.engines import Engine
-from compare.studies.toolkit.common import ComplexArray, at_each, parameters_of
 from compare.studies.toolkit.fig11_motion import SOURCE, START, rates
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray

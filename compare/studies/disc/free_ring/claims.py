@@ -32,7 +32,7 @@ from compare.studies.disc.free_ring.theory import (
     nearness,
     theory,
 )
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Trajectory
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import DiscOnDisc, FloatArray

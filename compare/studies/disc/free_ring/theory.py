@@ -35,7 +35,7 @@ from scipy.optimize import brentq
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.study import Findings
-from compare.studies.toolkit.common import at_each
+from compare.studies.toolkit.study_parameters import at_each
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray

@@ -16,7 +16,7 @@ from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.disc.stability_map.theory import FINE, KINDS, LAWS, PLANES
-from compare.studies.toolkit.common import parameters_of
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import onset_load, whirls
 from reference_model.steady.bifurcation_curves import boundaries
 from reference_model.systems import DiscOnDisc, FloatArray

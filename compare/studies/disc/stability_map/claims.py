@@ -11,12 +11,13 @@ import numpy as np
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, Simulate
 from compare.studies.disc.stability_map.ends import ENDS, SLOWLY_SETTLED, Start, ends_of, kind_of_end
 from compare.studies.disc.stability_map.pictures import draw
 from compare.studies.disc.stability_map.theory import DISC, PLANES, SOURCE, K, at, theory
-from compare.studies.toolkit.common import parameters_of, real_and_imaginary, turned
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls
@@ -167,7 +168,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
             engine.simulate(disc, whirl.state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
             for sign in (1.0, -1.0)
         ]
-        end = np.delete(turned((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
+        end = np.delete(rotated((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
         return complex(np.log((left @ end) / (left @ (size * deviation))) / duration)
 
     parts, error = refined(lambda tolerance: real_and_imaginary(rate(DEVIATION, tolerance)), FLOW_TOLERANCE)

@@ -12,7 +12,7 @@ from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim
 from compare.claims.paper_parameters import FIG11
 from compare.engines import Simulate
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.systems import DiscOnDisc
 
 SETTLED = 1200.0

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from compare.studies.toolkit.common import ComplexArray
+from compare.claims.linearised_flow import ComplexArray
 from compare.studies.toolkit.drivetrain_bench import facings, natural_frequency
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN

@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, ROUNDING, refined
+from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.claims.study import Data
 from compare.studies.drivetrain.frozen.linear import (
     CarWhirl,
@@ -25,7 +26,6 @@ from compare.studies.drivetrain.frozen.linear import (
     state_matrix_of,
     whirl_under_surplus,
 )
-from compare.studies.toolkit.common import at_each, eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,
     RPM,
@@ -35,6 +35,7 @@ from compare.studies.toolkit.drivetrain_bench import (
     parameters_of,
     start_disc,
 )
+from compare.studies.toolkit.study_parameters import at_each
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -114,7 +115,8 @@ def build(
 
 def claim_of_linearisation(engine: str, car: Drivetrain) -> Claim:
     """Return what Exudyn's linearisation about the whirls says."""
-    from exudyn_models.paper.linearisation import REGULARISATION, state_matrix
+    from exudyn_models.paper.linearisation import REGULARISATION
+    from exudyn_models.solver.linear_matrices import state_matrix
 
     found, expected, errors = [], [], []
     for whirl in whirls_of(car):
@@ -143,7 +145,8 @@ def claim_of_linearisation(engine: str, car: Drivetrain) -> Claim:
 
 def claim_of_border(engine: str, car: Drivetrain) -> Claim:
     """Return the speeds above which Exudyn's linearisation has the modulation grow."""
-    from exudyn_models.paper.linearisation import REGULARISATION, state_matrix
+    from exudyn_models.paper.linearisation import REGULARISATION
+    from exudyn_models.solver.linear_matrices import state_matrix
 
     def by_reference(whirl: CarWhirl, rings: int = 16) -> FloatArray:
         return state_matrix_of(car, whirl, rings)

@@ -38,7 +38,8 @@ CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
 def claim_of_linearised_drivetrain(engine: str, car: Drivetrain) -> Claim:
     """Return what Exudyn's linearisation says; the flywheel is the car's own, free to turn."""
     from exudyn_models import build_drivetrain
-    from exudyn_models.paper.linearisation import REGULARISATION, state_matrix
+    from exudyn_models.paper.linearisation import REGULARISATION
+    from exudyn_models.solver.linear_matrices import state_matrix
 
     centred = replace(car, offset=0.0, unbalance=0.0)
 

@@ -19,8 +19,8 @@ from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.drivetrain.launch.pictures import draw
 from compare.studies.drivetrain.launch.theory import FullSlip, Launch, states_at
-from compare.studies.toolkit.common import at_each
 from compare.studies.toolkit.drivetrain_bench import RPM, SOURCE, balance_claim, parameters_of, passenger_car
+from compare.studies.toolkit.study_parameters import at_each
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

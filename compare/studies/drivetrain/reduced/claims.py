@@ -20,8 +20,8 @@ from compare.claims.paper_parameters import FIG8, FIG11
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, axis, curve, new_figure, points
-from compare.studies.toolkit.common import at_each, parameters_of
 from compare.studies.toolkit.fig11_motion import START
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Annulus, simulate
 from reference_model.contact.contact_law import Contact
 from reference_model.systems import DiscOnDisc, FloatArray

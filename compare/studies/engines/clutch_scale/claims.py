@@ -16,8 +16,9 @@ from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.engines.clutch_scale.units import CLUTCH
-from compare.studies.toolkit.common import at_each, parameters_of, remaining_transient
+from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.fig11_motion import RING, SIX, integrated
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues

@@ -16,17 +16,17 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING
+from compare.claims.linearised_flow import (
+    ComplexArray,
+    eigenvalues_with_rounding,
+    matched,
+    real_and_imaginary,
+)
 from compare.claims.paper_parameters import FIG5, FIG8, FIG11
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure
-from compare.studies.toolkit.common import (
-    ComplexArray,
-    eigenvalues_with_rounding,
-    matched,
-    parameters_of,
-    real_and_imaginary,
-)
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import self_centred_equilibria
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import FloatArray, System

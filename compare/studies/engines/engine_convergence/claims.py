@@ -19,7 +19,7 @@ from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.engine_convergence.pictures import draw
 from compare.studies.engines.engine_convergence.solvers import SOLVERS
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray

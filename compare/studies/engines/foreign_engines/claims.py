@@ -24,7 +24,7 @@ from compare.studies.engines.foreign_engines.laws import (
 )
 from compare.studies.engines.foreign_engines.pictures import draw
 from compare.studies.engines.foreign_engines.recorded import ERROR, STEPS, estimate, recorded_claims
-from compare.studies.toolkit.common import parameters_of
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.systems import FloatArray
 
 SECONDS = COLUMNS.index("seconds")

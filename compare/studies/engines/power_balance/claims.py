@@ -15,7 +15,7 @@ from compare.claims.paper_parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FI
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
-from compare.studies.toolkit.common import parameters_of
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System

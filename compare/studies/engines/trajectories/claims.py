@@ -30,7 +30,7 @@ from compare.studies.engines.trajectories.motions import (
     times_of,
 )
 from compare.studies.engines.trajectories.stick import stick_claims
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.contact.contact_law import contact_of
 from reference_model.support import Support

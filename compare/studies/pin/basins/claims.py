@@ -20,7 +20,7 @@ from compare.claims.shares import of_grid, of_sample
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.basins.pictures import draw
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import StickSlipOrbit, basin_boundary, boundary_point, simulate, stick_slip_orbits
 from reference_model.orbits.basin_boundary import Sides
 from reference_model.orbits.release_map import Release, Releases

@@ -13,19 +13,18 @@ import numpy as np
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
-from compare.claims.study import Data, Findings, Study
-from compare.engines import Engine
-from compare.figures import GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.common import (
+from compare.claims.linearised_flow import (
     ComplexArray,
-    at_each,
     eigenvalues_with_rounding,
     matched,
     measured_eigenvalues,
-    parameters_of,
     real_and_imaginary,
-    remaining_transient,
 )
+from compare.claims.study import Data, Findings, Study
+from compare.engines import Engine
+from compare.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     equilibrium_position,
     largest_load_with_equilibrium,

@@ -14,7 +14,7 @@ from compare.claims.paper_parameters import FIG4
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.common import parameters_of
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Orbit, PinOnDisc, whirl_orbit
 from reference_model.formulas.pin import (
     first_order_whirl_response,

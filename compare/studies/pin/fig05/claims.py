@@ -17,7 +17,8 @@ from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.fig05.pictures import animate, draw
-from compare.studies.toolkit.common import parameters_of, remaining_transient
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position, release_time
 from reference_model.motion.pin_equations import simulate_polar_form

@@ -19,7 +19,7 @@ from compare.claims.paper_parameters import FIG4
 from compare.claims.study import Data, Findings, Study
 from compare.engines import USUAL_TOLERANCE, Engine
 from compare.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.common import at_each, parameters_of
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.formulas.pin import (
     equilibrium_position,

@@ -16,8 +16,8 @@ from compare.claims.paper_parameters import CENTRED, FIG5, FIG5_STARTS, FIG9
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.common import at_each, parameters_of
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, simulate, whirl_orbit, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius

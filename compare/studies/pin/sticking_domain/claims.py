@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import rotated
 from compare.claims.paper_parameters import FIG4
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.common import at_each, parameters_of, turned
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     release_time,
     resonant_disc_speed,
@@ -121,7 +122,7 @@ def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim
             end = REVOLUTIONS * 2.0 * math.pi / speed
             run = engine.simulate(pin, start, [0.0, end], tolerance=tolerance)
             slides[tolerance].append(any(phase.kind == "slip" for phase in run.phases))
-            on_disc = turned(run.at_end, -REVOLUTIONS * 2.0 * math.pi)
+            on_disc = rotated(run.at_end, -REVOLUTIONS * 2.0 * math.pi)
             found.append((on_disc - start)[:2] / radius)
         return np.array(found)
 

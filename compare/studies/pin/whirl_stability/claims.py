@@ -13,20 +13,19 @@ from scipy.linalg import expm
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import (
+    ComplexArray,
+    eigenvalues_with_rounding,
+    matched,
+    measured_eigenvalues,
+    real_and_imaginary,
+)
 from compare.claims.paper_parameters import CENTRED
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.whirl_stability.pictures import draw
-from compare.studies.toolkit.common import (
-    ComplexArray,
-    at_each,
-    eigenvalues_with_rounding,
-    matched,
-    measured_eigenvalues,
-    parameters_of,
-    real_and_imaginary,
-    remaining_transient,
-)
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     characteristic_coefficients,
     coefficient_margins,

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compare.claims.linearised_flow import matched, measured_eigenvalues, rotated
 from compare.claims.paper_parameters import FIG5, FIG8, FIG9, FIG11
 from compare.engines import engines
-from compare.studies.toolkit.common import matched, measured_eigenvalues, parameters_of, turned
+from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
 
@@ -33,20 +34,20 @@ def test_turning_a_state_keeps_radius_speed_and_spin(angle):
     pin, disc = np.array([1.0, 2.0, 3.0, -4.0]), np.array([1.0, 2.0, 0.5, 3.0, -4.0, 7.0])
     c, s = np.cos(angle), np.sin(angle)
     expected = [c - 2.0 * s, s + 2.0 * c, 3.0 * c + 4.0 * s, 3.0 * s - 4.0 * c]
-    assert turned(pin, angle) == pytest.approx(expected)
-    assert turned(disc, angle) == pytest.approx([*expected[:2], 0.5 + angle, *expected[2:], 7.0])
-    assert turned(turned(disc, angle), -angle) == pytest.approx(disc)
+    assert rotated(pin, angle) == pytest.approx(expected)
+    assert rotated(disc, angle) == pytest.approx([*expected[:2], 0.5 + angle, *expected[2:], 7.0])
+    assert rotated(rotated(disc, angle), -angle) == pytest.approx(disc)
     assert disc[2] == 0.5  # the state itself stays as it is
 
 
 def test_many_states_are_turned_by_one_angle_or_by_one_each():
     discs = np.arange(18.0).reshape(3, 6)
     angles = np.array([0.1, 0.2, 0.3])
-    each = turned(discs, angles)
+    each = rotated(discs, angles)
     for disc, angle, result in zip(discs, angles, each, strict=True):
-        assert result == pytest.approx(turned(disc, angle))
-    assert turned(discs[0], angles)[2] == pytest.approx(turned(discs[0], 0.3))
-    assert turned(discs, 0.1)[2] == pytest.approx(turned(discs[2], 0.1))
+        assert result == pytest.approx(rotated(disc, angle))
+    assert rotated(discs[0], angles)[2] == pytest.approx(rotated(discs[0], 0.3))
+    assert rotated(discs, 0.1)[2] == pytest.approx(rotated(discs[2], 0.1))
 
 
 @pytest.mark.parametrize("name", ["reference", "exudyn"])

@@ -1,10 +1,8 @@
-"""What several studies share: parameters of claims, remaining transients, eigenvalues from simulations."""
+"""The linearised flow of an engine, its eigenvalues from simulations, and what eigenvalues need to be compared."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Collection
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -19,34 +17,11 @@ ComplexArray = NDArray[np.complex128]
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
 
-BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
-"""Parameters of a support that are zero in the paper."""
-
 FLOW_TOLERANCE = 1e-11
 """Of the simulations that are subtracted from each other."""
 
 
-def parameters_of(
-    system: System, *, without: Collection[str] = (), **changes: float
-) -> dict[str, float | str]:
-    """Return the parameters of ``system`` for a claim, but those that it sweeps; ``changes`` adds or replaces some.
-
-    A disc without contact points has "continuous ring" in their place; what no linear support has is left out.
-    """
-    parameters: dict[str, float | str] = {
-        name: "continuous ring" if value is None else value
-        for name, value in asdict(system).items()
-        if name not in BEYOND_THE_SPRING or value != 0.0
-    }
-    return {name: value for name, value in parameters.items() if name not in without} | changes
-
-
-def at_each(name: str, values: ArrayLike) -> str:
-    """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
-    return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
-
-
-def turned(states: ArrayLike, angle: ArrayLike) -> FloatArray:
+def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
     """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) turned about the axis by ``angle`` in rad."""
     states, angle = np.asarray(states, dtype=float), np.asarray(angle, dtype=float)
     result = np.array(np.broadcast_to(states, np.broadcast_shapes(states.shape, (*angle.shape, 1))))
@@ -57,29 +32,6 @@ def turned(states: ArrayLike, angle: ArrayLike) -> FloatArray:
     if half == ANGLE + 1:
         result[..., ANGLE] += angle
     return result
-
-
-def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
-    """Return how far ``end`` can still be from the steady state that it decays to.
-
-    A deviation a·exp(−rt) changes by a·(exp(r·delay) − 1) in the last ``delay`` seconds, a being its size at
-    the end. So the change that is seen gives what is left.
-
-    Parameters
-    ----------
-    earlier : array of shape (n, ...)
-        The quantity over a period of its oscillation that ends ``delay`` seconds before the end: the largest
-        change from there counts.
-    end : array of shape (...)
-        The quantity at the end.
-    rate : float
-        Decay rate r in 1/s of the slowest mode.
-    delay : float
-        In s.
-
-    """
-    change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
-    return np.asarray(change / np.expm1(rate * delay))
 
 
 def measured_eigenvalues(
@@ -129,7 +81,7 @@ def measured_eigenvalues(
                 engine.simulate(system, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
                 for sign in (1.0, -1.0)
             ]
-            change = turned(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i])
+            change = rotated(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i])
             columns.append(change[moving])
         return np.column_stack(columns)
 
