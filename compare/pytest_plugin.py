@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -54,6 +55,14 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         choices=("quick", "full"),
         default="full",
         help="all studies, or those that take seconds (default: full)",
+    )
+    group.addoption(
+        "--study",
+        dest="friction_discs_studies",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="study to measure, as friction-discs list names it; several times for several (default: all)",
     )
     group.addoption(
         "--study-limit",
@@ -111,15 +120,21 @@ def pytest_report_header(config: pytest.Config) -> str | None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
     """Take the modules of the studies, where an engine is to be judged."""
-    if file_path.parent != STUDIES or file_path.suffix != ".py" or not _engines(parent.config):
+    if (
+        not file_path.is_relative_to(STUDIES)
+        or file_path.name != "__init__.py"
+        or not _engines(parent.config)
+    ):
         return None
     from compare.studies import STUDIES as ALL
 
     quick = parent.config.getoption("friction_discs_level") == "quick"
-    module = f"compare.studies.{file_path.stem}"
-    found = (study for study in ALL if study.measure.__module__ == module and (study.quick or not quick))
-    study = next(found, None)
-    return None if study is None else StudyFile.of(parent, file_path, study)
+    wanted = parent.config.getoption("friction_discs_studies")
+    module = ".".join(("compare.studies", *file_path.parent.relative_to(STUDIES).parts))
+    study = getattr(import_module(module), "STUDY", None)
+    if study not in ALL or (quick and not study.quick) or (wanted and study.name not in wanted):
+        return None
+    return StudyFile.of(parent, file_path, study)
 
 
 class StudyFile(pytest.File):
@@ -140,7 +155,7 @@ class StudyFile(pytest.File):
 
         names = [name for name in _engines(self.config) if not self.study.only or name in self.study.only]
         for name in names:
-            for sentence in sentences()[self.study.name]:
+            for sentence in sentences(self.study):
                 yield ClaimTest.of(self, name, sentence, alone=len(_engines(self.config)) == 1)
 
 
@@ -223,7 +238,10 @@ def _measured(study: Study, name: str) -> Findings:
     from compare.run.runner import measured
     from compare.studies.claim_list import listed_claims
 
-    findings, listed = measured(study, engines([name])[0]), listed_claims()[study.name]
+    findings = measured(study, engines([name])[0])
+    if study.by_hand is None:
+        return findings
+    listed = listed_claims()[study.name]
     if unlisted := sorted(
         {
             claim.sentence

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Literal, get_args
@@ -124,6 +124,10 @@ class Claim:
     named : mapping
         Names by which texts quote an element (its flat index), or all of them at once (None), see
         ``compare.report.quotes``.
+    identity : str
+        What the claim is called for good, as "fig06/rests"; "" where it is made by hand.
+    axes : tuple
+        Names of the places along each axis of the numbers, () for an axis where they have none; () for none at all.
 
     """
 
@@ -142,6 +146,8 @@ class Claim:
     implied_by: str = ""
     answers: bool = False
     named: Mapping[str, int | None] = field(default_factory=dict)
+    identity: str = ""
+    axes: tuple[tuple[str, ...], ...] = ()
 
     def __init__(
         self,
@@ -161,6 +167,8 @@ class Claim:
         implied_by: str = "",
         answers: bool = False,
         named: Mapping[str, int | None] | None = None,
+        identity: str = "",
+        axes: Sequence[Sequence[str]] = (),
     ) -> None:
         values = {
             "sentence": sentence,
@@ -174,10 +182,12 @@ class Claim:
             "source": source,
             "unit": unit,
             "note": note,
-            "basis": _usual_basis(kind, engine) if basis is None else basis,
+            "basis": usual_basis(kind, engine) if basis is None else basis,
             "implied_by": implied_by,
             "answers": answers,
             "named": dict(named or {}),
+            "identity": identity,
+            "axes": tuple(tuple(names) for names in axes),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -202,6 +212,11 @@ class Claim:
                 f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
                 f"predicted {self.predicted.shape}"
             )
+
+    def element(self, index: int) -> str:
+        """Return in words which element ``index`` (flat) is, as "μN = 0.05 N, x in m"; "" where nothing names it."""
+        places = np.unravel_index(index, self.predicted.shape)
+        return ", ".join(names[i] for names, i in zip(self.axes, places, strict=False) if names)
 
     @property
     def difference(self) -> FloatArray:
@@ -247,7 +262,8 @@ def _place_of_largest(values: FloatArray) -> int:
     return int(np.argmax(np.nan_to_num(values, nan=np.inf, posinf=np.inf)))
 
 
-def _usual_basis(kind: Kind, engine: str) -> Basis:
+def usual_basis(kind: Kind, engine: str) -> Basis:
+    """Return what evidence a claim of this kind is, where nothing else is said of it."""
     if kind == "trajectory":
         return "reference"
     return "algebra" if engine == THEORY else "independent"

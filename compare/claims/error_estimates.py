@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,9 +29,30 @@ ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
 
 
+class Measurement(NamedTuple):
+    """A number, or an array of them, and the error of each."""
+
+    value: FloatArray
+    error: FloatArray
+
+    @property
+    def largest(self) -> float:
+        """The largest error."""
+        return float(np.max(self.error))
+
+    @property
+    def rows(self) -> FloatArray:
+        """The largest error of each row (along the last axis), for all numbers of the row; of the errors' shape."""
+        return np.broadcast_to(np.max(self.error, axis=-1, keepdims=True), self.error.shape)
+
+    def plus(self, error: float | FloatArray) -> Measurement:
+        """Return the same numbers with errors larger by ``error``, of any shape that fits."""
+        return Measurement(self.value, np.asarray(self.error + error))
+
+
 def refined(
     quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9, *, alike: bool = True
-) -> tuple[FloatArray, FloatArray]:
+) -> Measurement:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than the
@@ -45,7 +67,7 @@ def refined(
         other = np.asarray(quantity(factor * tolerance), dtype=float)
         if not np.array_equal(found, other, equal_nan=True):
             break
-    return found, change_as_error(found, other, alike=alike)
+    return Measurement(found, change_as_error(found, other, alike=alike))
 
 
 def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import inspect
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from compare.claims.claim import Claim
-from compare.engines import Engine
-from reference_model.systems import FloatArray
+import numpy as np
+
+from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, usual_basis
+from compare.claims.measured import Measured
+from compare.claims.parameters import parameters_of
+from compare.claims.prose import Prose
+from compare.engines import Engine, UnsupportedSystemError
+from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Data = dict[str, FloatArray]
+
+Few = Mapping[str, Mapping[str, Any]]
+
+Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +79,75 @@ class Recorded:
 
 
 @dataclass(frozen=True)
+class Declared:
+    """A claim as it is known before anything is measured: all that does not vary with the engine.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(engine) -> Measured``, or without an engine for a claim of the theory; None where the claim is not
+        made of an engine. Of a family it takes one of ``each`` besides.
+    sentence, equation, kind, unit, note, basis, implied_by, named
+        As in :class:`compare.claims.claim.Claim`; in a family the sentence has braces for the name of each, and
+        ``implied_by`` is the sentence of the same one.
+    resolution : float, optional
+        The largest total error with which agreement still says something; None where the function says it.
+    swept : tuple of str
+        Parameters of the system that are varied, so that it stands for none of their values.
+    each : mapping
+        Of a family the name and the value of each; empty for a single claim.
+
+    """
+
+    function: Callable[..., Measured | None]
+    sentence: str
+    equation: str
+    kind: Kind
+    unit: str
+    resolution: float | None
+    note: str
+    basis: Basis
+    implied_by: str
+    named: Mapping[str, int | None]
+    swept: tuple[str, ...]
+    each: Mapping[str, Any]
+
+    @property
+    def of_engine(self) -> bool:
+        """Whether an engine takes part."""
+        return next(iter(inspect.signature(self.function).parameters), "") == "engine"
+
+    def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
+        """Yield the name of each member of the family and what its function takes besides the engine."""
+        if not self.each:
+            yield "", ()
+        for name, value in self.each.items():
+            yield name, (value,)
+
+    def sentence_of(self, case: str) -> str:
+        """Return the sentence of one member of the family."""
+        return self.sentence.format(case) if self.each else self.sentence
+
+    def identity(self, study: str, case: str) -> str:
+        """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
+        parts = (study, self.function.__name__.strip("_"), case)
+        return "/".join(_slug(part) for part in parts if part)
+
+
+def _slug(words: str) -> str:
+    return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
+
+
+def nothing_drawn(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw nothing."""
+    return {}
+
+
+@dataclass(frozen=True, eq=False)
 class Study:
     """One figure or group of statements.
+
+    Its claims are declared on the functions that measure them, see ``claim``.
 
     Parameters
     ----------
@@ -79,14 +157,15 @@ class Study:
         A line.
     paper : str
         What the paper says, in a paragraph.
-    measure : callable
-        ``measure(engine) -> Findings``; called once for each engine, in a process of its own. Where it
-        simulates what the engine does not promise, nothing is found, and the report says so.
+    by_hand : callable, optional
+        ``by_hand(engine) -> Findings`` in place of declared claims, where a study makes them by itself.
     draw : callable
         ``draw(data) -> {figure name: matplotlib Figure}``, where ``data`` maps engine names (those that
         found any, and "theory") to the ``Findings.data`` of each; must cope with a missing engine.
     theory : callable, optional
-        ``theory() -> Findings``: statements in which no simulation takes part, and curves of formulas.
+        ``theory() -> Findings``: statements in which no simulation takes part, by hand.
+    curves : callable, optional
+        ``curves() -> Data``: curves of formulas, for the figures.
     figures : dict
         Caption for each figure and animation name.
     only : tuple of str
@@ -98,6 +177,10 @@ class Study:
     finding : str
         What the paper leaves open and the study answers, in a sentence or two for the first screen; shown
         while all claims of the study agree.
+    source : str
+        Where the parameters come from: a figure, or an assumption in words.
+    system : PinOnDisc or DiscOnDisc, optional
+        The one whose parameters repeat the measurements.
     seconds : float
         About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
     tables : callable, optional
@@ -109,7 +192,9 @@ class Study:
         Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
     contact : bool
         Whether an engine's code of contact decides in it, see ``Engine.contact_only``. Where other parts decide
-        too, ``measure`` leaves those out for an engine of which that is true.
+        too, its claims leave those out for an engine of which that is true.
+    declared : list of Declared
+        The claims, in the order of the report.
 
     The callables are functions of a module (no lambdas), because they are sent to other processes.
 
@@ -118,16 +203,176 @@ class Study:
     name: str
     title: str
     paper: str
-    measure: Callable[[Engine], Findings]
-    draw: Callable[[Mapping[str, Data]], dict[str, Figure]]
+    by_hand: Callable[[Engine], Findings] | None = None
+    draw: Callable[[Mapping[str, Data]], dict[str, Figure]] = nothing_drawn
     theory: Callable[[], Findings] | None = None
+    curves: Callable[..., Mapping[str, Any]] | None = None
     figures: Mapping[str, str] = field(default_factory=dict)
     only: tuple[str, ...] = ()
     animations: Callable[[Mapping[str, Data]], dict[str, bytes]] | None = None
     section: str = ""
     finding: str = ""
+    source: str = ""
+    system: System | None = None
     seconds: float = 1.0
     tables: Callable[[], tuple[Table, ...]] | None = None
     recorded: Callable[[], tuple[Recorded, ...]] | None = None
     quick: bool = False
     contact: bool = False
+    declared: list[Declared] = field(default_factory=list)
+
+    @classmethod
+    def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
+        """Return the study whose prose is ``study.md`` beside ``file``, or in the folder above it.
+
+        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
+        """
+        prose = Prose.of(Path(file), words or {})
+        return cls(
+            name=name,
+            title=prose.title,
+            paper=prose.paper,
+            section=prose.section,
+            finding=prose.finding,
+            figures=prose.figures,
+            **more,
+        )
+
+    def claim(
+        self,
+        sentence: str,
+        *,
+        equation: str = "",
+        kind: Kind = "formula",
+        unit: str = "",
+        resolution: float | None = None,
+        note: str = "",
+        basis: Basis | None = None,
+        implied_by: Callable[..., Any] | None = None,
+        named: Mapping[str, int | None] | None = None,
+        swept: Sequence[str] = (),
+        each: Mapping[str, Any] | Sequence[str] = (),
+    ) -> Callable[[Measure], Measure]:
+        """Declare that the decorated function measures ``sentence``; the function stays as it is.
+
+        It takes an ``engine`` first, or none for a claim of the theory. All else is as in :class:`Declared`;
+        ``implied_by`` is the function of another claim of this study, and ``each`` may be a sequence of names.
+        """
+
+        def declare(function: Measure) -> Measure:
+            of_engine = next(iter(inspect.signature(function).parameters), "") == "engine"
+            declared = Declared(
+                function=function,
+                sentence=sentence,
+                equation=equation,
+                kind=kind,
+                unit=unit,
+                resolution=resolution,
+                note=note,
+                basis=basis or usual_basis(kind, "" if of_engine else THEORY),
+                implied_by="" if implied_by is None else self._declared_by(implied_by).sentence,
+                named=dict(named or {}),
+                swept=tuple(swept),
+                each=dict(each) if isinstance(each, Mapping) else {name: name for name in each},
+            )
+            names = {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
+            for case, _ in declared.cases():
+                if declared.identity(self.name, case) in names:
+                    raise ValueError(f"{self.name} has two claims {declared.identity(self.name, case)}")
+            self.declared.append(declared)
+            return function
+
+        return declare
+
+    def _declared_by(self, function: Callable[..., Any]) -> Declared:
+        return next(one for one in self.declared if one.function is function)
+
+    @property
+    def has_theory(self) -> bool:
+        """Whether there is anything to find without an engine."""
+        return bool(self.theory or self.curves) or any(not one.of_engine for one in self.declared)
+
+    def measure(self, engine: Engine, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims on ``engine``.
+
+        Parameters
+        ----------
+        engine : Engine
+            Where it does not promise what a claim needs, that claim is missing, and the findings say so.
+        few : mapping, optional
+            Arguments of claims' functions by the functions' names, to measure less than all.
+        only : collection of str
+            Names of the functions that are to be called; empty for all.
+
+        """
+        if self.by_hand is not None:
+            return self.by_hand(engine)
+        return self._findings(engine, few or {}, only)
+
+    def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
+        found = self._findings(None, few or {}, only) if self.theory is None else self.theory()
+        if self.curves is not None and not only:
+            found.data.update(_arrays(self.curves(**(few or {}).get("curves", {}))))
+        return found
+
+    def _findings(self, engine: Engine | None, few: Few, only: Collection[str]) -> Findings:
+        claims: list[Claim] = []
+        data: Data = {}
+        lacking: list[str] = []
+        for declared in self.declared:
+            name = declared.function.__name__
+            if declared.of_engine != (engine is not None) or (only and name not in only):
+                continue
+            for case, arguments in declared.cases():
+                given = arguments if engine is None else (engine, *arguments)
+                try:
+                    measured = declared.function(*given, **few.get(name, {}))
+                except UnsupportedSystemError as error:
+                    lacking.append(str(error))
+                    continue
+                if measured is not None:
+                    claims.append(self._claim_of(declared, case, measured, engine))
+                    data |= _arrays(measured.data)
+        return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
+
+    def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
+        system = measured.system or self.system
+        known = {} if system is None else parameters_of(system, without=declared.swept)
+        resolution = declared.resolution if measured.resolution is None else measured.resolution
+        if resolution is None:
+            raise ValueError(
+                f"claim {declared.sentence!r}: neither declaration nor measurement has a resolution"
+            )
+        return Claim(
+            declared.sentence_of(case),
+            equation=declared.equation,
+            kind=declared.kind,
+            engine=THEORY if engine is None else engine.name,
+            predicted=measured.predicted,
+            measured=measured.value,
+            budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution),
+            parameters=known | dict(measured.parameters),
+            source=measured.source or self.source,
+            unit=declared.unit,
+            note=" ".join(note for note in (declared.note, measured.note) if note),
+            basis=declared.basis,
+            implied_by=declared.implied_by.format(case) if declared.each else declared.implied_by,
+            answers=measured.answers,
+            named={**declared.named, **measured.named},
+            identity=declared.identity(self.name, case),
+            axes=measured.axes,
+        )
+
+    def sentences(self) -> dict[str, Declared]:
+        """Return the sentences that are claimed of engines, known without measuring."""
+        return {
+            declared.sentence_of(case): declared
+            for declared in self.declared
+            if declared.of_engine
+            for case, _ in declared.cases()
+        }
+
+
+def _arrays(data: Mapping[str, Any]) -> Data:
+    return {name: np.asarray(values) for name, values in data.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims.claim import Verdict
-from compare.claims.study import Data, Findings, Study
+from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.claims import measure
 from compare.studies.engines.trajectories.motions import MOTIONS
@@ -20,7 +20,7 @@ from reference_model.systems import DiscOnDisc, PinOnDisc, System
 from reference_model.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 ERRORS = 10.0 ** (-0.5 * np.arange(2, 25))
 """Relative errors that are tried, from the largest to the smallest: powers of √10."""
@@ -112,18 +112,12 @@ def detected(outcomes: Iterable[object]) -> tuple[Detected, ...]:
     return tuple(found)
 
 
-def no_figures(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw nothing: what is measured for the judge is shown in tables."""
-    return {}
-
-
 DETECTION = tuple(
     Study(
         name=f"detection-limits-{body}",
         title=f"The smallest error of each parameter of a {body} that is noticed",
         paper="An engine with one parameter slightly wrong, on the motions of the study of trajectories.",
-        measure=functools.partial(measure_limits, body),
-        draw=no_figures,
+        by_hand=functools.partial(measure_limits, body),
         seconds=30.0,
     )
     for body in PARAMETERS

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from compare.claims.claim import Kind, Verdict
-from compare.claims.study import Findings, Study
+from compare.claims.study import Findings, Study, nothing_drawn
 from compare.engines import Engine
-from compare.judge.detection import DETECTION, Detected, detected, no_figures
+from compare.judge.detection import DETECTION, Detected, detected
 from compare.judge.repetitions import REPEATED, REPETITIONS
 from compare.report.stamp import platform_stamp
 from compare.run.runner import Run, run
@@ -200,7 +200,8 @@ def _of_right(repeated: tuple[Study, ...]) -> str:
 
 def _only_measured(study: Study) -> Study:
     """Return the study without theory and pictures."""
-    return replace(study, theory=None, draw=no_figures, animations=None)
+    declared = [claim for claim in study.declared if claim.of_engine]
+    return replace(study, theory=None, curves=None, draw=nothing_drawn, animations=None, declared=declared)
 
 
 def _kinds(measured: Run, study: str, right: tuple[Engine, ...]) -> tuple[Kind, ...]:

@@ -9,7 +9,6 @@ from numpy.random import Generator
 
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
-from compare.judge.detection import no_figures
 from compare.studies.engines.error_estimates.problems import any_disc, any_pin, any_start
 from compare.studies.engines.trajectories.claims import measure
 from compare.studies.engines.trajectories.motions import EXACT, Motion
@@ -65,7 +64,6 @@ REPEATED = Study(
     name="random-parameters",
     title="Right engines with random parameters",
     paper="Not in the paper: its parameters are a few of many.",
-    measure=measure_repeatedly,
-    draw=no_figures,
+    by_hand=measure_repeatedly,
     seconds=20.0,
 )

@@ -135,6 +135,8 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "implied_by": claim.implied_by,
         "answers": claim.answers,
         "named": dict(claim.named),
+        "id": claim.identity,
+        "axes": [list(names) for names in claim.axes],
     }
 
 
@@ -160,6 +162,8 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
         implied_by=content["implied_by"],
         answers=content["answers"],
         named=content["named"],
+        identity=content["id"],
+        axes=content["axes"],
     )
 
 

@@ -69,7 +69,7 @@ class Run:
 
     def columns(self, study: Study) -> tuple[str, ...]:
         """Return who takes part in ``study``: "theory" if it has any, and the engines that it is about."""
-        theory = (THEORY,) if study.theory is not None else ()
+        theory = (THEORY,) if study.has_theory else ()
         return theory + tuple(name for name in self.engines if self._takes_part(name, study))
 
     def _takes_part(self, name: str, study: Study) -> bool:
@@ -185,7 +185,9 @@ class _Runner:
     def _stamp(self, study: Study, engine: Engine | None) -> str | None:
         """Return what the findings depend on, None where that is not known."""
         what = (
-            {study.name: study.theory} if engine is None else {study.name: study.measure, engine.name: engine}
+            {study.name: study.measure_theory}
+            if engine is None
+            else {study.name: study.measure, engine.name: engine}
         )
         prints = [self._fingerprint(name, thing) for name, thing in what.items()]
         return None if None in prints else stamp(*filter(None, prints))
@@ -232,8 +234,8 @@ def measured(study: Study, engine: Engine | None) -> Findings:
             findings = study.measure(engine)
         except UnsupportedSystemError as error:
             findings = Findings(not_simulated=str(error))
-    elif study.theory is not None:
-        findings = study.theory()
+    elif study.has_theory:
+        findings = study.measure_theory()
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
     return findings

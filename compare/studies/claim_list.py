@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from compare.claims.claim import THEORY, Basis
+from compare.claims.study import Study
 
 PATH = Path(__file__).with_name("claims.json")
 
@@ -37,9 +38,9 @@ def listed_claims() -> Claims:
     return claims
 
 
-def sentences() -> dict[str, list[str]]:
-    """Return the sentences that each study claims of engines, by the study's name."""
-    return {study: list(claims) for study, claims in listed_claims().items()}
+def sentences(study: Study) -> list[str]:
+    """Return the sentences that the study claims of engines."""
+    return list(study.sentences()) if study.by_hand is None else list(listed_claims()[study.name])
 
 
 def renewed(listed: Claims, results: Path) -> Claims:

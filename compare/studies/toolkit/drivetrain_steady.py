@@ -13,6 +13,7 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, change_as_error
+from compare.claims.parameters import at_each
 from compare.claims.study import Data
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (
@@ -26,7 +27,6 @@ from compare.studies.toolkit.drivetrain_bench import (
     parameters_of,
     start_disc,
 )
-from compare.studies.toolkit.study_parameters import at_each
 from reference_model import SpinningEquilibrium, SpinningWhirl, self_centred_equilibria, whirls
 from reference_model.systems import FloatArray
 

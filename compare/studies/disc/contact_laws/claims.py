@@ -12,12 +12,12 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.contact_laws.integrals import ring_by_quadrature, sum_of_points
 from compare.studies.disc.contact_laws.pictures import draw
 from compare.studies.disc.contact_laws.theory import theory
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 DISCS = {"ring": FIG11, "points6": replace(FIG11, contact_points=6)}
@@ -132,7 +132,7 @@ STUDY = Study(
         "points on the circle, in its analysis the average of three terms of an expansion (22), which gives (23). "
         "The integral (20) has a closed form by complete elliptic integrals, and so all three can be compared."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

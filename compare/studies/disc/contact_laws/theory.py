@@ -10,9 +10,9 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING, observed_exponent
 from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import at_each
 from compare.claims.study import Data, Findings
 from compare.studies.disc.contact_laws.integrals import average_of_expansion, ring_by_quadrature
-from compare.studies.toolkit.study_parameters import at_each
 from reference_model.contact.annulus import ORDER, SLOPE_ORDER, Annulus
 from reference_model.contact.contact_law import Contact, PointsOnRing, Ring, ThreeTermRing
 from reference_model.systems import FloatArray

@@ -14,6 +14,7 @@ from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.linearised_flow import real_and_imaginary
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.fig08.pictures import draw
@@ -26,7 +27,6 @@ from compare.studies.disc.fig08.theory import (
     with_load,
 )
 from compare.studies.toolkit.steady_motion import steady_motion
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import simulate
 from reference_model.formulas.disc import places_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle
@@ -305,7 +305,7 @@ STUDY = Study(
         "bracket; the line of the figure is that of the corrected one here. Because the moment of the shaft takes "
         "a part of the friction, the equilibrium ends a little above the C·X0 of (5)."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

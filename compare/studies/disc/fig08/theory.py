@@ -13,8 +13,8 @@ from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.paper_parameters import FIG8
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import self_centred_equilibria
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.formulas.disc import (

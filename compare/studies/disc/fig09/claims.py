@@ -14,6 +14,7 @@ from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, ROUNDING, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.fig08.theory import equilibrium_of, with_load
@@ -32,7 +33,6 @@ from compare.studies.disc.fig09.theory import (
 )
 from compare.studies.pin.sticking_domain.claims import first_release, safest_angle, stuck
 from compare.studies.toolkit.steady_motion import mode_growth, sharpness, steady_motion
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, simulate, whirl_orbit
 from reference_model.formulas.disc import held_pin
 from reference_model.formulas.pin import release_time, sticking_radius
@@ -662,7 +662,7 @@ STUDY = Study(
     "ring grows with the slip along it, which feeds a circular motion where ω > k, and above a load far below "
     "C·X0 nothing but the whirl is left until sticking begins. The inner, unstable whirl bounds the basin of the "
     "equilibrium and shrinks onto it at that load.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     figures={

@@ -97,7 +97,7 @@ STUDY = Study(
     "ends in a fold, about where the self-centred equilibrium becomes stable. So Fig. 11 needs an offset of at most "
     f"about {BOTH_STABLE:g} m, such as zero; with the {FIG8.offset:g} m of the other figures the disc comes to "
     "rest in space. It can not stick for ever at any offset, because μN·R is smaller than b|ω − Ω|.",
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

@@ -10,10 +10,10 @@ from scipy.interpolate import CubicSpline
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Findings
 from compare.engines import Engine
 from compare.studies.toolkit.fig11_motion import RING, SIX, SOURCE, START, integrated
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Trajectory, simulate
 from reference_model.orbits.shooting import modulated_cycle
 from reference_model.systems import DiscOnDisc, FloatArray

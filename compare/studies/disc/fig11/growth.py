@@ -13,10 +13,10 @@ from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.linearised_flow import ComplexArray, rotated
+from compare.claims.parameters import parameters_of
 from compare.engines import Engine
 from compare.studies.toolkit.fig11_motion import DISCS, RING, SOURCE
 from compare.studies.toolkit.steady_motion import steady_motion
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import simulate, whirls
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.steady.stability import turning_frame_jacobian

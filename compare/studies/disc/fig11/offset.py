@@ -17,10 +17,10 @@ from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Findings
 from compare.engines import Engine
 from compare.studies.toolkit.fig11_motion import SOURCE, START, rates
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray

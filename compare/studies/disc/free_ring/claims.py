@@ -21,6 +21,7 @@ from scipy.interpolate import make_interp_spline
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import observed_exponent, refined
 from compare.claims.paper_parameters import FIG8
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.free_ring.pictures import draw
@@ -32,7 +33,6 @@ from compare.studies.disc.free_ring.theory import (
     nearness,
     theory,
 )
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Trajectory
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -546,7 +546,7 @@ STUDY = Study(
         "inertia on the same ring of contact it tends to another number if J is between mR²/2 and 2mR², and "
         "otherwise to zero or infinity (Goyal, Ruina and Papadopoulos 1991)."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

@@ -34,8 +34,8 @@ from scipy.optimize import brentq
 
 from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.parameters import at_each
 from compare.claims.study import Findings
-from compare.studies.toolkit.study_parameters import at_each
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from compare.claims.answers import holds
 from compare.claims.claim import Claim
 from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.disc.stability_map.theory import FINE, KINDS, LAWS, PLANES
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import onset_load, whirls
 from reference_model.steady.bifurcation_curves import boundaries
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -225,7 +225,7 @@ STUDY = Study(
     title="The surroundings of Fig. 11 by simulation",
     paper="Not in the paper. The stability map says by eigenvalues where rotation, whirl and modulated cycle are "
     "stable; here discs of a whole plane are simulated, from a start beside the axis, until their end is certain.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     figures={

@@ -12,12 +12,12 @@ from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, Simulate
 from compare.studies.disc.stability_map.ends import ENDS, SLOWLY_SETTLED, Start, ends_of, kind_of_end
 from compare.studies.disc.stability_map.pictures import draw
 from compare.studies.disc.stability_map.theory import DISC, PLANES, SOURCE, K, at, theory
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls
@@ -288,7 +288,7 @@ STUDY = Study(
         "borders of the ring lie where centre and rim slip nearly equally fast, and there (23) is farthest from the "
         "ring. A pin has no such border: wherever its whirl exists (ω > k) it is stable."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

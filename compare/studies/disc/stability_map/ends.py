@@ -11,8 +11,8 @@ import numpy as np
 from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim
 from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import at_each, parameters_of
 from compare.engines import Simulate
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.systems import DiscOnDisc
 
 SETTLED = 1200.0

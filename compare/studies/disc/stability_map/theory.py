@@ -16,9 +16,9 @@ from compare.claims.answers import holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
 from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings
 from compare.studies.disc.stability_map.ends import SLOWLY_SETTLED, Start, ends_of
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTermRing
 from reference_model.formulas.disc import whirl_at
 from reference_model.formulas.pin import upper_branch_margin

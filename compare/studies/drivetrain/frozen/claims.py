@@ -62,7 +62,7 @@ STUDY = Study(
     "displacements must be found where the reference finds them for the reduced disc. While it is not, the inertia "
     "of engine and vehicle counts, so that the modulation of a whirl is a matter of the whole drivetrain: within "
     f"the play, with {MODULATED_ABOVE}.",
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

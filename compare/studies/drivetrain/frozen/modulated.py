@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, ROUNDING, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
+from compare.claims.parameters import at_each
 from compare.claims.study import Data
 from compare.studies.drivetrain.frozen.linear import (
     CarWhirl,
@@ -35,7 +36,6 @@ from compare.studies.toolkit.drivetrain_bench import (
     parameters_of,
     start_disc,
 )
-from compare.studies.toolkit.study_parameters import at_each
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

@@ -15,12 +15,12 @@ from scipy.interpolate import CubicSpline
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, observed_exponent, refined
+from compare.claims.parameters import at_each
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.drivetrain.launch.pictures import draw
 from compare.studies.drivetrain.launch.theory import FullSlip, Launch, states_at
 from compare.studies.toolkit.drivetrain_bench import RPM, SOURCE, balance_claim, parameters_of, passenger_car
-from compare.studies.toolkit.study_parameters import at_each
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -304,7 +304,7 @@ STUDY = Study(
     paper="Not in the paper, which has constant speeds on both sides. A clutch in a car slips from standstill until "
     "engine and disc turn alike, then holds the engine's torque with its ripple, and slips again once its capacity "
     "falls below that. The friction that moves the disc radially is the one that heats the facings.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "drivetrain-launch": "The passenger car's launch, with the shaft's axis 0.2 mm beside the engine's. Grey: "

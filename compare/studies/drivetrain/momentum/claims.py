@@ -289,7 +289,7 @@ STUDY = Study(
     paper="Not in the paper. Friction contact, elastic shaft and torsional spring are parts for models of one's own: "
     "between any two bodies they only exchange momentum and angular momentum, however far the axes are apart. "
     "Nothing from outside acts on the drivetrains here.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "drivetrain-momentum": "Engine, clutch disc on an eccentric shaft, and vehicle, which nothing else touches. "

@@ -17,11 +17,11 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import observed_exponent, refined
 from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, axis, curve, new_figure, points
 from compare.studies.toolkit.fig11_motion import START
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Annulus, simulate
 from reference_model.contact.contact_law import Contact
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -240,7 +240,7 @@ STUDY = Study(
     paper="The friction disc of (19) to (21) is what a dry clutch is between an engine and a vehicle that are too "
     "heavy to be slowed. So the model of a drivetrain must give its motion, with the facings, the support and the "
     "eccentric shaft that the drivetrain has: Figs. 8 and 11 inside of a larger model.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "drivetrain-reduced": "Left: radial motion of the clutch disc in the drivetrain (marks) and of the "

@@ -179,7 +179,7 @@ STUDY = Study(
     "is controlled so that the clutch slips by 12 rad/s. From idle to 6000 turns a minute it goes through all that "
     "the paper describes: self-centring, the natural frequency, the loss of stability, and the limit cycle with "
     "large displacements, which the play limits, as the paper expects of what is not linear.",
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     animations=animations,

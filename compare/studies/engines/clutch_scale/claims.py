@@ -12,13 +12,13 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG4, FIG5, FIG8
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.engines.clutch_scale.units import CLUTCH
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.fig11_motion import RING, SIX, integrated
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
@@ -347,7 +347,7 @@ STUDY = Study(
     "without dimension, so that the same motions happen in a clutch: an offset of 0.1 mm, 300 rad/s, half a "
     "kilogram. That takes engines whose tolerances, and whose speed below which friction is smoothed, follow the "
     "motion: one that takes them in metres and metres per second gives other motions there without a warning.",
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

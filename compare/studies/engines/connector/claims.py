@@ -23,10 +23,10 @@ from compare.claims.linearised_flow import (
     real_and_imaginary,
 )
 from compare.claims.paper_parameters import FIG5, FIG8, FIG11
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import self_centred_equilibria
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import FloatArray, System
@@ -240,7 +240,7 @@ STUDY = Study(
     paper="Not in the paper. Whoever takes the connector into a larger model relies on its reaction on the master: "
     "the opposite force, and its moment about the master's own centre. Between two free discs both show at once, as "
     "momentum and angular momentum that do not change. The linearisation is what an engineer gets from Exudyn.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "connector-momenta": "Two free discs that rub on each other. Left: angular momentum of each about the "

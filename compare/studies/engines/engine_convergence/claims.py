@@ -15,11 +15,11 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, extrapolated_order, observed_exponent
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.engine_convergence.pictures import draw
 from compare.studies.engines.engine_convergence.solvers import SOLVERS
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
@@ -462,7 +462,7 @@ STUDY = Study(
     "with the step h, and, where the friction law is smoothed, with the slip speed ε below which it is viscous, "
     "F = −μN·v/max(|v|, ε). The reference takes Coulomb friction as it is and has no ε. Sliding pins are measured "
     "against (10) in polar form, stick and release times against the reference at its tightest.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "engine-convergence-orders": "Left: error of sliding pins over the step, Exudyn's fixed-step solvers. Right: "

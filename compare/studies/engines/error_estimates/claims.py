@@ -154,7 +154,7 @@ STUDY = Study(
     "end is known the true error must lie within that, and not far below. They last for one turn of the support and "
     "more: shorter ones may take the same few steps at any tolerance, whose errors no change of it shows. Each kind "
     "of motion counts for itself: together, good ones would hide bad ones.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "error-estimates": "Left: estimates and true errors of random motions, as fractions of the largest number of "

@@ -9,6 +9,7 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import COARSENING, extrapolated_order, observed_exponent
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Recorded, Study, Table
 from compare.engines import Engine
 from compare.foreign.cases import CASES
@@ -24,7 +25,6 @@ from compare.studies.engines.foreign_engines.laws import (
 )
 from compare.studies.engines.foreign_engines.pictures import draw
 from compare.studies.engines.foreign_engines.recorded import ERROR, STEPS, estimate, recorded_claims
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.systems import FloatArray
 
 SECONDS = COLUMNS.index("seconds")
@@ -314,7 +314,7 @@ STUDY = Study(
     "command, with our own engines beside them on the same machine, and come with the project. Exact motions are "
     "those of the reference at a tolerance of 1e-13, and (11) for the radius; so the reference is measured "
     "against itself here, and elsewhere against formulas.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     tables=tables,

@@ -6,10 +6,10 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Recorded
 from compare.foreign.cases import CASES
 from compare.foreign.records import COLUMNS, Recording
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.systems import FloatArray
 
 TOLERANCE, STEPS, ERROR, CHANGE = (COLUMNS.index(name) for name in ("tolerance", "steps", "error", "change"))

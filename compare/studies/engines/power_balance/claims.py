@@ -12,10 +12,10 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING, refined
 from compare.claims.paper_parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import PinOnDisc, PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
@@ -242,7 +242,7 @@ STUDY = Study(
     "of the dampers, work on the shaft of a friction disc and stored energy. The drive's work is taken from the "
     "angular momentum of the motion and the heat from the slip, so the balance checks friction, damping, springs "
     "and integrator of an engine without any reference solution.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "power-balance": "Left: energies on Fig. 5's way to the whirl (reference). Right: what the balance of each "

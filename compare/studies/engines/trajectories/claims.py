@@ -15,6 +15,7 @@ from numpy.polynomial.legendre import legvander
 
 from compare.claims.claim import Basis, Claim, ErrorBudget, Kind
 from compare.claims.error_estimates import SAFETY, refined
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure
@@ -30,7 +31,6 @@ from compare.studies.engines.trajectories.motions import (
     times_of,
 )
 from compare.studies.engines.trajectories.stick import stick_claims
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.contact.contact_law import contact_of
 from reference_model.support import Support
@@ -324,7 +324,7 @@ STUDY = Study(
     "mistake may be confined to a corner of the parameters, so motions drawn from the whole range that the other "
     "studies use are followed besides: slow and fast discs in both senses, offsets of both signs, supports with "
     "stops, points, rings, and pins that stick, whose release (7) gives.",
-    measure=measure_whole_range,
+    by_hand=measure_whole_range,
     draw=draw,
     figures={
         "trajectories": "Difference of each motion from the reference's at tolerance 1e-13, the largest of all "

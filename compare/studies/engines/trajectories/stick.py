@@ -9,9 +9,9 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
+from compare.claims.parameters import parameters_of
 from compare.engines import Engine
 from compare.studies.engines.trajectories.motions import Motion, by_reference
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.formulas.pin import release_time
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory

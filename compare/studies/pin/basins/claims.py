@@ -16,11 +16,11 @@ from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.shares import of_grid, of_sample
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.basins.pictures import draw
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import StickSlipOrbit, basin_boundary, boundary_point, simulate, stick_slip_orbits
 from reference_model.orbits.basin_boundary import Sides
 from reference_model.orbits.release_map import Release, Releases
@@ -422,7 +422,7 @@ STUDY = Study(
     "type that sticks once a period: it is found by the map from one release to the next, and the boundary by "
     "shooting at it. Of the starts of the rectangle {share at 1.5 rad/s, %, 4 digits, ±} % come to the equilibrium, "
     "at twice the speed, ω = 3 rad/s, {share at 3 rad/s, %, 2 digits, ±} %.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     figures={

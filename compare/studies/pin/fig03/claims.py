@@ -20,11 +20,11 @@ from compare.claims.linearised_flow import (
     measured_eigenvalues,
     real_and_imaginary,
 )
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import remaining_transient
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     equilibrium_position,
     largest_load_with_equilibrium,
@@ -423,7 +423,7 @@ STUDY = Study(
         "it is lost (5). The equilibrium is always stable. Fig. 3 compares (3) with simulations, without "
         "giving parameters."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

@@ -11,10 +11,10 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG4
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Orbit, PinOnDisc, whirl_orbit
 from reference_model.formulas.pin import (
     first_order_whirl_response,
@@ -296,7 +296,7 @@ STUDY = Study(
     "offset also excites a second harmonic of the same first order, so (18) keeps a relative error however "
     "small X0 is; the exact first-order response is a linear 2×2 problem. Theory gives the limit of that error, and "
     "the third order of the shift: within both (18) must hold.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     figures={

@@ -14,11 +14,11 @@ from compare.claims.answers import asked, holds
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.fig05.pictures import animate, draw
 from compare.studies.toolkit.deviations import remaining_transient
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position, release_time
 from reference_model.motion.pin_equations import simulate_polar_form
@@ -345,7 +345,7 @@ STUDY = Study(
     "initial conditions that differ by 0.03 m/s: both have limited attraction areas (Fig. 5). On the way it "
     "sticks and slips; the paper leaves stick–slip to later work and gives neither the stick phases nor the "
     "initial condition that divides the two motions. Here both are found.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     figures={
         "fig05-motions": "Left: Fig. 5 redrawn: equilibrium black, whirl green and dashed, from the reference; "

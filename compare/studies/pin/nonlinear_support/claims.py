@@ -13,11 +13,11 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import observed_exponent, refined
 from compare.claims.paper_parameters import CENTRED, FIG5, FIG5_STARTS, FIG9
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model import Orbit, simulate, whirl_orbit, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
@@ -461,7 +461,7 @@ STUDY = Study(
     "Friction and damping set the speed of the whirl, μN/β, on every support; what is nonlinear makes its circle "
     "smaller and its frequency higher, until at some load it turns with the disc and there is no whirl any more. "
     "Without damping nothing but that ends the growth.",
-    measure=measure,
+    by_hand=measure,
     draw=draw,
     theory=theory,
     figures={

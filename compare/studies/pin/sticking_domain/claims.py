@@ -15,10 +15,10 @@ from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import refined
 from compare.claims.linearised_flow import rotated
 from compare.claims.paper_parameters import FIG4
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     release_time,
     resonant_disc_speed,
@@ -425,7 +425,7 @@ STUDY = Study(
         "radius (9). This sticking domain has a resonance: it is largest at ω* = √(C/m − β²/2m²) and becomes "
         "arbitrarily small for large ω."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

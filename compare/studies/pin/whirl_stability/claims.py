@@ -21,11 +21,11 @@ from compare.claims.linearised_flow import (
     real_and_imaginary,
 )
 from compare.claims.paper_parameters import CENTRED
+from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.whirl_stability.pictures import draw
 from compare.studies.toolkit.deviations import remaining_transient
-from compare.studies.toolkit.study_parameters import at_each, parameters_of
 from reference_model.formulas.pin import (
     characteristic_coefficients,
     coefficient_margins,
@@ -484,7 +484,7 @@ STUDY = Study(
         "By the sense of the friction force in (10) the whirl exists only for ω > k, and (13) is misprinted; "
         "here its corrected form is used, and the errata show both."
     ),
-    measure=measure,
+    by_hand=measure,
     theory=theory,
     draw=draw,
     figures={

@@ -7,8 +7,8 @@ import pytest
 
 from compare.claims.linearised_flow import matched, measured_eigenvalues, rotated
 from compare.claims.paper_parameters import FIG5, FIG8, FIG9, FIG11
+from compare.claims.parameters import parameters_of
 from compare.engines import engines
-from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
 

@@ -1,0 +1,74 @@
+"""The prose of a study, which people read and edit as prose: ``study.md``.
+
+The first heading is the title; under it stands the section of the report, alone on a line between asterisks, and what
+the paper says. "## Finding" and "## Figures" may follow, the latter with a heading for the name of each figure and
+its caption::
+
+    # Branches under increasing load
+
+    *The friction pin*
+
+    Fig. 6 shows the steady motions ...
+
+    ## Figures
+
+    ### fig06-branches
+
+    Fig. 6 redrawn: ...
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+NAME = "study.md"
+
+
+@dataclass(frozen=True)
+class Prose:
+    """Title, section, what the paper says, what was found, and the caption of each figure."""
+
+    title: str
+    section: str
+    paper: str
+    finding: str
+    figures: Mapping[str, str]
+
+    @classmethod
+    def of(cls, file: Path, words: Mapping[str, str]) -> Prose:
+        """Return the prose beside the module ``file``, or in the folder above it.
+
+        ``words`` stand in it for their names in braces. Raises ``ValueError`` for a file that is not as above.
+        """
+        path = next(folder / NAME for folder in file.parents[:2] if (folder / NAME).is_file())
+        text = path.read_text(encoding="utf-8")
+        for name, word in words.items():
+            if f"{{{name}}}" not in text:
+                raise ValueError(f"{path} has no {{{name}}}")
+            text = text.replace(f"{{{name}}}", word)
+        parts = re.split(r"^(#+) +(.+)$", text, flags=re.MULTILINE)
+        sections = [
+            (depth, title.strip(), _paragraphs(body))
+            for depth, title, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True)
+        ]
+        (depth, title, paper), *others = sections
+        section = re.match(r"\*(.+?)\*\n\n", paper)
+        if depth != "#" or section is None:
+            raise ValueError(
+                f"{path} must begin with a title, and the section of the report between asterisks"
+            )
+        return cls(
+            title,
+            section[1],
+            paper[section.end() :],
+            next((body for depth, title, body in others if (depth, title) == ("##", "Finding")), ""),
+            {title: body for depth, title, body in others if depth == "###"},
+        )
+
+
+def _paragraphs(text: str) -> str:
+    """Return paragraphs with a line each, and an empty one between them."""
+    return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))

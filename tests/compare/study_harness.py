@@ -1,0 +1,122 @@
+"""What every study is tested for: the test of a study subclasses ``StudyTests`` and says with what."""
+
+import functools
+
+from broken_engines import broken_engines
+
+from compare.claims.claim import Verdict
+from compare.engines import engines
+
+SEES, BLIND, OPEN = Verdict.DIFFERS, Verdict.AGREES, Verdict.INCONCLUSIVE
+LEFT_OUT = None
+"""In a table: measuring it takes too long."""
+
+
+@functools.cache
+def engine_named(name):
+    """Return a registered engine, or the plain one that shares nothing ("intact")."""
+    return broken_engines()[name] if name in broken_engines() else engines([name])[0]
+
+
+@functools.cache
+def findings_of(study, name, sound_few):
+    """Measure a part of ``study`` with a sound engine, or its theory, once for all tests."""
+    few = {function: dict(options) for function, options in sound_few}
+    return study.measure_theory(few) if name == "theory" else study.measure(engine_named(name), few)
+
+
+class StudyTests:
+    """Checks of one study.
+
+    ``study`` is it; ``few`` are the arguments, by the functions of its claims and for "curves", with which less than
+    all is measured; ``sound`` are engines of which every claim must agree, and ``not_claimed`` the functions that
+    claim nothing of one of them.
+
+    ``faults`` are broken engines, ``columns`` functions of claims, and ``table`` says for each fault which of them
+    see it: SEES, BLIND, OPEN, LEFT_OUT, a part of the message of an error, or a tuple of what may be.
+    ``few_of_faults`` take the place of ``few`` there.
+    """
+
+    study = None
+    few = {}
+    sound = ("reference", "intact")
+    not_claimed = {}
+    faults = {}
+    few_of_faults = None
+    columns = ()
+    table = {}
+
+    def pytest_generate_tests(self, metafunc):
+        cls = metafunc.cls
+        if "sound_engine" in metafunc.fixturenames:
+            metafunc.parametrize("sound_engine", cls.sound)
+        if "expected" in metafunc.fixturenames:
+            cells = [
+                (fault, claim, expected)
+                for fault, row in cls.table.items()
+                for claim, expected in zip(cls.columns, row, strict=True)
+                if expected is not LEFT_OUT
+            ]
+            ids = [f"{fault}-{claim}" for fault, claim, _ in cells]
+            metafunc.parametrize(("fault", "claim", "expected"), cells, ids=ids)
+
+    @classmethod
+    def found(cls, name):
+        """Return the findings about a sound engine, or "theory"."""
+        few = tuple((function, tuple(options.items())) for function, options in cls.few.items())
+        return findings_of(cls.study, name, few)
+
+    @classmethod
+    def claims_of_fault(cls, fault, claim):
+        """Return what the function ``claim`` claims of an engine with a fault."""
+        return _claims_of_fault(cls, fault, claim)
+
+    def test_every_claim_holds_in_a_sound_engine(self, sound_engine):
+        declared = [
+            one.sentence_of(case)
+            for one in self.study.declared
+            if one.of_engine and one.function.__name__ not in self.not_claimed.get(sound_engine, ())
+            for case, _ in one.cases()
+        ]
+        found = {claim.sentence: claim.verdict for claim in self.found(sound_engine).claims}
+        assert found == dict.fromkeys(declared, Verdict.AGREES)
+
+    def test_the_theory_holds(self):
+        claims = self.found("theory").claims
+        assert len(claims) == sum(not one.of_engine for one in self.study.declared for _ in one.cases())
+        assert {claim.verdict for claim in claims} <= {Verdict.AGREES}
+
+    def test_each_claim_sees_the_faults_that_concern_it(self, fault, claim, expected):
+        allowed = expected if isinstance(expected, tuple) else (expected,)
+        try:
+            claims = self.claims_of_fault(fault, claim)
+        except Exception as error:
+            if not any(isinstance(one, str) and one in str(error) for one in allowed):
+                raise
+            return
+        verdicts = {claim.verdict for claim in claims}
+        worst = next(verdict for verdict in (SEES, OPEN, BLIND) if verdict in verdicts)
+        assert worst in allowed
+
+    def test_figures_are_drawn_whatever_is_there(self):
+        data = {name: self.found(name).data for name in (*self.sound[:1], "theory")}
+        engine = self.sound[0]
+        cases = [
+            {name: data[name] for name in names} for names in (("theory",), (engine,), (engine, "theory"))
+        ]
+        cases += [{}, {engine: data[engine], "exudyn": data[engine], "theory": data["theory"]}]
+        for case in cases:
+            present = {name: values for name, values in case.items() if values}
+            if not present:
+                continue
+            figures = self.study.draw(present)
+            assert set(figures) <= set(self.study.figures)
+            for figure in figures.values():
+                figure.canvas.draw()
+        assert set(self.study.figures) >= set(figures) > set() or not self.study.figures
+
+
+@functools.cache
+def _claims_of_fault(cls, fault, claim):
+    few = cls.few if cls.few_of_faults is None else cls.few_of_faults
+    return cls.study.measure(cls.faults[fault], few, only=(claim,)).claims
