@@ -68,7 +68,8 @@ class Recording:
 
         ``many`` goes from notes to times. Raises ``SimulationError`` if one of them is given up.
         """
-        start, left = state[np.newaxis], np.array([self.duration - since])
+        # A copy, which may be written to: the kernel is compiled for such arrays, and not once more for others.
+        start, left = state.copy()[np.newaxis], np.array([self.duration - since])
         room = int(ROOM_A_UNIT * left[0] / self.unit) + ROOM_TO_SPARE
         while True:
             notes = np.zeros((room, STATE + len(state)))

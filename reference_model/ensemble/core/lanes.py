@@ -4,6 +4,8 @@ A processor takes a step in eight lanes in the time of one. All numbers of all l
 ``scratch[slot * LANES + lane]``, so that a loop over the lanes which loads, steps and stores becomes a loop of vector
 instructions. (It must be a function of its own that calls nothing but inlined functions of numbers and tuples.)
 
+A trajectory by itself would pay for all lanes: its step is compiled for one lane besides, to the same bits.
+
 A round is one trial step in every lane, each with a step size of its own. What is rare (rest, release, the end) is
 seen to lane by lane in scalar code: the lane raises a flag. What happens in a lane does not depend on the others: a
 trajectory comes out the same bit by bit wherever and beside whichever others it runs.
@@ -24,7 +26,7 @@ LANES = 16
 
 @written_out
 def run(
-    load: Any, advance: Any, attend: Any, store: Any, idle: Any,
+    load: Any, advance: Any, alone: Any, attend: Any, store: Any, idle: Any,
     slots: int, trial: int, items: int, flag: int, first: int, last: int, kind: Any,
     task: Any, aims: Any, results: Any,
 ) -> None:  # fmt: skip
@@ -32,12 +34,13 @@ def run(
 
     Parameters
     ----------
-    load, advance, attend, store, idle : compiled functions
+    load, advance, alone, attend, store, idle : compiled functions
         ``load(scratch, book, lane, number, task, aims)`` puts the start of a trajectory into the trial slots of a
-        lane, ``advance(scratch, kind)`` makes a trial step in all lanes, ``attend(scratch, book, lane, aims)`` sees
-        to a lane with a flag and may change its trial, ``store(scratch, book, lane, results)`` writes down what
-        stands in the trial slots, and ``idle(scratch, lane)`` puts something harmless into a lane. ``load`` and
-        ``attend`` return whether the trajectory has ended.
+        lane, ``advance(scratch, kind)`` makes a trial step in all lanes and ``alone`` in the first one only,
+        ``attend(scratch, book, lane, aims)`` sees to a lane with a flag and may change its trial,
+        ``store(scratch, book, lane, results)`` writes down what stands in the trial slots, and
+        ``idle(scratch, lane)`` puts something harmless into a lane. ``load`` and ``attend`` return whether the
+        trajectory has ended.
     slots, trial : int
         Length of a lane in the scratch array; how many of these slots, the first, make up the motion. As many that
         follow are those of the trial.
@@ -81,7 +84,10 @@ def run(
         if active == 0:
             break
         _accept(scratch, trial)
-        advance(scratch, kind)
+        if last - first == 1:
+            alone(scratch, kind)
+        else:
+            advance(scratch, kind)
 
 
 @scalar

@@ -293,7 +293,8 @@ def _creeps_out(scratch: Any, page: Any, lane: int, law: DiscLaw, aims: DiscAims
     s, left = slip_left(scratch, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
     least = max(SPENT_SHARE * scratch[TOLERANCE * LANES + lane], LEAST_SLIP)
-    if not (steady and LINGERS < left < math.inf and s * max(left, 1.0) < least):
+    spent = s * max(left, 1.0) < least or s <= LEAST_SLIP
+    if not (steady and LINGERS < left < math.inf and spent):
         return False
     x, y, _, _, _, angle, t, way = eight_of(scratch, lane, TRIAL)
     z = complex(x, y)
@@ -623,7 +624,12 @@ def _load_ring(scratch: Any, book: Any, lane: int, number: int, task: DiscTask, 
 
 @scalar
 def _advance_rings(scratch: Any, around: Any) -> None:
-    advance_with(scratch, around, ring_rates, ring_edge, 0.0)
+    advance_with(scratch, around, ring_rates, ring_edge, 0.0, LANES)
+
+
+@scalar
+def _advance_ring_alone(scratch: Any, around: Any) -> None:
+    advance_with(scratch, around, ring_rates, ring_edge, 0.0, 1)
 
 
 @scalar
@@ -638,7 +644,12 @@ def _load_points(scratch: Any, book: Any, lane: int, number: int, task: DiscTask
 
 @scalar
 def _advance_points(scratch: Any, around: Any) -> None:
-    advance_with(scratch, around, points_rates, no_edge, WATCHED_STEP)
+    advance_with(scratch, around, points_rates, no_edge, WATCHED_STEP, LANES)
+
+
+@scalar
+def _advance_points_alone(scratch: Any, around: Any) -> None:
+    advance_with(scratch, around, points_rates, no_edge, WATCHED_STEP, 1)
 
 
 @scalar
@@ -650,8 +661,8 @@ def _attend_points(scratch: Any, book: Any, lane: int, aims: DiscAims) -> bool:
 def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
-        _load_ring, _advance_rings, _attend_ring, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG,
-        first, last, aims.around, task, aims, results,
+        _load_ring, _advance_rings, _advance_ring_alone, _attend_ring, store, idle, SLOTS, TRIAL,
+        ITEMS + results.notes.size, FLAG, first, last, aims.around, task, aims, results,
     )  # fmt: skip
 
 
@@ -659,6 +670,6 @@ def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last
 def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
     run(
-        _load_points, _advance_points, _attend_points, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG,
-        first, last, aims.around, task, aims, results,
+        _load_points, _advance_points, _advance_points_alone, _attend_points, store, idle, SLOTS, TRIAL,
+        ITEMS + results.notes.size, FLAG, first, last, aims.around, task, aims, results,
     )  # fmt: skip

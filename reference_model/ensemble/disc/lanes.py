@@ -62,18 +62,21 @@ REST_TIME = 1e-12
 LEAST_SLIP = 1e-13
 """Slip speed, in units, that is none."""
 
+LONGEST_GROWTH = 10.0
+"""Time, in units, for which slip that grows is followed from rest: as any slip after, so that notes can be taken."""
+
 SUDDEN = 0.05
 """Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
 
 
 @written_out
-def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: float) -> None:
-    """Make a trial step in every lane; where it does not do the old state goes into the slots of the trial.
+def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: float, lanes: int) -> None:
+    """Make a trial step in the first ``lanes``; where it does not do the old state goes into the slots of the trial.
 
     Where the step crosses the ``edge`` of friction, an error estimate would tell little: it is to end there. The same
     at the end. A lane wants to be attended, too, where steps are smaller than ``small_step``.
     """
-    for lane in range(LANES):
+    for lane in range(lanes):
         q = (
             scratch[X * LANES + lane],
             scratch[Y * LANES + lane],
@@ -271,7 +274,7 @@ def slip_left(scratch: Any, lane: int) -> Any:
 
 @scalar
 def comes_to_rest(scratch: Any, lane: int, law: DiscLaw) -> bool:
-    """Tell whether slip ends within a moment, and let it: it falls linearly."""
+    """Tell whether slip ends within a moment, and let it: it falls linearly. As slow as rounding, it ends at once."""
     x, y, ux, uy, r, angle, t, way = eight_of(scratch, lane, TRIAL)
     k = eight_of(scratch, lane, TRIAL + RATES)
     s = math.sqrt(ux * ux + uy * uy + r * r)
@@ -282,8 +285,10 @@ def comes_to_rest(scratch: Any, lane: int, law: DiscLaw) -> bool:
     across = (k[2] / k[6] + falling * ux / s, k[3] / k[6] + falling * uy / s, k[4] / k[6] + falling * r / s)
     bend = left * math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2) / falling
     pace = abs(law.disc_speed) + law.shaft_rate + 1.0
-    if (bend + left * left * pace >= REST_TIME) & (s > LEAST_SLIP):
-        return False
+    if bend + left * left * pace >= REST_TIME:
+        if s <= LEAST_SLIP:
+            put(scratch, lane, (x, y, 0.0, 0.0, 0.0, angle, t, way))
+        return bool(s <= LEAST_SLIP)
     delay = min(left, scratch[DURATION * LANES + lane] - t)
     remains = 1.0 - delay / left
     mean = 0.5 * (1.0 + remains) * delay
@@ -306,7 +311,7 @@ def begin_slip(scratch: Any, lane: int, z: complex, angle: float, t: float, law:
         u = LEAST_SLIP * n
         put(scratch, lane, (z.real, z.imag, u.real, u.imag, LEAST_SLIP * turning, angle, t, way))
         return True
-    left = scratch[DURATION * LANES + lane] - t
+    left = min(scratch[DURATION * LANES + lane] - t, LONGEST_GROWTH)
     z, u, r, took, curl, work = grown(z, n, turning, max(first, 0.0), left, law)
     angle += law.disc_speed * took + law.curling * curl
     put(scratch, lane, (z.real, z.imag, u.real, u.imag, r, angle, t + took, way + work))

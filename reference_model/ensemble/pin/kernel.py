@@ -34,6 +34,7 @@ from reference_model.ensemble.pin.lanes import (
     WATCH,
     WAY,
     advance,
+    advance_alone,
     idle,
     law_of,
     place_of,
@@ -217,6 +218,6 @@ def run_pins(
 def _run_with(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
     """Do so; in a function of its own, which costs time to compile, the rounds of pins are a tenth faster."""
     run(
-        load, advance, attend, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG, first, last, None,
-        task, aims, results,
+        load, advance, advance_alone, attend, store, idle, SLOTS, TRIAL, ITEMS + results.notes.size, FLAG,
+        first, last, None, task, aims, results,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from reference_model.ensemble.core.dense_output import Arc, Motion, arc_between, size_of
-from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import LANES
 from reference_model.ensemble.core.runge_kutta import error_of, factor_of, step
 from reference_model.ensemble.pin.slip import PinLaw, pin_rates
@@ -49,10 +49,10 @@ FIRST_STEP = 0.3
 """Of a trajectory and after a rest, in units of time where slip is fast."""
 
 
-@scalar
-def advance(scratch: Any, _: None) -> None:
-    """Make a trial step in every lane; where its error is too large the trial is the old state."""
-    for lane in range(LANES):
+@written_out
+def _advance_in(scratch: Any, lanes: int) -> None:
+    """Make a trial step in the first ``lanes``; where its error is too large the trial is the old state."""
+    for lane in range(lanes):
         y = (
             scratch[X * LANES + lane],
             scratch[Y * LANES + lane],
@@ -110,6 +110,18 @@ def advance(scratch: Any, _: None) -> None:
         scratch[(TRIAL + SHARE) * LANES + lane] = new[4] if good else k[4]
         scratch[(TRIAL + KWAY) * LANES + lane] = new[5] if good else k[5]
         scratch[(TRIAL + STEP) * LANES + lane] = shorter
+
+
+@scalar
+def advance(scratch: Any, _: None) -> None:
+    """Make a trial step in every lane."""
+    _advance_in(scratch, LANES)
+
+
+@scalar
+def advance_alone(scratch: Any, _: None) -> None:
+    """Make a trial step in the first lane."""
+    _advance_in(scratch, 1)
 
 
 @inlined

@@ -18,6 +18,7 @@ from reference_model import (
     sticking_radius,
 )
 from reference_model.ensemble import recording, simulate_ensemble
+from reference_model.ensemble.disc.kernel import run_points
 
 SECOND = list(FIG5_STARTS.values())[1]
 """Sticks nine times."""
@@ -242,6 +243,40 @@ def test_states_between_steps_that_strong_damping_shortens_are_as_accurate_as_en
     for i in (90, 350, 513, 577, 800):
         end = simulate(pin, start, times[[0, i]], tolerance=1e-12).at_end
         assert found.states[i] == pytest.approx(end, abs=2e-9)
+
+
+def test_a_creeping_ring_at_the_tightest_tolerance_stays_where_friction_comes_to_hold_it():
+    """Slip as slow as rounding must not be followed by the closed form of coming to rest for as long as it lasts."""
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=0.022142264315993105, stiffness=1.0, damping=7.606038494632967, shaft_damping=0.0,
+        friction_force=0.013290975255736146, disc_speed=0.26217015225390883, shaft_speed=0.06502856857572112,
+        contact_radius=6.118735000726501, offset=0.0,
+    )  # fmt: skip
+    start = [1.19260846e-01, -5.32574504e-03, -1.80470287e-03, 8.97937173e-02, -8.01634282e-04, 5.81735776e01]
+    found = simulate(disc, start, [0.0, 200.0, 300.0], tolerance=1e-12, compiled=True)
+    place = (found.states[:, 0] + 1j * found.states[:, 1]) * np.exp(-1j * disc.disc_speed * found.times)
+    assert abs(place[2] - place[1]) < 1e-11  # some 8 s at 2e-14 m/s are left
+
+
+def test_a_disc_that_is_handed_over_and_back_needs_no_other_code_than_one_that_is_not():
+    simulate(on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0], compiled=True)
+    known = len(run_points.signatures)
+    found = simulate(on_six(HARD), turning_with(HARD, -0.02), [0.0, 40.0], compiled=True)
+    assert found.stick_phases
+    assert found.phases[-1].kind == "slip"
+    assert len(run_points.signatures) == known
+
+
+def test_a_single_run_takes_the_steps_of_one_lane_to_the_same_bits():
+    for system, start in (
+        (FIG5, SECOND),
+        (FIG8, [0.3, 0.0, 0.0, 0.1, 0.0, 0.5]),
+        (on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0]),
+    ):
+        alone = simulate_ensemble(system, start, duration=37.3, early_end=False)
+        beside = simulate_ensemble(system, [start, start], duration=37.3, early_end=False)
+        assert alone.steps[0] == beside.steps[1]
+        np.testing.assert_array_equal(alone.states[0], beside.states[1])
 
 
 def test_the_law_of_the_parameters_may_be_named():

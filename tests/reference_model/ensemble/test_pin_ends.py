@@ -7,6 +7,7 @@ import pytest
 
 from compare.claims.paper_parameters import FIG5
 from reference_model import (
+    PinOnDisc,
     boundary_point,
     self_centred_equilibria,
     simulate,
@@ -14,6 +15,7 @@ from reference_model import (
     sticking_radius,
     whirl_branch,
     whirl_orbit,
+    whirls,
 )
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.pin import slip as pin_slip
@@ -335,6 +337,19 @@ def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
             np.sort(np.abs(np.linalg.eigvals(derivative))), expected, rtol=1e-3, atol=1e-4
         )
         assert orbit_attracts(complex(x, y), complex(vx, vy), orbit.period, law) == orbit.stable
+
+
+def test_the_whirl_of_a_strongly_damped_pin_attracts_and_is_decided():
+    """Deviations decay at c + g/s, here up to 200 times faster than the motion: the return map must stay stable."""
+    for damping, speed in ((7.0, -1.6), (9.0, 1.06), (50.0, 5.0)):
+        pin = PinOnDisc(
+            mass=1.0, stiffness=1.0, damping=damping, friction_force=1.0, disc_speed=speed, offset=0.0
+        )
+        (whirl,) = whirls(pin)
+        assert whirl.stable
+        found = simulate_ensemble(pin, [0.4, 0.8, 0.7, -0.3], duration=2000.0, parameters={"mass": [1.0]})
+        assert found.end[0] == EndState.WHIRL
+        assert found.largest_radius[0] == pytest.approx(whirl.radius, rel=1e-3)
 
 
 @pytest.mark.parametrize("varied", [False, True])
