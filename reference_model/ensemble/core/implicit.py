@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.laws import points_friction, pull, ring_friction
 from reference_model.ensemble.core.linear import solve
-from reference_model.ensemble.disc.slip import points_friction, pull, ring_friction
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES

@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 
 from reference_model.ensemble.checkpoints import EVERY, KIND, ON_THE_WAY, SLIPS, STATE, STICKS
 from reference_model.ensemble.checkpoints import TIME as NOTE_TIME
+from reference_model.ensemble.core.convergence import ACCURACY, converged
 from reference_model.ensemble.core.dense_output import (
     outward,
     place_on,
@@ -37,6 +38,8 @@ from reference_model.ensemble.core.dense_output import (
 from reference_model.ensemble.core.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.jit import inlined, outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import LANES, run
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     BOTH,
@@ -77,7 +80,6 @@ from reference_model.ensemble.disc.lanes import (
     slip_left,
 )
 from reference_model.ensemble.disc.slip import (
-    DiscLaw,
     held_friction,
     no_edge,
     points_rates,
@@ -88,8 +90,6 @@ from reference_model.ensemble.disc.slip import (
 from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.disc.stride import disc_stride_with
 from reference_model.ensemble.end_states import HANDED_OVER, EndState, Results
-from reference_model.ensemble.pin.end_states import ACCURACY, converged
-from reference_model.ensemble.pin.kernel import ROUNDING, units
 from reference_model.systems import FloatArray
 
 UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (

@@ -9,9 +9,10 @@ from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.dense_output import Arc, Motion, arc_between
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import LANES
+from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.runge_kutta import factor_of, moved, step
 from reference_model.ensemble.disc.breakaway import grown
-from reference_model.ensemble.disc.slip import DiscLaw, direction
+from reference_model.ensemble.disc.slip import direction
 
 X, Y, UX, UY, R, ANGLE, TIME, WAY = range(8)
 """Slots of a lane: place, slip velocity, r, angle, time and way slipped, the mean over the contact. All scaled."""

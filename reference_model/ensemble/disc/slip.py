@@ -9,57 +9,23 @@ equations are smooth and not stiff down to s = 0.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
-from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
+from reference_model.ensemble.core.contact_shares import LEAST, ring_shares
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.pin.slip import PinLaw, release_delay
-
-
-class DiscLaw(NamedTuple):
-    """The constants of a disc in units in which motion is of order one; the first seven as of a pin.
-
-    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω), ``curling`` 1/κ, and ``around`` the unit vectors to
-    the points of contact, (cos, sin) of each, one after the other; none for the ring.
-    """
-
-    stiffness: float
-    damping: float
-    friction: float
-    disc_speed: float
-    offset: float
-    stretching: float
-    free: float
-    leverage: float
-    shaft_rate: float
-    lag: float
-    curling: float
-    around: tuple[float, ...]
-
+from reference_model.ensemble.core.laws import (
+    PinLaw,
+    points_friction,
+    pull,
+    release_delay,
+    ring_friction,
+)
 
 HALVINGS = 60
 """Of an interval of order one: what is left is rounding."""
 
 ANGLES = 64
 """Parts of a half turn in which the direction of slip is looked for."""
-
-
-@inlined
-def ring_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
-    """Return −∂P/∂u_x, −∂P/∂u_y, −∂P/∂r and P of a ring."""
-    u, rim = math.sqrt(ux * ux + uy * uy), law.leverage * abs(r)
-    by_slip, by_rim = ring_shares(u, rim)
-    centre = by_slip / max(u, LEAST)
-    turning = by_rim * law.leverage * law.leverage / max(rim, LEAST)
-    return -centre * ux, -centre * uy, -turning * r, by_slip * u + by_rim * rim
-
-
-@inlined
-def points_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
-    """Return what :func:`ring_friction` does, of points: in the frame of the disc they always stand alike."""
-    c, s = turned(angle)
-    fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
-    return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
 
 
 @inlined
@@ -101,14 +67,6 @@ def ring_edge(y: Any, rates: Any, law: Any) -> Any:
 def no_edge(y: Any, rates: Any, law: Any) -> Any:
     """Return what :func:`ring_edge` does where friction is smooth but at rest."""
     return 1.0, 0.0
-
-
-@inlined
-def pull(z: complex, u: complex, law: Any) -> complex:
-    """Return the relative acceleration of the centre without friction."""
-    v = u + 1j * law.disc_speed * z
-    acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
-    return acceleration
 
 
 @scalar

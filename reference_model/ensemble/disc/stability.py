@@ -12,8 +12,8 @@ import numpy as np
 
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
 from reference_model.ensemble.core.linear import powers_vanish, solve
-from reference_model.ensemble.disc.slip import DiscLaw, pull, ring_friction
 
 APART = 1e-5
 """Differences, in units of the motion, by which rates are differentiated."""

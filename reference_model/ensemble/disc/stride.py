@@ -9,6 +9,7 @@ import numpy as np
 from reference_model.ensemble.core.implicit import WORTH, failed, first_try, patience, stride_with
 from reference_model.ensemble.core.jit import written_out
 from reference_model.ensemble.core.lanes import LANES
+from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     DUE,
@@ -27,7 +28,6 @@ from reference_model.ensemble.disc.lanes import (
     put,
     reasons,
 )
-from reference_model.ensemble.disc.slip import DiscLaw
 
 
 @written_out

@@ -47,13 +47,7 @@ import math
 from typing import NamedTuple
 
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.pin.slip import PinLaw
-
-ACCURACY = 1e-4
-"""What may be left to go, as a fraction, of a motion that shows by itself where it goes."""
-
-STILL = 1e-2
-"""Distance between crossings, as a fraction of what ACCURACY allows, below which they have met but for noise."""
+from reference_model.ensemble.core.laws import PinLaw
 
 
 class Form(NamedTuple):
@@ -133,13 +127,3 @@ def depth(z: complex, w: complex, law: PinLaw, well: Well) -> float:
         + u * (form.u_u * u + 2.0 * form.u_v * v)
         + form.v_v * v * v
     )
-
-
-@scalar
-def converged(last: float, before: float, first: float, scale: float) -> bool:
-    """Tell whether the last three distances between crossings show that less than ACCURACY·scale is left to go."""
-    allowed = ACCURACY * scale
-    if max(last, before, first) < STILL * allowed and not last > before > first:
-        return True  # beside a saddle they are small too, but grow
-    ratio = max(last / before, before / first) if before > 0.0 and first > 0.0 else 1.0
-    return ratio < 1.0 and last * ratio < allowed * (1.0 - ratio)

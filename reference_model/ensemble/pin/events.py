@@ -6,6 +6,7 @@ import math
 from typing import Any, NamedTuple
 
 from reference_model.ensemble.checkpoints import ON_THE_WAY, SLIPS, STICKS
+from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.dense_output import (
     Arc,
     place_on,
@@ -16,8 +17,9 @@ from reference_model.ensemble.core.dense_output import (
 )
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.lanes import LANES
+from reference_model.ensemble.core.laws import PinLaw, pull, release_delay
 from reference_model.ensemble.end_states import EndState
-from reference_model.ensemble.pin.end_states import Form, Well, converged, depth
+from reference_model.ensemble.pin.end_states import Form, Well, depth
 from reference_model.ensemble.pin.lanes import (
     DUE,
     EXTREME,
@@ -84,13 +86,10 @@ from reference_model.ensemble.pin.memory import (
     takes_notes,
 )
 from reference_model.ensemble.pin.slip import (
-    PinLaw,
     begin_slip,
     creeping_ends,
     creeps_by_turns,
     creeps_steadily,
-    pull,
-    release_delay,
     sticking_radius,
     time_to_rest,
 )

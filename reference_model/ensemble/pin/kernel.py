@@ -10,6 +10,8 @@ import numpy as np
 from reference_model.ensemble.checkpoints import EVERY, SLIPS
 from reference_model.ensemble.core.jit import inlined, outermost, scalar
 from reference_model.ensemble.core.lanes import LANES, run
+from reference_model.ensemble.core.laws import PinLaw, pull
+from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.end_states import Results
 from reference_model.ensemble.pin.end_states import well_of
 from reference_model.ensemble.pin.events import SELF_CENTRED, UNDECIDED, Aims, attend, rest
@@ -63,14 +65,11 @@ from reference_model.ensemble.pin.memory import (
     put_state,
     takes_notes,
 )
-from reference_model.ensemble.pin.slip import MOST_TERMS, PinLaw, pull
+from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray
 
 STRETCHING_TIME = 0.5
 """s₀ over g, in units of time: measured, more makes steps shorter, less makes rest and release stiffer."""
-
-ROUNDING = 4.0 * 2.220446049250313e-16
-"""Relative slip that counts as none: what turns with the disc as closely as floats can say."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not bring to rest starts with implicit steps."""
@@ -167,18 +166,6 @@ def load(scratch: Any, book: Any, lane: int, number: int, task: PinTask, aims: A
         keep(page, 0.0, 0.0, 0.0)
         return aims.early
     return bool(duration <= 0.0)
-
-
-@scalar
-def units(k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float) -> Any:
-    """Return the unit of length in m and one over that of time in 1/s, as ``units.Units.of`` a pin."""
-    rate = max(k, abs(omega))
-    if rate == 0.0:
-        rate = c
-    if rate == 0.0:
-        rate = g / speed if g > 0.0 and speed > 0.0 else 1.0
-    length = max(max(place, abs(offset)), max(speed / rate, g / rate**2))
-    return (length if length > 0.0 else 1.0), rate
 
 
 @scalar

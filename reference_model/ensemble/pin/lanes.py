@@ -7,8 +7,9 @@ from typing import Any
 from reference_model.ensemble.core.dense_output import Arc, Motion, arc_between, size_of
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import LANES
+from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.runge_kutta import error_of, factor_of, step
-from reference_model.ensemble.pin.slip import PinLaw, pin_rates
+from reference_model.ensemble.pin.slip import pin_rates
 
 X, Y, WX, WY, TIME, WAY, KX, KY, KWX, KWY, SHARE, KWAY, STEP = range(13)
 """Slots of a lane: place, slip velocity, time, way slipped; their rates; the step that comes. All scaled, as in a

@@ -6,7 +6,7 @@ from typing import Any
 
 from reference_model.ensemble.checkpoints import KIND, STATE, TIME
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.pin.slip import PinLaw
+from reference_model.ensemble.core.laws import PinLaw
 
 FORM_SIZE = 10
 """Coefficients of the form V, upper half."""

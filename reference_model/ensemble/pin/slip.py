@@ -8,10 +8,10 @@ they were: one right-hand side serves all lanes, whether they slip fast or are a
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.motion.stick import GRAZING, ROUNDING
+from reference_model.ensemble.core.laws import PinLaw, pull
 
 TERMS, MOST_TERMS = 8, 20
 """Terms of the series by which slip begins, usually and where it stays slow: see STIFF.
@@ -31,22 +31,6 @@ PLACES = 8
 """Places at least at which the series is looked at for whether slip ends again."""
 
 
-class PinLaw(NamedTuple):
-    """The constants of a pin, divided by its mass, in units in which motion is of order one.
-
-    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
-    s₀; without friction nothing rests, and ``free`` = 1 keeps time as it is.
-    """
-
-    stiffness: float
-    damping: float
-    friction: float
-    disc_speed: float
-    offset: float
-    stretching: float
-    free: float
-
-
 @inlined
 def pin_rates(y: Any, law: PinLaw) -> Any:
     """Return the rates of x, y and of the slip velocity by stretched time, dt/dτ, and that times the slip speed."""
@@ -60,13 +44,6 @@ def pin_rates(y: Any, law: PinLaw) -> Any:
     ay = -law.stiffness * y_ - law.damping * vy - law.disc_speed * vx
     f = law.friction * pace
     return share * vx, share * vy, share * ax - f * wx, share * ay - f * wy, share, share * s
-
-
-@inlined
-def pull(z: complex, w: complex, law: PinLaw) -> complex:
-    """Return a(z, w), the relative acceleration without friction."""
-    v = w + 1j * law.disc_speed * z
-    return -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
 
 
 @scalar
@@ -87,28 +64,6 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
     change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
     turn = abs(a) * s  # of the place, if the direction of slip changes altogether
     return left if left * left * (change + turn / s) < tolerance else math.inf
-
-
-@scalar
-def release_delay(z: complex, law: PinLaw) -> float:
-    """Return how long a pin at rest at ``z`` stays stuck, as ``sticking.release_delay`` does: eq. 7; inf for ever."""
-    constant = law.stiffness * law.offset
-    turning = pull(z, 0j, law) - constant
-    p, q, g = abs(constant), abs(turning), law.friction
-    if law.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
-        return math.inf
-    angle = math.atan2(turning.imag, turning.real)
-    if constant < 0.0:
-        angle -= math.pi
-    if law.disc_speed < 0.0:
-        angle = -angle
-    limit = 2.0 * math.atan2(
-        math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
-    )
-    turn = (-limit - angle) % (2.0 * math.pi)
-    if 2.0 * math.pi - turn < ROUNDING:
-        turn = 0.0  # at the limit already
-    return turn / abs(law.disc_speed)
 
 
 @scalar

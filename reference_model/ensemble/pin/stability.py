@@ -16,8 +16,8 @@ import numpy as np
 
 from reference_model.ensemble.core.dense_output import size_of
 from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.linear import powers_vanish
-from reference_model.ensemble.pin.slip import PinLaw
 
 STRIDE, STABLE = 0.5, 1.5
 """Step, in units of time or of that in which the slip velocity changes by itself; and in those in which deviations

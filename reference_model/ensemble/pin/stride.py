@@ -16,7 +16,7 @@ from reference_model.ensemble.core.implicit import (
 )
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.lanes import LANES
-from reference_model.ensemble.disc.slip import DiscLaw
+from reference_model.ensemble.core.laws import DiscLaw, PinLaw, pull
 from reference_model.ensemble.pin.lanes import (
     DUE,
     FLAG,
@@ -37,7 +37,6 @@ from reference_model.ensemble.pin.lanes import (
     slip_of,
 )
 from reference_model.ensemble.pin.memory import DURATION, SPAN
-from reference_model.ensemble.pin.slip import PinLaw, pull
 
 
 @scalar

@@ -18,9 +18,10 @@ from reference_model import (
     whirls,
 )
 from reference_model.ensemble import EndState, simulate_ensemble
-from reference_model.ensemble.pin import slip as pin_slip
+from reference_model.ensemble.core import laws
+from reference_model.ensemble.core.convergence import ACCURACY, converged
 from reference_model.ensemble.pin import trapping as regions
-from reference_model.ensemble.pin.end_states import ACCURACY, converged, depth, well_of
+from reference_model.ensemble.pin.end_states import depth, well_of
 from reference_model.ensemble.pin.memory import KNOWN_LEVEL, KNOWN_REACH
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
 
@@ -250,9 +251,7 @@ def test_a_strongly_damped_pin_creeps_by_turns_from_farther_out():
 
 
 def law_of(pin):
-    return pin_slip.PinLaw(
-        pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0
-    )
+    return laws.PinLaw(pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0)
 
 
 @pytest.mark.parametrize(

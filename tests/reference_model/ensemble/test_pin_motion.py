@@ -11,9 +11,11 @@ import pytest
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, simulate
 from reference_model.ensemble import chunks, simulate_ensemble
+from reference_model.ensemble.core import laws
+from reference_model.ensemble.core.nondimensional import units
 from reference_model.ensemble.pin import lanes as pin_lanes
 from reference_model.ensemble.pin import slip as pin_slip
-from reference_model.ensemble.pin.kernel import run_pins, units
+from reference_model.ensemble.pin.kernel import run_pins
 from reference_model.motion.nondimensional import Units
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.stick import release_delay, slip_from_rest
@@ -37,7 +39,7 @@ def reference_ends(pin, starts, duration):
 
 def law_of(pin):
     m = pin.mass
-    return pin_slip.PinLaw(
+    return laws.PinLaw(
         pin.stiffness / m, pin.damping / m, pin.friction_force / m, pin.disc_speed, pin.offset, 0.03, 0.0
     )
 
@@ -149,7 +151,7 @@ def test_release_and_first_slip_are_those_of_the_reference():
     for angle in np.linspace(0.0, 6.0, 9):
         z = 0.05 * np.exp(1j * angle)
         delay = release_delay(motion, z)
-        assert pin_slip.release_delay(z, law) == pytest.approx(delay, rel=1e-12)
+        assert laws.release_delay(z, law) == pytest.approx(delay, rel=1e-12)
         z *= np.exp(1j * FIG5.disc_speed * delay)
         place, slip, duration, way = pin_slip.begin_slip(z, law, 1e-13, 100.0, work)
         exact, exact_slip = slip_from_rest(motion, z).at(np.array([duration]))
@@ -175,7 +177,7 @@ def test_a_short_excursion_beyond_friction_ends_in_rest_again():
 
 def test_while_the_pull_is_constant_the_time_to_rest_is_exact():
     # Without springs and dampers on a resting disc the pull is that of the offset's spring alone: here none at all.
-    law = pin_slip.PinLaw(0.0, 0.0, 0.5, 0.0, 0.0, 0.03, 0.0)
+    law = laws.PinLaw(0.0, 0.0, 0.5, 0.0, 0.0, 0.03, 0.0)
     for w in (1e-3 + 0j, 2.0 - 1.0j):
         assert pin_slip.time_to_rest(0.3 + 0.1j, w, law, 1e-12) == pytest.approx(abs(w) / 0.5, rel=1e-14)
 

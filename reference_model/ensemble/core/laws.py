@@ -1,0 +1,95 @@
+"""The constants of pins and discs, the forces that act on them, and how long rest lasts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.motion.stick import GRAZING, ROUNDING
+
+
+class PinLaw(NamedTuple):
+    """The constants of a pin, divided by its mass, in units in which motion is of order one.
+
+    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
+    s₀; without friction nothing rests, and ``free`` = 1 keeps time as it is.
+    """
+
+    stiffness: float
+    damping: float
+    friction: float
+    disc_speed: float
+    offset: float
+    stretching: float
+    free: float
+
+
+class DiscLaw(NamedTuple):
+    """The constants of a disc in units in which motion is of order one; the first seven as of a pin.
+
+    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω), ``curling`` 1/κ, and ``around`` the unit vectors to
+    the points of contact, (cos, sin) of each, one after the other; none for the ring.
+    """
+
+    stiffness: float
+    damping: float
+    friction: float
+    disc_speed: float
+    offset: float
+    stretching: float
+    free: float
+    leverage: float
+    shaft_rate: float
+    lag: float
+    curling: float
+    around: tuple[float, ...]
+
+
+@inlined
+def pull(z: complex, w: complex, law: Any) -> complex:
+    """Return a(z, w), the relative acceleration without friction."""
+    v = w + 1j * law.disc_speed * z
+    acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
+    return acceleration
+
+
+@inlined
+def ring_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+    """Return −∂P/∂u_x, −∂P/∂u_y, −∂P/∂r and P of a ring."""
+    u, rim = math.sqrt(ux * ux + uy * uy), law.leverage * abs(r)
+    by_slip, by_rim = ring_shares(u, rim)
+    centre = by_slip / max(u, LEAST)
+    turning = by_rim * law.leverage * law.leverage / max(rim, LEAST)
+    return -centre * ux, -centre * uy, -turning * r, by_slip * u + by_rim * rim
+
+
+@inlined
+def points_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+    """Return what :func:`ring_friction` does, of points: in the frame of the disc they always stand alike."""
+    c, s = turned(angle)
+    fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
+    return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
+
+
+@scalar
+def release_delay(z: complex, law: PinLaw) -> float:
+    """Return how long a pin at rest at ``z`` stays stuck, as ``sticking.release_delay`` does: eq. 7; inf for ever."""
+    constant = law.stiffness * law.offset
+    turning = pull(z, 0j, law) - constant
+    p, q, g = abs(constant), abs(turning), law.friction
+    if law.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
+        return math.inf
+    angle = math.atan2(turning.imag, turning.real)
+    if constant < 0.0:
+        angle -= math.pi
+    if law.disc_speed < 0.0:
+        angle = -angle
+    limit = 2.0 * math.atan2(
+        math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
+    )
+    turn = (-limit - angle) % (2.0 * math.pi)
+    if 2.0 * math.pi - turn < ROUNDING:
+        turn = 0.0  # at the limit already
+    return turn / abs(law.disc_speed)

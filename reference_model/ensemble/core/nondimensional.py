@@ -1,0 +1,22 @@
+"""Units in which a motion is of order one, and what is rounding in them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference_model.ensemble.core.jit import scalar
+
+ROUNDING = 4.0 * 2.220446049250313e-16
+"""Relative slip that counts as none: what turns with the disc as closely as floats can say."""
+
+
+@scalar
+def units(k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float) -> Any:
+    """Return the unit of length in m and one over that of time in 1/s, as ``units.Units.of`` a pin."""
+    rate = max(k, abs(omega))
+    if rate == 0.0:
+        rate = c
+    if rate == 0.0:
+        rate = g / speed if g > 0.0 and speed > 0.0 else 1.0
+    length = max(max(place, abs(offset)), max(speed / rate, g / rate**2))
+    return (length if length > 0.0 else 1.0), rate
