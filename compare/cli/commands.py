@@ -48,7 +48,7 @@ except KeyboardInterrupt:  # which may come before there is anything that could 
 if TYPE_CHECKING:
     from compare.claims.study import Study
     from compare.judge.faults import Fault
-    from compare.judge.judge import Judged
+    from compare.judge.outcome import Judged
     from compare.report.matrix import Matrix
     from compare.run.runner import Run
     from compare.run.workers import Failure

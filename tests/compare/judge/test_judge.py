@@ -15,7 +15,7 @@ from compare.cli import commands as cli
 from compare.engines import Engine
 from compare.judge import detection, judge
 from compare.judge.faults import FAULTS, RIGHT, Fault
-from compare.judge.judge import Outcome
+from compare.judge.outcome import Outcome
 from reference_model import PinOnDisc
 
 START = (0.5, 0.25, 0.0, 0.0)
