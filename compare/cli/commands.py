@@ -121,7 +121,7 @@ def friction_discs(
       friction-discs errata
     """
     if version:
-        from compare.run.findings_store import version_of
+        from compare.run.stamp import version_of
 
         print(f"friction-discs {version_of('friction-discs')}")
     elif context.invoked_subcommand is None:

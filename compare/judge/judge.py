@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from compare.claims.as_json import as_json
 from compare.claims.claim import Kind, Verdict
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
@@ -20,8 +21,8 @@ from compare.judge.detection import DETECTION, detected, no_figures
 from compare.judge.outcome import Catch, Judged, Judgement, Outcome
 from compare.judge.page import judge_page
 from compare.judge.repetitions import REPEATED, REPETITIONS
-from compare.report.stamp import platform_stamp
 from compare.run.runner import Run, run
+from compare.run.stamp import platform_stamp
 from compare.run.workers import Failure
 from compare.text_files import write_text
 
@@ -183,13 +184,5 @@ def _as_json(judgement: Judgement) -> dict[str, Any]:
         "why_not_caught": judgement.why_not_caught,
         "outcome": judgement.outcome.value,
         "seconds": judgement.seconds,
-        "caught_by": [
-            {
-                "study": catch.study,
-                "sentence": catch.sentence,
-                "kinds": list(catch.kinds),
-                "failed": catch.failed,
-            }
-            for catch in judgement.catches
-        ],
+        "caught_by": as_json(judgement.catches),
     }
