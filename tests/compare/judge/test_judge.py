@@ -11,7 +11,7 @@ from fake_studies import claim, straight
 from compare.claims.claim import KINDS
 from compare.claims.paper_parameters import FIG5
 from compare.claims.study import Findings, Study
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine
 from compare.judge import detection, judge
 from compare.judge.faults import FAULTS, RIGHT, Fault

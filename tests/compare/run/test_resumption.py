@@ -12,7 +12,7 @@ import fake_studies
 import pytest
 from processes import environment
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine, reference
 from compare.run.fingerprint import fingerprint
 from compare.run.runner import run
