@@ -113,7 +113,3 @@ def friction_discs(
         print(f"friction-discs {version_of('friction-discs')}")
     elif context.invoked_subcommand is None:
         print(context.get_help())
-
-
-if __name__ == "__main__":
-    main()

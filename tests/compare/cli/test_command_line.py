@@ -405,7 +405,7 @@ def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path):
     (tmp_path / "full.csv").symlink_to("/dev/full")
     with open("/dev/full", "w") as full:
         done = subprocess.run(
-            [sys.executable, "-m", "compare.cli.app", *arguments],
+            [sys.executable, "-m", "compare.cli", *arguments],
             cwd=tmp_path,
             stdout=full,
             stderr=subprocess.PIPE,

@@ -10,8 +10,8 @@ from processes import REAL, environment
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
-from compare.cli.sweep import MAPS, PLANES
-from compare.cli.sweep_run import STORE
+from compare.cli.sweep.commands import MAPS, PLANES
+from compare.cli.sweep.run import STORE
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.distributions import KINDS
 
@@ -148,7 +148,7 @@ def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
 )
 def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch, capsys):
     plans = []
-    monkeypatch.setattr("compare.cli.sweep.run_sweep", lambda plan, *others: plans.append(plan))
+    monkeypatch.setattr("compare.cli.sweep.options.run_sweep", lambda plan, *others: plans.append(plan))
     cli.status(["sweep", "basin", *more])
     assert plans[0].duration == until
     cli.status(["sweep", "basin", "--help"])

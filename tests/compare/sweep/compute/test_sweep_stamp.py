@@ -59,7 +59,7 @@ def test_a_sweep_of_other_equations_or_another_plan_is_another_one(path, copied)
         "compare/studies/pin/basins/claims.py",
         "compare/figures.py",
         "compare/sweep/show/figures.py",
-        "compare/cli/sweep.py",
+        "compare/cli/sweep/run.py",
         "exudyn_models/paper/simulate.py",
     ],
 )
