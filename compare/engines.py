@@ -125,7 +125,7 @@ class Engine:
         """Refuse a promise that no study could ask for."""
         object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
-            known("kind of system", kind, KINDS)
+            one_of("kind of system", kind, KINDS)
         for name in ("sticks", "nonlinear"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} = {getattr(self, name)!r}: it must be True or False")
@@ -284,7 +284,7 @@ def _named(name: str) -> Engine:
 
 def known_name(name: str) -> str:
     """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
-    return name if ":" in name else known("engine", name, [*_REGISTRY, *_installed()])
+    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *_installed()])
 
 
 def _installed() -> dict[str, str]:
@@ -323,7 +323,7 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-def known(kind: str, name: str, names: Iterable[str]) -> str:
+def one_of(kind: str, name: str, names: Iterable[str]) -> str:
     """Return ``name`` if it is among ``names``; raise ``ValueError`` that suggests the nearest otherwise."""
     names = list(names)
     if name in names:

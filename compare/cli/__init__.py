@@ -1,5 +1,5 @@
 """The command line."""
 
-from compare.cli.commands import main
+from compare.cli.app import main
 
 __all__ = ["main"]

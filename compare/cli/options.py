@@ -1,131 +1,91 @@
-"""What the commands share: options, how they refuse bad input, read numbers and parameters, and end."""
+"""Options of the command line that several commands have, each declared once, with the parser that reads it.
+
+A parser raises ``BadInputError``: of a ``ValueError`` typer would show the value, and not what is allowed.
+"""
 
 from __future__ import annotations
 
+import inspect
 import os
-import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec, TypeVar, get_type_hints
 
 import typer
-from typer.core import TyperCommand
+
+from compare.cli.command import refused
 
 if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    from compare.claims.study import Study
     from reference_model.systems import System
 
-FINE, SOMETHING_DIFFERS, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+Value = TypeVar("Value")
+Group = TypeVar("Group", bound="DataclassInstance")
+Own = ParamSpec("Own")
 
-MOST_SAMPLES, MOST_JOBS = 10_000_000, 1000
-"""More would fill the memory of a machine, or its table of processes."""
-
-
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A parameter in SI units, several times for several.",
-        show_default=False,
-    ),
-]
-Tolerance = Annotated[str, typer.Option(metavar="TOL", help="Accuracy to aim at.")]
+MOST_JOBS = 1000
+"""More would fill a machine's table of processes."""
 
 
-class BadInputError(Exception):
-    """A sentence that tells the user what is wrong and what would be right."""
+def whole(name: str, least: int, most: int) -> Callable[[str], int]:
+    """Return the parser of whole numbers from ``least`` to ``most``."""
+
+    def parsed(text: str) -> int:
+        with refused():
+            return count(name, text, least, most)
+
+    return parsed
 
 
-class EngineFailedError(Exception):
-    """A sentence that tells why an engine has no result."""
+def positive(name: str, unit: str) -> Callable[[str], float]:
+    """Return the parser of numbers > 0 with ``unit``."""
+
+    def parsed(text: str) -> float:
+        from reference_model.systems import finite_number
+
+        with refused():
+            value = finite_number(name, text)
+            if value <= 0.0:
+                raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
+        return value
+
+    return parsed
 
 
-class InterruptedByUserError(Exception):
-    """Ctrl-C, which typer would turn into a status without a word."""
+def finite(name: str) -> Callable[[str], float]:
+    """Return the parser of finite numbers."""
+
+    def parsed(text: str) -> float:
+        from reference_model.systems import finite_number
+
+        with refused():
+            return finite_number(name, text)
+
+    return parsed
 
 
-class Command(TyperCommand):
-    """A command that takes no option twice and no empty one, and hands on what is no error of its own."""
+def chosen_from(kind: str, names: Sequence[str]) -> Callable[[str], str]:
+    """Return the parser of one of ``names``."""
 
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Refuse what would silently be ignored."""
-        values, _, given = self.make_parser(ctx).parse_args(args=list(args))
-        for option in given:
-            if option.param_type_name != "option" or option.is_flag or option.multiple:  # type: ignore[attr-defined]
-                continue
-            if values[option.name] == "":
-                raise BadInputError(f"{option.opts[0]} '': it must not be empty")
-            if given.count(option) > 1:
-                raise BadInputError(f"{option.opts[0]} is there {given.count(option)} times: give it once")
-        return super().parse_args(ctx, args)
+    def parsed(text: str) -> str:
+        from compare.engines import one_of
 
-    def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            raise InterruptedByUserError from None
+        with refused():
+            return one_of(kind, text, names)
+
+    return parsed
 
 
-@contextmanager
-def printing() -> Iterator[None]:
-    """Print inside; a reader that has seen enough, "head" for instance, is no error and changes no exit status."""
-    try:
-        yield
-        sys.stdout.flush()
-    except BrokenPipeError:
-        close_output()
+def tolerance_of(text: str) -> float:
+    """Return the tolerance that ``text`` says."""
+    from reference_model.systems import checked_tolerance, finite_number
 
-
-def close_output() -> None:
-    """Leave nothing behind that would be written once more, and fail again, at the end of the process."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-@contextmanager
-def refused() -> Iterator[None]:
-    """Turn the ``ValueError`` of a check into ``BadInputError``; not around more, lest it hide a mistake."""
-    try:
-        yield
-    except ValueError as error:
-        raise BadInputError(str(error)) from None
-
-
-def say(sentence: str, result: int) -> int:
-    """Print a sentence on the error stream and return the exit status ``result``."""
-    print(sentence, file=sys.stderr)
-    return result
-
-
-def changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
-    from compare.engines import known
-
-    names = [field.name for field in fields(system)]
-    changes: dict[str, Any] = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
-        name = known("parameter", name.strip(), names)
-        if name in changes:
-            raise ValueError(f"--set {name}: it is there more than once")
-        ring = name == "contact_points" and value.strip().lower() == "none"
-        changes[name] = None if ring else value
-    return replace(system, **changes)
-
-
-def positive(name: str, text: str, unit: str) -> float:
-    """Return the number > 0 that ``text`` says; raise ``ValueError`` otherwise."""
-    from reference_model.systems import finite_number
-
-    value = finite_number(name, text)
-    if value <= 0.0:
-        raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
-    return value
+    with refused():
+        return checked_tolerance(finite_number("tolerance", text))
 
 
 def count(name: str, text: str, least: int, most: int) -> int:
@@ -139,18 +99,104 @@ def count(name: str, text: str, least: int, most: int) -> int:
     return value
 
 
+def cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter in SI units, several times for several.",
+        show_default=False,
+    ),
+]
+Tolerance = Annotated[
+    float,
+    typer.Option(metavar="TOL", help="Accuracy to aim at.", parser=tolerance_of),
+]
+Folder = Annotated[Path, typer.Option("--output", metavar="DIR", help="Folder for the results.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Number of processes.",
+        parser=whole("jobs", 1, MOST_JOBS),
+        show_default="one for each core",
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Keep what the same code and libraries have already computed there."),
+]
+
+
+def taking(
+    group: type[Group], **defaults: Any
+) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
+    """Let a command take the fields of the dataclass ``group`` as options besides its own.
+
+    The command is handed them as its first argument. ``defaults`` are those that this command has others of. Typer
+    reads options from a signature: that of the fields takes the place of the first argument.
+    """
+
+    def decorated(command: Callable[Concatenate[Group, Own], Value]) -> Callable[..., Value]:
+        def taken(**values: Any) -> Value:
+            shared = group(**{field.name: values.pop(field.name) for field in fields(group)})
+            return command(shared, **values)  # type: ignore[call-arg]
+
+        kinds = get_type_hints(command, include_extras=True) | get_type_hints(group, include_extras=True)
+        own = list(inspect.signature(command).parameters.values())[1:]
+        usual = {field.name: field.default for field in fields(group)} | defaults
+        parameters = [one.replace(kind=one.KEYWORD_ONLY, annotation=kinds[one.name]) for one in own]
+        for name, default in usual.items():
+            given = inspect.Parameter.empty if default is MISSING else default
+            parameters.append(
+                inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=given, annotation=kinds[name])
+            )
+        taken.__name__, taken.__doc__ = command.__name__, command.__doc__
+        taken.__annotations__ = {one.name: one.annotation for one in parameters}
+        taken.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        return taken
+
+    return decorated
+
+
+def changed(system: System, settings: Sequence[str]) -> System:
+    """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
+    from compare.engines import one_of
+
+    names = [field.name for field in fields(system)]
+    changes: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
+        name = one_of("parameter", name.strip(), names)
+        if name in changes:
+            raise ValueError(f"--set {name}: it is there more than once")
+        ring = name == "contact_points" and value.strip().lower() == "none"
+        changes[name] = None if ring else value
+    return replace(system, **changes)
+
+
+def studies_of(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
+    """Return the studies of these names, or all; those of ``main`` where it was given its own."""
+    from compare.studies import STUDIES, studies
+
+    with refused():
+        return studies(names, STUDIES if context.obj is None else context.obj)
+
+
 def check_folder(folder: Path) -> None:
-    """Raise ``ValueError`` if no file can be made in ``folder``, which is made itself."""
+    """Raise ``ValueError`` if no file can be made in ``folder``, which is made itself: check all else before."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
         raise ValueError(f"can't write into the folder {str(folder)!r}: {error.strerror}") from None
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -23,9 +23,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from compare.claims.as_json import claim_from_json
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.quotes import Nature, parts, quote
-from compare.run.findings_store import claim_from_json
 from compare.text_files import write_text
 
 ROOT = Path(__file__).parents[2]

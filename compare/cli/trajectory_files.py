@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 from typing import IO
 
-from compare.run.findings_store import version_of
+from compare.claims.as_json import as_json
+from compare.run.stamp import version_of
 from reference_model.systems import COLUMNS
 from reference_model.trajectory import Trajectory
 
@@ -35,23 +35,15 @@ def write_json(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
         "version": version_of("friction-discs"),
         "engine": engine,
         "system": type(trajectory.system).__name__,
-        "parameters": asdict(trajectory.system),
+        "parameters": as_json(trajectory.system),
         "columns": [name for name, _ in columns],
         "units": {"t": "s", **dict(columns)},
-        "phases": [
-            {
-                "kind": phase.kind,
-                "start": float(phase.start),
-                "end": float(phase.end),
-                "initial_state": phase.initial_state.tolist(),
-            }
-            for phase in trajectory.phases
-        ],
-        "solution": asdict(trajectory.solution),
-        "times": trajectory.times.tolist(),
-        "states": trajectory.states.tolist(),
+        "phases": as_json(trajectory.phases),
+        "solution": as_json(trajectory.solution),
+        "times": as_json(trajectory.times),
+        "states": as_json(trajectory.states),
     }
-    json.dump(content, stream, ensure_ascii=False, allow_nan=False, default=float)
+    json.dump(content, stream, ensure_ascii=False, allow_nan=False)
     stream.write("\n")
 
 

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from compare.claims.as_json import as_json
 from compare.claims.claim import Kind, Verdict
 from compare.claims.study import Findings, Study, nothing_drawn
 from compare.engines import Engine
-from compare.judge.detection import DETECTION, Detected, detected
+from compare.judge.detection import DETECTION, detected
+from compare.judge.outcome import Catch, Judged, Judgement, Outcome
+from compare.judge.page import judge_page
 from compare.judge.repetitions import REPEATED, REPETITIONS
-from compare.report.stamp import platform_stamp
 from compare.run.runner import Run, run
+from compare.run.stamp import platform_stamp
 from compare.run.workers import Failure
 from compare.text_files import write_text
 
@@ -32,107 +34,6 @@ STUDIES = ("trajectories", "sticking-domain")
 
 LIMIT: float | None = 120.0
 """Seconds after which a fault has stopped an engine, as far as a study is concerned."""
-
-
-class Outcome(Enum):
-    """What became of a fault, or of a right engine."""
-
-    CAUGHT = "caught"
-    INVISIBLE = "changes nothing"
-    PASSES = "passes"
-    ONLY_TRAJECTORY = "only trajectories differ"
-    ONLY_OTHERS = "trajectories do not differ"
-    MISSED = "slips through"
-    WRONGED = "right, but failed"
-    UNFINISHED = "not finished"
-
-    @property
-    def good(self) -> bool:
-        """Whether the claims did what they are there for."""
-        return self in (Outcome.CAUGHT, Outcome.INVISIBLE, Outcome.PASSES)
-
-
-@dataclass(frozen=True)
-class Catch:
-    """A claim that differs, or a study in which the engine failed: that counts for all kinds of its claims."""
-
-    study: str
-    sentence: str
-    kinds: tuple[Kind, ...]
-    failed: bool = False
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """What the claims say of one engine.
-
-    Parameters
-    ----------
-    name, says : str
-        Of the fault, or of the right engine.
-    changes_physics : bool
-        Whether there is anything to be caught.
-    why_not_caught : str
-        The reason where there is not.
-    catches : tuple of Catch
-        In the order of the studies.
-    outcome : Outcome
-        Of all of them together.
-    seconds : float
-        How long all studies took.
-
-    """
-
-    name: str
-    says: str
-    changes_physics: bool
-    why_not_caught: str
-    catches: tuple[Catch, ...]
-    outcome: Outcome
-    seconds: float
-
-    def by(self, study: str) -> tuple[Catch, ...]:
-        """Return the catches in one study."""
-        return tuple(catch for catch in self.catches if catch.study == study)
-
-    @property
-    def by_trajectory(self) -> tuple[Catch, ...]:
-        """The comparisons of trajectories that differ."""
-        return tuple(catch for catch in self.catches if "trajectory" in catch.kinds)
-
-    @property
-    def by_others(self) -> tuple[Catch, ...]:
-        """The claims of all other kinds that differ."""
-        return tuple(catch for catch in self.catches if set(catch.kinds) != {"trajectory"})
-
-
-@dataclass(frozen=True)
-class Judged:
-    """The result of ``judge``.
-
-    Parameters
-    ----------
-    studies : tuple of Study
-        That were measured.
-    right, faults : tuple of Judgement
-        For each engine without and with a fault.
-    limits : tuple of Detected
-        The smallest changes of parameters that were noticed.
-    interrupted : bool
-        Whether Ctrl-C came before all was done.
-
-    """
-
-    studies: tuple[Study, ...]
-    right: tuple[Judgement, ...]
-    faults: tuple[Judgement, ...]
-    limits: tuple[Detected, ...]
-    interrupted: bool
-
-    @property
-    def good(self) -> bool:
-        """Whether everything was caught that there is to catch, and nothing else."""
-        return all(judgement.outcome.good for judgement in (*self.right, *self.faults))
 
 
 def judge(
@@ -263,8 +164,6 @@ def _outcome(judgement: Judgement, right: bool) -> Outcome:
 
 def write_judged(judged: Judged, output: Path) -> None:
     """Write ``judge.json`` and ``judge.html`` into the folder ``output``."""
-    from compare.judge.page import judge_page
-
     stamp = platform_stamp()
     content = {
         "stamp": stamp,
@@ -286,13 +185,5 @@ def _as_json(judgement: Judgement) -> dict[str, Any]:
         "why_not_caught": judgement.why_not_caught,
         "outcome": judgement.outcome.value,
         "seconds": judgement.seconds,
-        "caught_by": [
-            {
-                "study": catch.study,
-                "sentence": catch.sentence,
-                "kinds": list(catch.kinds),
-                "failed": catch.failed,
-            }
-            for catch in judgement.catches
-        ],
+        "caught_by": as_json(judgement.catches),
     }

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
+from compare.judge.outcome import Judged, Outcome
 from compare.report.numbers import with_digits
 from compare.report.page import environment
-
-if TYPE_CHECKING:
-    from compare.judge.judge import Judged
 
 
 def judge_page(judged: Judged, stamp: dict[str, str]) -> str:
     """Return the HTML of the judge's result."""
-    from compare.judge.judge import Outcome
-
     return (
         environment()
         .get_template("judge.html.j2")
@@ -31,8 +26,6 @@ def judge_page(judged: Judged, stamp: dict[str, str]) -> str:
 
 def summary(judged: Judged) -> str:
     """Return the totals in words: "41 of 42 faults caught, 1 slips through; 2 of 2 right engines pass"."""
-    from compare.judge.judge import Outcome
-
     words = []
     real = [fault for fault in judged.faults if fault.changes_physics]
     caught = sum(fault.outcome is Outcome.CAUGHT for fault in real)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from compare.claims.as_json import as_json, claim_as_json
 from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Evidence
 from compare.report.matrix import VERDICTS, Cell, Matrix, State
 from compare.report.quotes import filled
 from compare.report.worst import worst
-from compare.run.findings_store import claim_as_json, number_as_json
 from compare.run.runner import Drawing, Run
 from compare.run.workers import Failure
 
@@ -78,9 +78,9 @@ def _verdict(claim: Claim, cell: Cell) -> dict[str, Any]:
         "follows_from": cell.implied_by,
         "decided_by": {
             "element": element.index,
-            "difference": number_as_json(element.difference),
-            "allowed": number_as_json(element.total),
-            "largest_difference": number_as_json(element.largest_difference),
+            "difference": as_json(element.difference),
+            "allowed": as_json(element.total),
+            "largest_difference": as_json(element.largest_difference),
         },
     }
 
@@ -105,9 +105,5 @@ def _evidence(evidence: Evidence | Failure | None) -> dict[str, Any] | None:
         return None
     if isinstance(evidence, Failure):
         return {"failed": evidence.reason}
-    return {
-        "quantity": evidence.quantity,
-        "exact": number_as_json(evidence.exact),
-        "printed_value": number_as_json(evidence.printed_value),
-        "corrected_value": number_as_json(evidence.corrected_value),
-    }
+    content: dict[str, Any] = as_json(evidence)
+    return content

@@ -9,8 +9,8 @@ from compare.report.junit import junit
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
 from compare.report.results_json import results
-from compare.report.stamp import platform_stamp
 from compare.run.runner import Drawing, Run
+from compare.run.stamp import platform_stamp
 from compare.text_files import replacing, write_text
 
 

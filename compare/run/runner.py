@@ -13,8 +13,9 @@ from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.figures import paper_style, saved
 from compare.run.code_files import UnknownCodeError
-from compare.run.findings_store import PACKAGES, Store, stamp
+from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
+from compare.run.stamp import PACKAGES, stamp
 from compare.run.workers import Done, Failure, Workers
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from compare.claims.study import Study
-from compare.engines import known
+from compare.engines import one_of
 from compare.studies.disc.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.disc.fig08 import STUDY as FIG08
 from compare.studies.disc.fig09 import STUDY as FIG09
@@ -67,5 +67,5 @@ STUDIES: tuple[Study, ...] = (
 
 def studies(names: Iterable[str] = (), among: tuple[Study, ...] = STUDIES) -> tuple[Study, ...]:
     """Return the studies of the given names, or all, in report order; raise ``ValueError`` for others."""
-    wanted = {known("study", name, [study.name for study in among]) for name in names}
+    wanted = {one_of("study", name, [study.name for study in among]) for name in names}
     return tuple(study for study in among if study.name in wanted or not wanted)

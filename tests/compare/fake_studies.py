@@ -16,7 +16,7 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.claims.study import Findings, Study
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine, register
 from compare.figures import axis, curve, engines_in, new_figure, points
 from compare.report.animation import gif

@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FAKE = [sys.executable, str(Path(__file__).with_name("fake_studies.py"))]
-REAL = [sys.executable, "-m", "compare.cli.commands"]
+REAL = [sys.executable, "-m", "compare.cli"]
 
 PATIENCE = 900.0
 """In s: on the slowest of machines only what hangs takes as long."""

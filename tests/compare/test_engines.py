@@ -15,7 +15,7 @@ from compare.engines import (
     Engine,
     UnsupportedSystemError,
     engines,
-    known,
+    one_of,
     register,
 )
 from compare.studies import studies
@@ -280,6 +280,6 @@ def test_studies_come_in_report_order_whatever_the_order_of_their_names():
     among = fake_studies.ALL
     assert [study.name for study in studies(["agreement", "verdicts"], among)] == ["verdicts", "agreement"]
     assert studies([], among) == among
-    assert known("study", "verdicts", [study.name for study in among]) == "verdicts"
+    assert one_of("study", "verdicts", [study.name for study in among]) == "verdicts"
     with pytest.raises(ValueError, match="unknown study 'verdict': did you mean 'verdicts'"):
         studies(["verdict"], among)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.cli.trajectory_files import WRITERS
 from compare.text_files import check_writable, replacing
 

@@ -2,295 +2,52 @@
 
 from __future__ import annotations
 
-import cmath
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from compare.engines import EVERY_KIND, Engine, reference
-from compare.judge.faults import plain
-from compare.judge.faults.plain import Make
-from reference_model import simulate
-from reference_model.contact.contact_law import ThreeTermRing
-from reference_model.formulas.pin import release_time
-from reference_model.support import Support
-from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System
-from reference_model.trajectory import Phase, Trajectory
-
-
-@dataclass(frozen=True)
-class Fault:
-    """One mistake, and an engine that makes it and no other.
-
-    Parameters
-    ----------
-    name : str
-        As on the command line.
-    says : str
-        What is wrong, in a sentence.
-    engine : Engine
-        Of the same name.
-    changes_physics : bool
-        Whether any motion can tell; otherwise ``why_not_caught`` says why not.
-
-    """
-
-    name: str
-    says: str
-    engine: Engine
-    changes_physics: bool = True
-    why_not_caught: str = ""
-
-
-RIGHT: tuple[Engine, ...] = (reference, Engine("plain", plain.simulate, EVERY_KIND))
-"""The engines that mistakes are put into. Whoever fails one of them has made a mistake himself."""
-
-
-# ---------------------------------------------------------------- the reference with something around it
-
-
-def with_parameters(
-    change: Callable[[System], dict[str, Any]],
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-) -> Trajectory:
-    """Simulate ``system`` with some of its parameters changed."""
-    trajectory = simulate(replace(system, **change(system)), initial_state, times, tolerance=tolerance)
-    return replace(trajectory, system=system)
-
-
-def with_output(
-    change: Callable[[Trajectory], FloatArray],
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-) -> Trajectory:
-    """Simulate ``system`` and hand out ``change(trajectory)`` as its states."""
-    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
-    return replace(trajectory, states=change(trajectory))
-
-
-def three_terms(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Simulate a ring under (23)."""
-    ring = isinstance(system, DiscOnDisc) and system.contact_points is None
-    law = ThreeTermRing(system.contact_radius) if ring else None  # type: ignore[union-attr]
-    return simulate(system, initial_state, times, tolerance=tolerance, contact=law)
-
-
-def off_by(name: str, share: float, system: System) -> dict[str, float]:
-    """Return a parameter that is too large by ``share``, nothing for a system that has no such parameter."""
-    return {name: (1.0 + share) * getattr(system, name)} if hasattr(system, name) else {}
-
-
-def points_of(system: System) -> int:
-    """Return the number of points that a disc rests on, 0 if there is no ring of points."""
-    return (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 0
-
-
-def one_point_too_few(system: System) -> dict[str, Any]:
-    """Return n − 1 points; 3 are the fewest that a disc can have."""
-    return {"contact_points": points_of(system) - 1} if points_of(system) > 3 else {}
-
-
-def load_shared_twice(system: System) -> dict[str, Any]:
-    """Return the load over n."""
-    return {"friction_force": system.friction_force / (points_of(system) or 1)}
-
-
-def load_not_shared(system: System) -> dict[str, Any]:
-    """Return n times the load."""
-    return {"friction_force": system.friction_force * (points_of(system) or 1)}
-
-
-def diameter_for_radius(system: System) -> dict[str, Any]:
-    """Return 2R."""
-    return {"contact_radius": 2.0 * system.contact_radius} if isinstance(system, DiscOnDisc) else {}
-
-
-def shaft_at_rest(system: System) -> dict[str, Any]:
-    """Return Ω = 0."""
-    return {"shaft_speed": 0.0} if isinstance(system, DiscOnDisc) else {}
-
-
-def mass_for_inertia(system: System) -> dict[str, Any]:
-    """Return m and J exchanged."""
-    if not isinstance(system, DiscOnDisc):
-        return {}
-    return {"mass": system.polar_inertia, "polar_inertia": system.mass}
-
-
-def stiffness_for_frequency(system: System) -> dict[str, Any]:
-    """Return the spring of which C is the natural frequency."""
-    return {"stiffness": system.mass * system.stiffness**2}
-
-
-def damping_per_mass(system: System) -> dict[str, Any]:
-    """Return the damper of which β is divided by the mass."""
-    return {"damping": system.damping * system.mass}
-
-
-def hardening_forgotten(system: System) -> dict[str, Any]:
-    """Return C₃ = 0."""
-    return {"hardening": 0.0}
-
-
-def stop_without_play(system: System) -> dict[str, Any]:
-    """Return a gap of 0."""
-    return {"stop_gap": 0.0}
-
-
-def disc_backwards(system: System) -> dict[str, Any]:
-    """Return −ω."""
-    return {"disc_speed": -system.disc_speed}
-
-
-def stronger_at_extremes(system: System) -> dict[str, Any]:
-    """Return a load that is 1 % larger on a disc that is fast or slow."""
-    usual = 0.3 <= abs(system.disc_speed) <= 4.0
-    return {} if usual else {"friction_force": 1.01 * system.friction_force}
-
-
-def weaker_backwards(system: System) -> dict[str, Any]:
-    """Return a load that is 1e-4 smaller for ω < 0."""
-    return {"friction_force": (1.0 - 1e-4) * system.friction_force} if system.disc_speed < 0.0 else {}
-
-
-def in_single_precision(trajectory: Trajectory) -> FloatArray:
-    """Round to 24 bits."""
-    return trajectory.states.astype(np.float32).astype(float)
-
-
-def one_sample_late(trajectory: Trajectory) -> FloatArray:
-    """Return every state one sample late, the first one twice."""
-    return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
-
-
-def with_angle_wrapped(trajectory: Trajectory) -> FloatArray:
-    """Return angles between −π and π."""
-    states = trajectory.states.copy()
-    if isinstance(trajectory.system, DiscOnDisc):
-        states[:, ANGLE] = np.angle(np.exp(1j * states[:, ANGLE]))
-    return states
-
-
-def without_end(trajectory: Trajectory) -> FloatArray:
-    """Return no numbers for the last state."""
-    states = trajectory.states.copy()
-    states[-1] = np.nan
-    return states
-
-
-def with_relative_velocities(trajectory: Trajectory) -> FloatArray:
-    """Return velocities relative to the master disc."""
-    states, half = trajectory.states.copy(), trajectory.system.state_size // 2
-    states[:, half:] -= plain.carried(states[:, :half], trajectory.system.disc_speed)
-    return states
-
-
-def with_velocities_by_differences(trajectory: Trajectory) -> FloatArray:
-    """Return velocities that are differences of places over the time between samples, the first one as it was."""
-    states, half = trajectory.states.copy(), trajectory.system.state_size // 2
-    steps = np.diff(trajectory.times)[:, np.newaxis]
-    states[1:, half:] = np.diff(states[:, :half], axis=0) / steps
-    return states
-
-
-def output_late(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return states of 1e-7 s before the times asked for, but for the first."""
-    times = np.asarray(times, dtype=float)
-    early = np.append(times[0], np.maximum(times[1:] - 1e-7, times[0]))
-    return replace(simulate(system, initial_state, early, tolerance=tolerance), times=times)
-
-
-def phases_late(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Return the right states, and phases that begin and end 1 ms late, but for the start and the end of it all."""
-    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
-    start, end = trajectory.times[0], trajectory.times[-1]
-
-    def late(time: float) -> float:
-        return min(time + 1e-3, end) if time > start else time
-
-    phases = (replace(one, start=late(one.start), end=late(one.end)) for one in trajectory.phases)
-    return replace(trajectory, phases=tuple(phases))
-
-
-def without_centripetal_term(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Simulate a pin that is let go when friction can no longer hold it without its mass.
-
-    Where that is too early, it sticks again at once.
-    """
-    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
-    if not isinstance(system, PinOnDisc) or not Support.of(system).linear:
-        return trajectory
-    massless = replace(system, mass=1e-12 * system.mass)
-    times = trajectory.times
-    for i, phase in enumerate(trajectory.phases):
-        if phase.kind != "stick":
-            continue
-        z = complex(*phase.initial_state[:2])
-        until = min(phase.start + release_time(massless, abs(z), cmath.phase(z)), float(times[-1]))
-        if until > phase.end:
-            held, after = (times > phase.end) & (times <= until), times > until
-            states = trajectory.states.copy()
-            states[held] = [_carried_on(phase, system.disc_speed, t) for t in times[held]]
-            phases = [*trajectory.phases[:i], replace(phase, end=until)]
-            if np.any(after):
-                rest = [until, *times[after]]
-                let_go = _carried_on(phase, system.disc_speed, until)
-                later = without_centripetal_term(system, let_go, rest, tolerance=tolerance)
-                states[after] = later.states[1:]
-                phases += later.phases
-            return replace(trajectory, states=states, phases=tuple(phases))
-    return trajectory
-
-
-def _carried_on(phase: Phase, speed: float, time: float) -> FloatArray:
-    """Return the state of a pin that still sticks at ``time``."""
-    turn = cmath.exp(1j * speed * (time - phase.start))
-    z, v = (complex(*pair) * turn for pair in np.split(phase.initial_state, 2))
-    return np.array([z.real, z.imag, v.real, v.imag])
-
-
-def half_a_pitch_on(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Simulate points at φ + 2π(i + ½)/n."""
-    points = system.contact_points if isinstance(system, DiscOnDisc) else None
-    if points is None:
-        return simulate(system, initial_state, times, tolerance=tolerance)
-    turn = np.zeros(system.state_size)
-    turn[ANGLE] = math.pi / points
-    trajectory = simulate(system, np.asarray(initial_state) + turn, times, tolerance=tolerance)
-    return replace(trajectory, states=trajectory.states - turn)
-
-
-def from_rest(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    """Simulate from the places alone."""
-    places, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
-    return simulate(system, [*places, *(0.0 * velocities)], times, tolerance=tolerance)
-
-
-# ---------------------------------------------------------------- the catalogue
+from compare.judge.faults.around_reference import (
+    from_rest,
+    half_a_pitch_on,
+    in_single_precision,
+    one_sample_late,
+    output_late,
+    phases_late,
+    three_terms,
+    with_angle_wrapped,
+    with_output,
+    with_relative_velocities,
+    with_velocities_by_differences,
+    without_centripetal_term,
+    without_end,
+)
+from compare.judge.faults.fault import Fault
+from compare.judge.faults.make import Make
+from compare.judge.faults.plain import simulate as simulate_plainly
+from compare.judge.faults.wrong_parameters import (
+    damping_per_mass,
+    diameter_for_radius,
+    disc_backwards,
+    hardening_forgotten,
+    load_not_shared,
+    load_shared_twice,
+    mass_for_inertia,
+    off_by,
+    one_point_too_few,
+    shaft_at_rest,
+    stiffness_for_frequency,
+    stop_without_play,
+    stronger_at_extremes,
+    weaker_backwards,
+    with_parameters,
+)
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Trajectory
+
+RIGHT: tuple[Engine, ...] = (reference, Engine("plain", simulate_plainly, EVERY_KIND))
+"""The engines that mistakes are put into. A claim that one of them fails is itself wrong."""
 
 
 def _fault(name: str, says: str, function: Any, kinds: tuple[str, ...] = EVERY_KIND) -> Fault:
@@ -299,7 +56,7 @@ def _fault(name: str, says: str, function: Any, kinds: tuple[str, ...] = EVERY_K
 
 def made(name: str, says: str, kinds: tuple[str, ...] = EVERY_KIND, **make: Any) -> Fault:
     """Return the plain engine with one part made wrong."""
-    return _fault(name, says, functools.partial(plain.simulate, make=Make(**make)), kinds)
+    return _fault(name, says, functools.partial(simulate_plainly, make=Make(**make)), kinds)
 
 
 def mistaken(name: str, says: str, change: Callable[[System], dict[str, Any]]) -> Fault:
@@ -519,7 +276,7 @@ INVISIBLE: tuple[Fault, ...] = (
     Fault(
         "no-friction-on-the-master",
         "Friction does not act back on the disc below.",
-        Engine("no-friction-on-the-master", plain.simulate, EVERY_KIND),
+        Engine("no-friction-on-the-master", simulate_plainly, EVERY_KIND),
         changes_physics=False,
         why_not_caught="(1) and (19) give the speed of the disc below, so that no force can change it, and a "
         "trajectory has no torque of its drive. Where that disc is a body of its own, in the drivetrain, the balance "

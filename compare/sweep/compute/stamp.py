@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from compare.run.findings_store import stamp
+from compare.run.stamp import stamp
 
 CODE = (
     "reference_model",
+    "compare.claims.as_json",
     "compare.sweep.define.axes",
     "compare.sweep.compute.curves",
     "compare.sweep.define.distributions",

@@ -24,9 +24,9 @@ import xarray as xr
 import zarr
 from numpy.typing import NDArray
 
-from compare.run.findings_store import version_of
+from compare.run.stamp import version_of
 from compare.sweep.compute.stamp import sweep_stamp
-from compare.sweep.define.plan import Numbers, Plan, as_json, from_json
+from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
 
 FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
@@ -82,7 +82,7 @@ class SweepStore:
         libraries = ("friction-discs", "numpy", "scipy", "numba", "xarray", "zarr")
         attributes = {
             "title": f"friction-discs sweep: {plan.kind}",
-            "plan": json.dumps(as_json(plan)),
+            "plan": json.dumps(plan_as_json(plan)),
             "chunk": chunk,
             "stamp": sweep_stamp(),
             "versions": json.dumps({name: version_of(name) for name in libraries}),
@@ -101,7 +101,7 @@ class SweepStore:
             )
             whole = group["zarr_format"] == FORMAT["zarr_format"]
             whole = attributes.pop(CHECKSUM) == _checksum_of_text(attributes) and whole
-            plan = from_json(json.loads(attributes["plan"]))
+            plan = plan_from_json(json.loads(attributes["plan"]))
             chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
         except (OSError, AttributeError, KeyError, TypeError, ValueError):
             whole = False

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.engines import known
+from compare.engines import one_of
 from reference_model.systems import FloatArray, finite_number
 
 MOST_POINTS = 100_000
@@ -60,7 +60,7 @@ class Axis:
         parts = numbers.split(":")
         if len(parts) != 3:
             raise ValueError(f"axis {text!r}: write it as NAME=LOW:HIGH:POINTS")
-        name = known(kind, name.strip(), names)
+        name = one_of(kind, name.strip(), names)
         low, high = (finite_number(name, part) for part in parts[:2])
         try:
             points = int(parts[2])

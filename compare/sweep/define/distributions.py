@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compare.engines import known
+from compare.engines import one_of
 from compare.sweep.define.quantities import parameters, units
 from reference_model.systems import FloatArray, System, finite_number
 
@@ -95,7 +95,7 @@ class Uncertain:
 
     def __post_init__(self) -> None:
         """Refuse what is no distribution."""
-        kind = KINDS[known("distribution", self.kind, KINDS)]
+        kind = KINDS[one_of("distribution", self.kind, KINDS)]
         if len(self.numbers) != len(kind.arguments) or not kind.possible(*self.numbers):
             raise ValueError(f"{self}: it takes ({', '.join(kind.arguments)}) with {kind.allowed}")
 
@@ -111,7 +111,7 @@ class Uncertain:
         found = re.fullmatch(r"\s*(\w+)\s*=\s*(\w+)\s*\(([^()]*)\)\s*", text)
         if not found:
             raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION, which is one of {in_words()}")
-        name = known("parameter or component", found[1], units(system))
+        name = one_of("parameter or component", found[1], units(system))
         numbers = tuple(finite_number(name, number) for number in found[3].split(","))
         uncertain = cls(name, found[2], numbers)
         uncertain.check(system)

@@ -6,18 +6,19 @@ it says in which rounds they are to be simulated: all at once, or where the boun
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from compare.claims.as_json import as_json, from_json
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.distributions import Uncertain, uniform_rows
 from compare.sweep.define.quantities import components, parameters
 from compare.sweep.define.refinement import refined
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.systems import FloatArray, System
 
 IntArray = NDArray[np.int64]
 Ends = NDArray[np.uint8]
@@ -30,8 +31,6 @@ Rounds: TypeAlias = Generator[Numbers, Ends, Any]
 
 Trajectories: TypeAlias = tuple[FloatArray, dict[str, FloatArray]]
 """Initial states of shape (n, 4 or 6) and the parameters that differ, each of shape (n,)."""
-
-SYSTEMS: dict[str, type[System]] = {kind.__name__: kind for kind in (PinOnDisc, DiscOnDisc)}
 
 BASES = 2
 """Independent samples from which the sensitivities are estimated."""
@@ -251,39 +250,16 @@ class Uncertainty(Common):
 PLANS: dict[str, type[Any]] = {plan.kind: plan for plan in (Basin, RandomBasin, Map, Uncertainty)}
 
 
-def as_json(plan: Plan) -> dict[str, Any]:
+def plan_as_json(plan: Plan) -> dict[str, Any]:
     """Return the plan as JSON values."""
-    content: dict[str, Any] = {"kind": plan.kind, **asdict(plan)}  # type: ignore[call-overload]
-    content["system"] = {"type": type(plan.system).__name__, **asdict(plan.system)}
-    return _lists(content)  # type: ignore[no-any-return]
+    return {"kind": plan.kind, **as_json(plan)}
 
 
-def from_json(content: dict[str, Any]) -> Plan:
-    """Return the plan of ``as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if there is none."""
+def plan_from_json(content: Mapping[str, Any]) -> Plan:
+    """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if there is none."""
     values = dict(content)
-    kind = PLANS[values.pop("kind")]
-    system = dict(values.pop("system"))
-    values["system"] = SYSTEMS[system.pop("type")](**system)
-    for name in ("x", "y"):
-        if name in values:
-            values[name] = Axis(**values[name])
-    if "start" in values:
-        values["start"] = tuple(values["start"])
-    if "starts" in values:
-        values["starts"] = tuple(map(tuple, values["starts"]))
-    if "varied" in values:
-        values["varied"] = tuple(
-            Uncertain(one["name"], one["kind"], tuple(one["numbers"])) for one in values["varied"]
-        )
-    plan: Plan = kind(**values)
+    plan: Plan = from_json(PLANS[values.pop("kind")], values)
     return plan
-
-
-def _lists(value: Any) -> Any:
-    """Return the value with lists in place of tuples, as JSON reads them."""
-    if isinstance(value, dict):
-        return {name: _lists(item) for name, item in value.items()}
-    return [_lists(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:

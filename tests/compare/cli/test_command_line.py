@@ -15,7 +15,7 @@ from processes import FAKE, PATIENCE, REAL, environment
 
 from compare.claims.errata import ERRATA
 from compare.claims.paper_parameters import FIG5, FIG11
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import EVERY_KIND
 
 
@@ -54,7 +54,7 @@ def test_list_names_studies_and_engines(capsys):
 def test_help_starts_without_the_heavy_libraries():
     heavy = "numpy scipy matplotlib numba exudyn exudyn_models reference_model"
     loaded = f"[name for name in '{heavy}'.split() if name in sys.modules]"
-    code = f"import sys, compare.cli.commands; compare.cli.commands.status(['--help']); print({loaded})"
+    code = f"import sys, compare.cli.app; compare.cli.app.status(['--help']); print({loaded})"
     process = subprocess.run([REAL[0], "-c", code], env=environment(), capture_output=True, encoding="utf-8")
     assert process.stdout.splitlines()[-1] == "[]"
 
@@ -405,7 +405,7 @@ def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path):
     (tmp_path / "full.csv").symlink_to("/dev/full")
     with open("/dev/full", "w") as full:
         done = subprocess.run(
-            [sys.executable, "-m", "compare.cli.commands", *arguments],
+            [sys.executable, "-m", "compare.cli", *arguments],
             cwd=tmp_path,
             stdout=full,
             stderr=subprocess.PIPE,

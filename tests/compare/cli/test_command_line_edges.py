@@ -8,7 +8,7 @@ import pytest
 from processes import FAKE, REAL, environment
 
 from compare.claims.study import Findings
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.run.runner import Run
 from compare.run.workers import failure, lacks_memory
 

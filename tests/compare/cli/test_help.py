@@ -7,10 +7,10 @@ import pytest
 import typer
 from processes import ROOT
 
-import compare.cli.sweep
+import compare.cli.sweep.run
 import compare.judge.judge
 import compare.run.runner
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine
 from compare.sweep.compute.store import SweepStore
 
@@ -67,7 +67,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.run.runner, "run", stop)
     monkeypatch.setattr(compare.judge.judge, "judge", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
-    monkeypatch.setattr(compare.cli.sweep, "_executor", stop)
+    monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
 
 

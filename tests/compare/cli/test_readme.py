@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 from fake_studies import claim
 
+from compare.claims.as_json import claim_as_json
 from compare.cli import readme
 from compare.cli.readme import Number, filled, kept, parted, unlike, write
 from compare.engines import engines
-from compare.run.findings_store import claim_as_json
 from compare.studies import STUDIES
 
 TEXT = """Each of <!--=claims-->some 12<!--/--> claims, <!--=verdicts: kind=order, verdict=agrees-->…<!--/--> of them.

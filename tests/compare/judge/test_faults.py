@@ -14,8 +14,10 @@ from scipy.special import ellipe, ellipkm1
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import BadTrajectoryError
 from compare.judge.faults import FAULTS, RIGHT
-from compare.judge.faults.plain import RIGHT as MADE_RIGHT
-from compare.judge.faults.plain import Make, mean_slip, on_polygon, simulate
+from compare.judge.faults.friction import mean_slip, on_polygon
+from compare.judge.faults.make import RIGHT as MADE_RIGHT
+from compare.judge.faults.make import Make
+from compare.judge.faults.plain import simulate
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import SimulationError
 

@@ -11,11 +11,11 @@ from fake_studies import claim, straight
 from compare.claims.claim import KINDS
 from compare.claims.paper_parameters import FIG5
 from compare.claims.study import Findings, Study
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine
 from compare.judge import detection, judge
 from compare.judge.faults import FAULTS, RIGHT, Fault
-from compare.judge.judge import Outcome
+from compare.judge.outcome import Outcome
 from reference_model import PinOnDisc
 
 START = (0.5, 0.25, 0.0, 0.0)

@@ -13,7 +13,7 @@ from processes import ROOT
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Recorded
-from compare.cli.commands import status
+from compare.cli.app import status
 from compare.engines import EVERY_KIND, Engine
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.page import summary

@@ -7,9 +7,11 @@ import pytest
 from fake_studies import GOOD, claim, measure_verdicts, straight
 from processes import environment
 
+from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
-from compare.run.findings_store import PACKAGES, Store, claim_as_json, claim_from_json, stamp
+from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
+from compare.run.stamp import PACKAGES, stamp
 
 NOW = stamp(fingerprint(straight, PACKAGES))
 
@@ -74,7 +76,8 @@ def test_a_users_own_settings_of_exudyn_are_switched_off_and_the_stamp_says_whet
     (tmp_path / "config.json").write_text('{"version": 1, "config": {"suppressWarnings": true}}')
     code = (
         f"import {first}, exudyn\n"
-        "from compare.run.findings_store import stamp\n"
+        "import compare.run.runner\n"
+        "from compare.run.stamp import stamp\n"
         "from compare.run.workers import Workers\n"
         "from exudyn.misc.overrideSettings import Applied\n"
         "if __name__ == '__main__':\n"

@@ -12,11 +12,11 @@ import fake_studies
 import pytest
 from processes import environment
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.engines import Engine, reference
-from compare.run.findings_store import PACKAGES
 from compare.run.fingerprint import fingerprint
 from compare.run.runner import run
+from compare.run.stamp import PACKAGES
 
 HEAD = """
 from dataclasses import replace
@@ -301,7 +301,7 @@ INSTANCE = partial(simulate, np.arange(3.0), kinds=NAMES)
 
 PRINT = """
 from compare.run.fingerprint import fingerprint
-from compare.run.findings_store import PACKAGES
+from compare.run.stamp import PACKAGES
 import mine
 print(fingerprint(mine.simulate, PACKAGES), fingerprint(mine.INSTANCE, PACKAGES))
 """

@@ -1,7 +1,7 @@
 import pytest
 from long_sweeps import LONG, content
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from processes import PATIENCE, REAL, environment
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 
 LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
 SIGNALLING = Path(__file__).with_name("signalling_sweep.py")

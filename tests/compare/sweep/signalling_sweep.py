@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.sweep.compute.store import Round
 
 NUMBER = signal.Signals[sys.argv[1]]

@@ -9,8 +9,9 @@ import xarray as xr
 from processes import REAL, environment
 
 from compare.claims.paper_parameters import FIG5
-from compare.cli import commands as cli
-from compare.cli.sweep import MAPS, PLANES, STORE
+from compare.cli import app as cli
+from compare.cli.sweep.commands import MAPS, PLANES
+from compare.cli.sweep.run import STORE
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.distributions import KINDS
 
@@ -39,7 +40,7 @@ def test_help_has_the_axes_and_distributions_that_there_are(capsys):
 def test_help_of_sweeps_starts_without_the_heavy_libraries():
     heavy = "numpy scipy matplotlib numba xarray zarr distributed reference_model"
     code = (
-        "import sys, compare.cli.commands; compare.cli.commands.status(['sweep', 'basin', '--help']); "
+        "import sys, compare.cli.app; compare.cli.app.status(['sweep', 'basin', '--help']); "
         f"print([name for name in '{heavy}'.split() if name in sys.modules])"
     )
     process = subprocess.run([REAL[0], "-c", code], env=environment(), capture_output=True, encoding="utf-8")
@@ -147,7 +148,7 @@ def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
 )
 def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch, capsys):
     plans = []
-    monkeypatch.setattr("compare.cli.sweep._sweep", lambda plan, *others: plans.append(plan))
+    monkeypatch.setattr("compare.cli.sweep.options.run_sweep", lambda plan, *others: plans.append(plan))
     cli.status(["sweep", "basin", *more])
     assert plans[0].duration == until
     cli.status(["sweep", "basin", "--help"])

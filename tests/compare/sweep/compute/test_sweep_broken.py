@@ -7,8 +7,8 @@ import pytest
 import zarr
 from long_sweeps import assert_same, content
 
-from compare.cli import commands as cli
-from compare.cli.sweep import STORE
+from compare.cli import app as cli
+from compare.cli.sweep.run import STORE
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
 

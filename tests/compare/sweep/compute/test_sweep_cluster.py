@@ -14,7 +14,7 @@ from long_sweeps import LONG, assert_same, content, finished_by, long_sweep, mar
 from processes import environment
 
 from compare.claims.paper_parameters import FIG5
-from compare.cli import commands as cli
+from compare.cli import app as cli
 from compare.sweep.compute import executors
 from compare.sweep.compute.executors import Cluster, ClusterError
 from compare.sweep.compute.run import OtherCodeError, run

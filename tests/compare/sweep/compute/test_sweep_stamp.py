@@ -7,15 +7,14 @@ from shutil import copytree, ignore_patterns
 import pytest
 from processes import ROOT, environment
 
-from compare.run import findings_store as store
+from compare.run import stamp
 from compare.sweep.compute.stamp import CODE, sweep_stamp
 
 BESIDE = {
     "compare.claims.claim",
     "compare.engines",
     "compare.claims.paper_parameters",
-    "compare.run.findings_store",
-    "compare.claims.study",
+    "compare.run.stamp",
     "compare.sweep.compute.executors",
     "compare.sweep.show.figures",
     "compare.sweep.compute.stamp",
@@ -27,9 +26,9 @@ BESIDE = {
 
 @pytest.fixture
 def copied(tmp_path, monkeypatch):
-    for package in store.PACKAGES:
+    for package in stamp.PACKAGES:
         copytree(ROOT / package, tmp_path / package, ignore=ignore_patterns("__pycache__"))
-    monkeypatch.setattr(store, "ROOT", tmp_path)
+    monkeypatch.setattr(stamp, "ROOT", tmp_path)
     return tmp_path
 
 
@@ -37,7 +36,7 @@ def edited(path):
     """Return the stamps before and after an edit."""
     before = sweep_stamp()
     path.write_text(path.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
-    store._digest.cache_clear()  # a process has the code that it was started with
+    stamp._digest.cache_clear()  # a process has the code that it was started with
     return before, sweep_stamp()
 
 
@@ -60,7 +59,7 @@ def test_a_sweep_of_other_equations_or_another_plan_is_another_one(path, copied)
         "compare/studies/pin/basins/claims.py",
         "compare/figures.py",
         "compare/sweep/show/figures.py",
-        "compare/cli/sweep.py",
+        "compare/cli/sweep/run.py",
         "exudyn_models/paper/simulate.py",
     ],
 )

@@ -6,7 +6,7 @@ import pytest
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.distributions import Uncertain
-from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty, as_json, from_json
+from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty, plan_as_json, plan_from_json
 
 PIN = {"system": FIG5, "duration": 100.0, "tolerance": 1e-9, "seed": 4}
 DISC = PIN | {"system": FIG11}
@@ -32,7 +32,7 @@ SIZE = {"basin": 35, "random basin": 35, "map": 24, "uncertainty": 35}
 
 @pytest.mark.parametrize("kind", PLANS)
 def test_a_plan_is_the_same_after_json(kind):
-    assert from_json(json.loads(json.dumps(as_json(PLANS[kind])))) == PLANS[kind]
+    assert plan_from_json(json.loads(json.dumps(plan_as_json(PLANS[kind])))) == PLANS[kind]
 
 
 @pytest.mark.parametrize("kind", PLANS)

@@ -1,0 +1,138 @@
+"""The one way from values to JSON and back: numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
+
+JSON has no numbers for NaN and infinity: they are "nan", "inf" and "-inf", which ``float`` reads. All others come
+back to the last bit. Arrays and tuples are lists, dataclasses are their fields by name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from types import UnionType
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from compare.claims.claim import Claim, ErrorBudget
+
+Kind = TypeVar("Kind")
+
+TYPE = "type"
+"""Says which of several dataclasses a field holds."""
+
+
+def as_json(value: Any) -> Any:
+    """Return numbers, arrays, tuples, mappings and dataclasses as JSON values; what is none of these stays."""
+    if isinstance(value, np.ndarray):
+        numbers = value.astype(float).tolist()
+        return numbers if np.all(np.isfinite(value)) else as_json(numbers)
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return value if math.isfinite(value) else str(value)
+    if isinstance(value, Enum):
+        return value.value
+    if is_dataclass(value) and not isinstance(value, type):
+        kinds = get_type_hints(type(value))
+        return {field.name: _tag(kinds[field.name], getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {name: as_json(item) for name, item in value.items()}
+    return [as_json(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
+    """Return the dataclass ``kind`` that ``as_json`` made ``content`` of.
+
+    Fields may be numbers, words, arrays, tuples of one type, and dataclasses. Raises ``KeyError``, ``TypeError`` or
+    ``ValueError`` for what is no such content.
+    """
+    kinds = get_type_hints(kind)
+    return kind(**{name: _value(kinds[name], item) for name, item in content.items()})
+
+
+def _tag(kind: Any, value: Any) -> Any:
+    """Return the value of a field of type ``kind``, with the name of its own type where several are possible."""
+    content = as_json(value)
+    return {TYPE: type(value).__name__} | content if _dataclasses(kind) else content
+
+
+def _value(kind: Any, content: Any) -> Any:
+    """Return the value of type ``kind``."""
+    if possible := _dataclasses(kind):
+        return from_json(
+            possible[content[TYPE]], {name: item for name, item in content.items() if name != TYPE}
+        )
+    if is_dataclass(kind):
+        return from_json(kind, content)  # type: ignore[arg-type]
+    if get_origin(kind) is tuple:
+        return tuple(_value(get_args(kind)[0], item) for item in content)
+    if get_origin(kind) is np.ndarray:
+        return numbers_from_json(content)
+    return float(content) if kind is float else content
+
+
+def _dataclasses(kind: Any) -> dict[str, type[Any]]:
+    """Return the dataclasses by name of which ``kind`` is a union; none where it is something else."""
+    several = get_args(kind) if get_origin(kind) is UnionType else ()
+    return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
+
+
+def numbers_from_json(content: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return the array of ``as_json``."""
+    return np.array(content, dtype=float)
+
+
+def claim_as_json(claim: Claim) -> dict[str, Any]:
+    """Return the claim as JSON values; ``claim_from_json`` gives the same claim again, to the last bit."""
+    return {
+        "sentence": claim.sentence,
+        "equation": claim.equation,
+        "kind": claim.kind,
+        "engine": claim.engine,
+        "unit": claim.unit,
+        "predicted": as_json(claim.predicted),
+        "measured": as_json(claim.measured),
+        "difference": as_json(claim.difference),
+        "numerical_error": as_json(claim.budget.numerical),
+        "model_error": claim.budget.model,
+        "resolution": as_json(claim.budget.resolution),
+        "verdict": claim.verdict.value,
+        "parameters": as_json(claim.parameters),
+        "source": claim.source,
+        "note": claim.note,
+        "basis": claim.basis,
+        "implied_by": claim.implied_by,
+        "answers": claim.answers,
+        "named": dict(claim.named),
+        "id": claim.identity,
+        "axes": [list(names) for names in claim.axes],
+    }
+
+
+def claim_from_json(content: dict[str, Any]) -> Claim:
+    """Return the claim of ``claim_as_json``."""
+    return Claim(
+        content["sentence"],
+        equation=content["equation"],
+        kind=content["kind"],
+        engine=content["engine"],
+        predicted=numbers_from_json(content["predicted"]),
+        measured=numbers_from_json(content["measured"]),
+        budget=ErrorBudget(
+            numbers_from_json(content["numerical_error"]),
+            model=content["model_error"],
+            resolution=float(content["resolution"]),
+        ),
+        parameters=content["parameters"],
+        source=content["source"],
+        unit=content["unit"],
+        note=content["note"],
+        basis=content["basis"],
+        implied_by=content["implied_by"],
+        answers=content["answers"],
+        named=content["named"],
+        identity=content["id"],
+        axes=content["axes"],
+    )

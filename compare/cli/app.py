@@ -1,0 +1,115 @@
+"""The command line: ``friction-discs list | report | judge | simulate | sweep | errata``.
+
+Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
+Exudyn, matplotlib) happen inside of the commands that need them.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+try:
+    import typer
+
+    from compare.cli.command import (
+        BAD_INPUT,
+        FINE,
+        INTERRUPTED,
+        SOMETHING_DIFFERS,
+        BadInputError,
+        Command,
+        EngineFailedError,
+        InterruptedByUserError,
+        close_output,
+        printing,
+        say,
+    )
+    from compare.cli.judge import judge
+    from compare.cli.listing import errata, list_studies
+    from compare.cli.report import report
+    from compare.cli.simulate import simulate
+    from compare.cli.sweep import sweep
+except KeyboardInterrupt:  # which may come before there is anything that could take it
+    print("Interrupted.", file=sys.stderr)
+    sys.exit(130)
+
+if TYPE_CHECKING:
+    from compare.claims.study import Study
+
+app = typer.Typer(
+    name="friction-discs",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("list", cls=Command)(list_studies)
+for command in (report, judge, errata):
+    app.command(cls=Command)(command)
+app.add_typer(simulate, name="simulate")
+app.add_typer(sweep, name="sweep")
+
+
+def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
+    """Run the command line and exit with its status.
+
+    ``studies`` takes the place of the paper's own, for a project that brings its own studies and engines.
+    """
+    if sys.stdout is None:  # closed by the caller
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
+
+
+def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:
+    """Run the command line and return its exit status."""
+    # public names only: typer brings its own copy of click or takes the installed one
+    usage_error: type[Exception] = typer.BadParameter.__mro__[1]
+    try:
+        with printing():
+            result = app(list(arguments), standalone_mode=False, obj=studies, prog_name="friction-discs")
+    except (BadInputError, usage_error) as error:
+        message = error.format_message() if hasattr(error, "format_message") else str(error)
+        return say(" ".join(message.split()), BAD_INPUT)
+    except EngineFailedError as error:
+        return say(str(error), SOMETHING_DIFFERS)
+    except MemoryError:
+        return say("there is not enough memory", SOMETHING_DIFFERS)
+    except SystemExit as end:
+        if not isinstance(end.__context__, BrokenPipeError):  # which typer ends with status 1
+            raise
+        close_output()
+        return FINE
+    except OSError as error:
+        close_output()
+        return say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
+    except (KeyboardInterrupt, InterruptedByUserError, typer.Abort):
+        return say("Interrupted.", INTERRUPTED)
+    return result if isinstance(result, int) else FINE
+
+
+@app.callback(invoke_without_command=True)
+def friction_discs(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Compare two simulations of friction discs with each other and with every formula of the paper.
+
+    \b
+    Examples:
+      friction-discs list
+      friction-discs report
+      friction-discs judge
+      friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
+      friction-discs simulate disc --set contact_points=6 --output disc.json
+      friction-discs sweep basin pin
+      friction-discs errata
+    """
+    if version:
+        from compare.run.stamp import version_of
+
+        print(f"friction-discs {version_of('friction-discs')}")
+    elif context.invoked_subcommand is None:
+        print(context.get_help())

@@ -1,0 +1,142 @@
+"""``friction-discs report``: measure the studies and write the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.options import Folder, Jobs, Resume, check_folder, cores, studies_of
+from compare.cli.progress import measurements
+
+if TYPE_CHECKING:
+    from compare.report.matrix import Matrix
+    from compare.run.runner import Run
+    from compare.run.workers import Failure
+
+MOST_LISTED = 10
+"""Measurements that a sentence names."""
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="STUDY", help="Studies to run; all without any.", show_default=False),
+]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME",
+        help="Engine to measure, several times for several; all without any. "
+        "MODULE:FUNCTION takes a simulate() of your own.",
+        show_default=False,
+    ),
+]
+
+
+def report(
+    context: typer.Context,
+    names: Names = None,
+    engine: Engines = None,
+    output: Folder = Path("report"),
+    jobs: Jobs = None,
+    resume: Resume = False,
+) -> int:
+    """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+
+    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, and
+    130 after Ctrl-C; the report then holds what was finished, and --resume does the rest. Files of data that
+    an engine of your own reads are not looked at then: when they change, measure anew.
+
+    \b
+    Examples:
+      friction-discs report
+      friction-discs report fig03 fig05 --engine exudyn --output fig
+    """
+    from compare.engines import engines
+
+    studies = studies_of(context, names or [])
+    with refused():
+        chosen = engines(dict.fromkeys(engine or []))
+        check_folder(output)
+
+    from compare.claims.errata import ERRATA
+    from compare.report.write import write_report
+    from compare.run.runner import run
+    from compare.run.workers import interrupts_ignored
+
+    with measurements() as progress:
+        result = run(
+            studies,
+            chosen,
+            folder=output / "data",
+            jobs=jobs or cores(),
+            resume=resume,
+            errata=ERRATA if context.obj is None and not names else (),  # part of the whole paper only
+            progress=progress,
+        )
+    if resume:
+        _tell_unknown(result.unknown)
+    with interrupts_ignored():  # a second or so, and then nothing is half written
+        matrix = write_report(result, output)
+    with printing():
+        _print_summary(result, matrix, output / "index.html")
+    return _status(result, matrix)
+
+
+def _status(result: Run, matrix: Matrix) -> int:
+    """Return the exit status of a report; say what is missing of one that was interrupted."""
+    from compare.report.matrix import State
+
+    if result.interrupted:
+        missing = _listed([f"{study} {column}" for study, column in result.missing]) or "figures"
+        return say(
+            f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
+        )
+    wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
+    return SOMETHING_DIFFERS if wrong else FINE
+
+
+def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
+    """Print a line for all that is no agreement, and the totals."""
+    from compare.report.matrix import State
+    from compare.report.page import summary
+
+    for group in matrix.groups:
+        for row in group.rows:
+            for column, cell in row.cells.items():
+                if cell.state is State.NOT_SIMULATED:
+                    if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
+                        print(f"{group.study.name} {column} not simulated: {cell.reason}")
+                elif cell.state not in (State.AGREES, State.MISSING):  # what is missing is said at the end
+                    reason = f": {cell.reason}" if cell.reason else ""
+                    print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
+    for what, failure in _failures(result).items():
+        print(f"{what}: {failure.reason}")
+    print(f"{summary(matrix)} ({index})")
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    return ", ".join(names[:MOST_LISTED]) + more
+
+
+def _tell_unknown(unknown: Mapping[str, str]) -> None:
+    """Say what could not be taken from an earlier run, and why."""
+    for name, reason in unknown.items():
+        say(f"{name} is measured anew, since what it depends on can't be seen: {reason}", FINE)
+
+
+def _failures(result: Run) -> dict[str, Failure]:
+    """Return what failed besides the measurements, by a name that can be printed."""
+    from compare.run.workers import Failure
+
+    work: dict[str, object] = {
+        f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()
+    }
+    work |= {
+        f"errata: no evidence for {result.errata[i].equation}": evidence
+        for i, evidence in result.evidence.items()
+    }
+    return {name: value for name, value in work.items() if isinstance(value, Failure)}

@@ -1,0 +1,172 @@
+"""``friction-discs simulate pin | disc``: one motion as a file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
+from compare.cli.options import Settings, Tolerance, changed, finite, positive, taking, whole
+from compare.text_files import check_writable, replacing
+
+if TYPE_CHECKING:
+    from reference_model.systems import System
+
+MOST_SAMPLES = 10_000_000
+"""More would fill the memory of a machine."""
+
+simulate = typer.Typer(rich_markup_mode=None)
+
+EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
+PinState = Annotated[
+    tuple[float, float, float, float],
+    typer.Option(
+        metavar="X Y VX VY", help="Position in m and velocity in m/s at time 0.", parser=finite("start")
+    ),
+]
+DiscState = Annotated[
+    tuple[float, float, float, float, float, float],
+    typer.Option(
+        metavar="X Y ANGLE VX VY SPIN",
+        help="Position in m, angle in rad, velocity in m/s and spin in rad/s at time 0.",
+        parser=finite("start"),
+    ),
+]
+Until = Annotated[float, typer.Option(metavar="T", help="Last time in s.", parser=positive("until", "s"))]
+Samples = Annotated[
+    int,
+    typer.Option(
+        metavar="N", help="Number of times from 0 to T, >= 2.", parser=whole("samples", 2, MOST_SAMPLES)
+    ),
+]
+File = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What both systems take from the command line."""
+
+    engine: EngineName = "reference"
+    settings: Settings = None
+    until: Until = 400
+    samples: Samples = 4001
+    tolerance: Tolerance = 1e-9
+    output: File = None
+
+
+@simulate.callback()
+def simulate_system() -> None:
+    """Simulate a system and write its motion.
+
+    \b
+    Examples:
+      friction-discs simulate pin --output whirl.json
+      friction-discs simulate disc --help
+    """
+
+
+@simulate.command("pin", cls=Command)
+@taking(Request)
+def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
+    """Simulate a pin and write its motion; what is not set is the second case of Fig. 5.
+
+    \b
+    Parameters, with their values in Fig. 5:
+      mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
+      hardening=0 stop_gap=0 stop_stiffness=0
+    \b
+    Examples:
+      friction-discs simulate pin --output whirl.json
+      friction-discs simulate pin --engine exudyn --set disc_speed=1.2 --set friction_force=0.05
+          --start 0.1 0 -0.02 0 --until 100 --samples 1001 --output pin.csv
+    """
+    from compare.claims.paper_parameters import FIG5
+
+    _simulate(FIG5, start, request)
+
+
+@simulate.command("disc", cls=Command)
+@taking(Request)
+def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) -> None:
+    """Simulate a friction disc and write its motion; what is not set is Fig. 11 with X0 = 0.
+
+    \b
+    Parameters, with their values in Fig. 11; contact_points=none is the continuous ring:
+      mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
+      contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
+      hardening=0 stop_gap=0 stop_stiffness=0
+    \b
+    Examples:
+      friction-discs simulate disc --output modulated.csv
+      friction-discs simulate disc --engine exudyn --set contact_points=6 --set disc_speed=2
+          --start 0.1 0 0 0 0 1.2 --until 100 --samples 1001 --output disc.json
+    """
+    from compare.claims.paper_parameters import FIG11
+
+    _simulate(FIG11, start, request)
+
+
+def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
+    """Simulate ``paper`` with its changes and write the motion to a file or standard output."""
+    import numpy as np
+
+    from compare.cli.trajectory_files import write_csv, writer
+    from compare.engines import UnsupportedSystemError, engines
+    from reference_model.systems import checked_state
+
+    output = request.output
+    with refused():
+        (chosen,) = engines([request.engine])
+        system = changed(paper, request.settings or [])
+        if missing := chosen.lacking([system]):
+            raise UnsupportedSystemError(missing)
+        state = checked_state(system, start)
+        times = np.linspace(0.0, request.until, request.samples)
+        write = write_csv if output is None else writer(output)
+        if output is not None:
+            _check_file(output)
+    try:
+        trajectory = chosen.simulate(system, state, times, tolerance=request.tolerance)
+    except Exception as error:  # whatever an engine raises
+        raise EngineFailedError(_reason(chosen.name, error)) from error
+    if output is None:
+        with printing():
+            write(trajectory, chosen.name, sys.stdout)
+        return
+    try:
+        with replacing(output) as stream:
+            write(trajectory, chosen.name, stream)
+    except OSError as error:
+        raise BadInputError(_unwritable(output, error)) from None
+
+
+def _reason(engine: str, error: Exception) -> str:
+    """Return what an engine raised: a sentence of its own, or which exception and where in its code."""
+    from compare.run.workers import failure
+
+    if isinstance(error, RuntimeError | ValueError) and str(error):
+        return str(error)
+    failed = failure(error)
+    return f"engine {engine!r} failed: {failed.reason} ({failed.where[-1]})"
+
+
+def _unwritable(path: Path, error: OSError) -> str:
+    return f"can't write the file {str(path)!r}: {error.strerror}"
+
+
+def _check_file(path: Path) -> None:
+    """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
+    try:
+        check_writable(path)
+    except OSError as error:
+        raise ValueError(_unwritable(path, error)) from None

@@ -1,0 +1,5 @@
+"""``friction-discs sweep``: many trajectories."""
+
+from compare.cli.sweep.commands import sweep
+
+__all__ = ["sweep"]

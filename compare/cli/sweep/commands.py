@@ -1,0 +1,236 @@
+"""``friction-discs sweep basin | map | uncertainty | figures``: what is simulated, as a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from compare.cli.command import Command, refused
+from compare.cli.options import changed, taking
+from compare.cli.sweep.options import (
+    COARSE,
+    STARTS,
+    Coarse,
+    RandomStarts,
+    Request,
+    Rows,
+    Start,
+    Starts,
+    Varied,
+    XAxis,
+    YAxis,
+)
+from compare.cli.sweep.run import redraw
+
+if TYPE_CHECKING:
+    from compare.sweep.define.axes import Axis
+    from reference_model.systems import System
+
+MOST_POINTS = 100_000_000
+"""Of a plane."""
+
+PLANES = {
+    "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
+    "disc": ("x=-0.1:0.1:65", "vx=-0.1:0.1:65"),
+}
+MAPS = {
+    "pin": ("disc_speed=1.05:3:64", "friction_force=0.01:0.15:64"),
+    "disc": ("disc_speed=1.05:1.95:64", "friction_force=0.005:0.06:64"),
+}
+"""Axes x and y unless others are asked for."""
+
+sweep = typer.Typer(rich_markup_mode=None)
+
+
+@sweep.callback()
+def sweep_command() -> None:
+    """Simulate many trajectories: basins of attraction, maps over two parameters, uncertain parameters.
+
+    What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
+    store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
+    with --resume does the rest.
+
+    \b
+    Examples:
+      friction-discs sweep basin pin
+      friction-discs sweep map disc --help
+    """
+
+
+@sweep.command("basin", cls=Command)
+@taking(Request, output=Path("basin"))
+def sweep_basin(
+    request: Request,
+    start: Start = "",
+    x: XAxis = "",
+    y: YAxis = "",
+    coarse: Coarse = None,
+    random: RandomStarts = None,
+) -> int:
+    """Find what starts in a plane of two components of the state end as, and how large a share of them.
+
+    The grid is first a coarse one, and then refined where neighbouring points end differently.
+
+    \b
+    Axes, unless others are given:
+      pin   --x x=-0.3:0.5:257 --y vx=-0.4:0.4:257
+      disc  --x x=-0.1:0.1:65 --y vx=-0.1:0.1:65
+    \b
+    Examples:
+      friction-discs sweep basin pin --x x=-0.3:0.5:1000 --y vx=-0.4:0.4:1000
+      friction-discs sweep basin pin --random 20000 --seed 7 --output shares
+      friction-discs sweep basin disc --set contact_points=6 --start spin=1.2 --x x=-0.2:0.2:129 --y y=-0.2:0.2:129
+    """
+    from compare.sweep.define.axes import Axis
+    from compare.sweep.define.plan import Basin, RandomBasin
+    from compare.sweep.define.quantities import components
+
+    with refused():
+        common = request.common()
+        names = components(common["system"])
+        axes = _axes("component", names, (x, y), PLANES[request.system])
+        state = _start(request.system, start, names)
+        _check_given_once({"--start": _names_of(start)}, "--x or --y", [axis.name for axis in axes])
+        _check_states(common["system"], state, list(names), axes)
+        if random is not None and coarse is not None:
+            raise ValueError("--coarse is of a grid: leave it out with --random")
+    if random is None:
+        return request.run(Basin(**common, start=state, x=axes[0], y=axes[1], coarse=coarse or COARSE))
+    ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
+    return request.run(RandomBasin(**common, start=state, x=ranges[0], y=ranges[1], samples=random))
+
+
+@sweep.command("map", cls=Command)
+@taking(Request, output=Path("map"))
+def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
+    """Find what motions end as over a plane of two parameters, with the boundaries that formulas draw there.
+
+    \b
+    Axes, unless others are given:
+      pin   --x disc_speed=1.05:3:64 --y friction_force=0.01:0.15:64
+      disc  --x disc_speed=1.05:1.95:64 --y friction_force=0.005:0.06:64
+    \b
+    Examples:
+      friction-discs sweep map pin --start x=0.1,vx=0.03 --start x=0.02,vx=0
+      friction-discs sweep map disc --x damping=0.2:2:100 --y shaft_damping=0.004:0.026:100
+    """
+    from compare.sweep.define.plan import Map
+    from compare.sweep.define.quantities import components, parameters
+
+    with refused():
+        common = request.common()
+        axes = _axes("parameter", parameters(common["system"]), (x, y), MAPS[request.system])
+        _check_given_once({"--set": request.set_names()}, "--x or --y", [axis.name for axis in axes])
+        for axis in axes:
+            for end in (axis.low, axis.high):
+                changed(common["system"], [f"{axis.name}={end!r}"])
+        names = components(common["system"])
+        states = tuple(_start(request.system, start, names) for start in starts or [""])
+    return request.run(Map(**common, starts=states, x=axes[0], y=axes[1]))
+
+
+@sweep.command("uncertainty", cls=Command)
+@taking(Request, output=Path("uncertainty"))
+def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
+    """Find how likely the whirl is, how large it is, and what that depends on, where parameters are uncertain.
+
+    \b
+    Distributions, with numbers in SI units:
+      normal(mean, deviation)        truncnorm(mean, deviation, low, high)
+      uniform(low, high)             triangular(low, mode, high)
+      lognormal(median, deviation of the logarithm)
+    \b
+    Example:
+      friction-discs sweep uncertainty pin --vary "offset=normal(0.1, 0.005)"
+          --vary "friction_force=truncnorm(0.09, 0.01, 0.05, 0.13)" --vary "vx=uniform(-0.1, 0.1)"
+    """
+    from compare.sweep.define.distributions import Uncertain
+    from compare.sweep.define.plan import Uncertainty
+    from compare.sweep.define.quantities import components
+
+    with refused():
+        common = request.common()
+        varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or [])
+        names = [uncertain.name for uncertain in varied]
+        _check_varied(names)
+        _check_given_once({"--set": request.set_names(), "--start": _names_of(start)}, "--vary", names)
+        state = _start(request.system, start, components(common["system"]))
+    return request.run(Uncertainty(**common, start=state, varied=varied, samples=samples))
+
+
+@sweep.command("figures", cls=Command)
+def sweep_figures(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished sweep.")],
+) -> None:
+    """Draw the figures of a finished sweep once more and print its results.
+
+    \b
+    Example:
+      friction-discs sweep figures basin
+    """
+    redraw(folder)
+
+
+def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:
+    """Return the axes x and y; raise ``ValueError`` for what is none, or the same one twice."""
+    from compare.sweep.define.axes import Axis
+
+    axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
+    if axes[0].name == axes[1].name:
+        raise ValueError(f"{axes[0].name} is on both axes: they must be different")
+    if axes[0].points * axes[1].points > MOST_POINTS:
+        raise ValueError(
+            f"{axes[0].points} times {axes[1].points} points: there may be {MOST_POINTS} in a plane"
+        )
+    return axes
+
+
+def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
+    """Return the state of "NAME=VALUE,..."; raise ``ValueError`` for what is none."""
+    from compare.engines import one_of
+    from reference_model.systems import finite_number
+
+    state = dict(zip(names, STARTS[system], strict=True))
+    for part in filter(None, text.split(",")):
+        name, equals, value = part.partition("=")
+        if not equals:
+            raise ValueError(f"--start {text!r}: write it as NAME=VALUE,NAME=VALUE")
+        name = one_of("component", name.strip(), names)
+        if _names_of(text).count(name) > 1:
+            raise ValueError(f"--start {text!r}: {name} is there more than once")
+        state[name] = finite_number(name, value)
+    return tuple(state.values())
+
+
+def _names_of(text: str) -> list[str]:
+    """Return the names in "NAME=VALUE,..."."""
+    return [part.partition("=")[0].strip() for part in text.split(",")]
+
+
+def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequence[str]) -> None:
+    """Raise ``ValueError`` if an option gives a value to what has its values from elsewhere."""
+    for option, of_option in given.items():
+        for name in of_option:
+            if name in names:
+                raise ValueError(f"{option} {name}: it has its values from {by}, leave one of them out")
+
+
+def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
+    """Raise ``ValueError`` if a start in a plane can't be one."""
+    from reference_model.systems import checked_state
+
+    for axis in axes:
+        for end in (axis.low, axis.high):
+            at_end = [end if name == axis.name else value for name, value in zip(names, state, strict=True)]
+            checked_state(system, at_end)
+
+
+def _check_varied(names: Sequence[str]) -> None:
+    if not names:
+        raise ValueError('nothing is uncertain: say what is, --vary "offset=normal(0.1, 0.005)" for instance')
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"--vary {name}: it is there more than once")

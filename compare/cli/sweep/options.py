@@ -1,0 +1,172 @@
+"""Options of the sweeps, each declared once, and what all of them have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from compare.cli.command import refused
+from compare.cli.options import Folder, Settings, Tolerance, changed, chosen_from, count, positive, whole
+from compare.cli.sweep.run import CHUNK, run_sweep
+
+if TYPE_CHECKING:
+    from compare.sweep.define.plan import Plan
+    from reference_model.systems import System
+
+COARSE = 65
+
+MOST_CHUNK, MOST_SAMPLES = 10_000_000, 2**27
+
+STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
+"""As of ``simulate``."""
+
+UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
+"""In s. The modulated motions of Fig. 11 near its Hopf curve take as long to be told from whirls. Where single points
+of contact come to rest, which the plain reference has to follow, a longer time costs most and settles nothing."""
+
+
+def rows(text: str) -> int:
+    """Return the number of rows that ``text`` says."""
+    from compare.sweep.compute.sensitivity import LEAST_SAMPLES
+
+    with refused():
+        number = count("samples", text, LEAST_SAMPLES, MOST_SAMPLES)
+        if number & (number - 1):
+            nearest = 1 << number.bit_length()
+            raise ValueError(f"samples = {number}: it must be a power of 2, {nearest} for instance")
+    return number
+
+
+SystemName = Annotated[
+    str,
+    typer.Argument(metavar="pin|disc", help="What is simulated.", parser=chosen_from("system", list(STARTS))),
+]
+Start = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME=VALUE,...",
+        help="Components of the state at time 0; the others are as for simulate.",
+        show_default=False,
+    ),
+]
+Starts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--start",
+        metavar="NAME=VALUE,...",
+        help="Components of the state at time 0; the others are as for simulate. Several times for several starts.",
+        show_default=False,
+    ),
+]
+XAxis = Annotated[
+    str, typer.Option("--x", metavar="NAME=LOW:HIGH:POINTS", help="Across.", show_default=False)
+]
+YAxis = Annotated[str, typer.Option("--y", metavar="NAME=LOW:HIGH:POINTS", help="Up.", show_default=False)]
+Coarse = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Least points along each axis before the boundary is refined.",
+        parser=whole("coarse", 2, MOST_SAMPLES),
+        show_default=str(COARSE),
+    ),
+]
+RandomStarts = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Take N random starts in place of the grid.",
+        parser=whole("random", 1, MOST_SAMPLES),
+        show_default=False,
+    ),
+]
+Varied = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=DISTRIBUTION",
+        help="An uncertain parameter or component of the state at time 0, several times for several.",
+        show_default=False,
+    ),
+]
+Rows = Annotated[
+    int,
+    typer.Option(
+        metavar="N",
+        help="A power of 2; N·(2 + number of uncertain quantities) trajectories are simulated.",
+        parser=rows,
+    ),
+]
+Until = Annotated[
+    float | None,
+    typer.Option(
+        metavar="T",
+        help="Longest time in s that an end is waited for. What is not certain until then is undecided; a longer "
+        "time settles most of that, and costs nothing where ends are certain before.",
+        parser=positive("until", "s"),
+        show_default=f"{UNTIL:g}, of a disc on single points {UNTIL_ON_POINTS:g}",
+    ),
+]
+Seed = Annotated[
+    int, typer.Option(metavar="N", help="Of all that is random.", parser=whole("seed", 0, 2**63 - 1))
+]
+Chunk = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Trajectories that are computed and written together.",
+        parser=whole("chunk", 1, MOST_CHUNK),
+        show_default=str(CHUNK),
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="A Dask scheduler, tcp://HOST:PORT, whose workers compute.",
+        show_default="the cores of this machine",
+    ),
+]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with the sweep that is there.")]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What every sweep takes from the command line."""
+
+    system: SystemName
+    settings: Settings = None
+    until: Until = None
+    tolerance: Tolerance = 1e-9
+    seed: Seed = 1
+    chunk: Chunk = None
+    scheduler: Scheduler = None
+    output: Folder = Path("sweep")
+    resume: Resume = False
+
+    def common(self) -> dict[str, Any]:
+        """Return what all plans have; raise ``ValueError`` for what can't be."""
+        from compare.claims.paper_parameters import FIG5, FIG11
+        from reference_model.support import require_linear_support
+
+        papers: Mapping[str, System] = {"pin": FIG5, "disc": FIG11}
+        system = changed(papers[self.system], self.settings or [])
+        require_linear_support(system)
+        on_points = getattr(system, "contact_points", None) is not None
+        return {
+            "system": system,
+            "duration": self.until or (UNTIL_ON_POINTS if on_points else UNTIL),
+            "tolerance": self.tolerance,
+            "seed": self.seed,
+        }
+
+    def set_names(self) -> list[str]:
+        """Return the names of the parameters that are set."""
+        return [setting.partition("=")[0].strip() for setting in self.settings or []]
+
+    def run(self, plan: Plan) -> int:
+        """Run the sweep of ``plan``, or the rest of it."""
+        return run_sweep(plan, self.chunk, self.scheduler, self.output, self.resume)

@@ -1,0 +1,145 @@
+"""A sweep of the command line is run, or the rest of it, and its results are printed and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from compare.cli.command import (
+    BAD_INPUT,
+    FINE,
+    INTERRUPTED,
+    SOMETHING_DIFFERS,
+    BadInputError,
+    printing,
+    refused,
+    say,
+)
+from compare.cli.options import check_folder
+from compare.cli.progress import trajectories
+
+if TYPE_CHECKING:
+    from compare.sweep.compute.executors import Executor
+    from compare.sweep.compute.store import SweepStore
+    from compare.sweep.define.plan import Plan
+
+STORE = "sweep.zarr"
+"""Name of the store in its folder."""
+
+CHUNK = 32768
+"""Trajectories in a chunk, unless another number is asked for."""
+
+
+def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, folder: Path, resume: bool) -> int:
+    """Run a sweep, or the rest of it; print and draw its results."""
+    from compare.run.workers import lacks_memory
+    from compare.sweep.compute.executors import ClusterError
+    from compare.sweep.compute.run import OtherCodeError, run
+    from compare.sweep.compute.store import SweepStore
+
+    path = folder / STORE
+    with refused():
+        check_folder(folder)
+        store = _there(path, plan, chunk, resume)
+    try:
+        with _executor(scheduler) as executor, trajectories() as progress:
+            if store is None:
+                store = SweepStore.create(path, plan, chunk or CHUNK)
+            run(store, executor, progress)
+    except (ClusterError, OtherCodeError) as error:
+        return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
+    except (OSError, MemoryError) as error:
+        if lacks_memory(error):
+            return say(
+                "there is not enough memory. The same command with --resume goes on.", SOMETHING_DIFFERS
+            )
+        reason = error.strerror or str(error)  # type: ignore[union-attr]
+        return say(
+            f"can't write to {str(path)!r}: {reason}. What is written stays valid; "
+            "the same command with --resume goes on.",
+            BAD_INPUT,
+        )
+    except KeyboardInterrupt:
+        return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
+    finally:
+        if store is not None and store.broken:
+            say(f"{str(path)!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
+    return finish(store, folder)
+
+
+def _there(path: Path, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
+    """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
+    from compare.sweep.compute.stamp import sweep_stamp
+    from compare.sweep.compute.store import SweepStore
+
+    if not path.exists():
+        return None
+    store = SweepStore.open(path)
+    if store.plan != plan:
+        raise ValueError(f"{str(path)!r} belongs to another sweep: take another --output")
+    if not resume:
+        raise ValueError(
+            f"{str(path)!r} is there already: --resume goes on with it, or take another --output"
+        )
+    if store.stamp != sweep_stamp():
+        raise ValueError(
+            f"{str(path)!r} was computed by other code or libraries ({store.stamp}): take another --output"
+        )
+    if chunk not in (None, store.chunk):
+        raise ValueError(f"chunk = {chunk}: {str(path)!r} has chunks of {store.chunk}")
+    return store
+
+
+@contextmanager
+def _executor(scheduler: str | None) -> Iterator[Executor]:
+    """Yield what does the work."""
+    from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
+
+    if scheduler is None:
+        yield InProcess()
+        return
+    try:
+        cluster = Cluster(scheduler)
+    except (ValueError, ClusterError) as error:
+        raise BadInputError(str(error)) from None
+    except ModuleNotFoundError:
+        raise BadInputError("--scheduler needs Dask: pip install 'friction-discs[cluster]'") from None
+    with cluster:
+        yield cluster
+
+
+def finish(store: SweepStore, folder: Path) -> int:
+    """Print and draw the results; return whether the plain reference finds the same."""
+    from compare.sweep.show.figures import write_figures
+    from compare.sweep.show.summary import same_ends, summary
+
+    written = write_figures(store, folder)
+    with printing():
+        for line in summary(store):
+            print(line)
+        print(f"Results: {store.path}; figures: {', '.join(str(path) for path in written)}")
+    return FINE if same_ends(store) else SOMETHING_DIFFERS
+
+
+def redraw(folder: Path) -> None:
+    """Draw and print a finished sweep once more; raise ``BadInputError`` for one that is not finished."""
+    from compare.sweep.compute.store import SweepStore
+
+    with refused():
+        store = SweepStore.open(folder / STORE)
+        _check_finished(store)
+    finish(store, folder)
+
+
+def _check_finished(store: SweepStore) -> None:
+    from compare.sweep.compute.run import finished
+
+    if finished(store):
+        return
+    if store.broken:
+        raise ValueError(
+            f"{str(store.path)!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
+        )
+    raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")

@@ -1,0 +1,164 @@
+"""The reference with a mistake around it: in what it hands out, in what it is asked for, or in when it lets go."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.judge.faults.equations import carried
+from reference_model import simulate
+from reference_model.contact.contact_law import ThreeTermRing
+from reference_model.formulas.pin import release_time
+from reference_model.support import Support
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.trajectory import Phase, Trajectory
+
+
+def with_output(
+    change: Callable[[Trajectory], FloatArray],
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+) -> Trajectory:
+    """Simulate ``system`` and hand out ``change(trajectory)`` as its states."""
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    return replace(trajectory, states=change(trajectory))
+
+
+def three_terms(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Simulate a ring under (23)."""
+    ring = isinstance(system, DiscOnDisc) and system.contact_points is None
+    law = ThreeTermRing(system.contact_radius) if ring else None  # type: ignore[union-attr]
+    return simulate(system, initial_state, times, tolerance=tolerance, contact=law)
+
+
+def in_single_precision(trajectory: Trajectory) -> FloatArray:
+    """Round to 24 bits."""
+    return trajectory.states.astype(np.float32).astype(float)
+
+
+def one_sample_late(trajectory: Trajectory) -> FloatArray:
+    """Return every state one sample late, the first one twice."""
+    return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
+
+
+def with_angle_wrapped(trajectory: Trajectory) -> FloatArray:
+    """Return angles between −π and π."""
+    states = trajectory.states.copy()
+    if isinstance(trajectory.system, DiscOnDisc):
+        states[:, ANGLE] = np.angle(np.exp(1j * states[:, ANGLE]))
+    return states
+
+
+def without_end(trajectory: Trajectory) -> FloatArray:
+    """Return no numbers for the last state."""
+    states = trajectory.states.copy()
+    states[-1] = np.nan
+    return states
+
+
+def with_relative_velocities(trajectory: Trajectory) -> FloatArray:
+    """Return velocities relative to the master disc."""
+    states, half = trajectory.states.copy(), trajectory.system.state_size // 2
+    states[:, half:] -= carried(states[:, :half], trajectory.system.disc_speed)
+    return states
+
+
+def with_velocities_by_differences(trajectory: Trajectory) -> FloatArray:
+    """Return velocities that are differences of places over the time between samples, the first one as it was."""
+    states, half = trajectory.states.copy(), trajectory.system.state_size // 2
+    steps = np.diff(trajectory.times)[:, np.newaxis]
+    states[1:, half:] = np.diff(states[:, :half], axis=0) / steps
+    return states
+
+
+def output_late(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return states of 1e-7 s before the times asked for, but for the first."""
+    times = np.asarray(times, dtype=float)
+    early = np.append(times[0], np.maximum(times[1:] - 1e-7, times[0]))
+    return replace(simulate(system, initial_state, early, tolerance=tolerance), times=times)
+
+
+def phases_late(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the right states, and phases that begin and end 1 ms late, but for the start and the end of it all."""
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    start, end = trajectory.times[0], trajectory.times[-1]
+
+    def late(time: float) -> float:
+        return min(time + 1e-3, end) if time > start else time
+
+    phases = (replace(one, start=late(one.start), end=late(one.end)) for one in trajectory.phases)
+    return replace(trajectory, phases=tuple(phases))
+
+
+def without_centripetal_term(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Simulate a pin that is let go when friction can no longer hold it without its mass.
+
+    Where that is too early, it sticks again at once.
+    """
+    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
+    if not isinstance(system, PinOnDisc) or not Support.of(system).linear:
+        return trajectory
+    massless = replace(system, mass=1e-12 * system.mass)
+    times = trajectory.times
+    for i, phase in enumerate(trajectory.phases):
+        if phase.kind != "stick":
+            continue
+        z = complex(*phase.initial_state[:2])
+        until = min(phase.start + release_time(massless, abs(z), cmath.phase(z)), float(times[-1]))
+        if until > phase.end:
+            held, after = (times > phase.end) & (times <= until), times > until
+            states = trajectory.states.copy()
+            states[held] = [_carried_on(phase, system.disc_speed, t) for t in times[held]]
+            phases = [*trajectory.phases[:i], replace(phase, end=until)]
+            if np.any(after):
+                rest = [until, *times[after]]
+                let_go = _carried_on(phase, system.disc_speed, until)
+                later = without_centripetal_term(system, let_go, rest, tolerance=tolerance)
+                states[after] = later.states[1:]
+                phases += later.phases
+            return replace(trajectory, states=states, phases=tuple(phases))
+    return trajectory
+
+
+def _carried_on(phase: Phase, speed: float, time: float) -> FloatArray:
+    """Return the state of a pin that still sticks at ``time``."""
+    turn = cmath.exp(1j * speed * (time - phase.start))
+    z, v = (complex(*pair) * turn for pair in np.split(phase.initial_state, 2))
+    return np.array([z.real, z.imag, v.real, v.imag])
+
+
+def half_a_pitch_on(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Simulate points at φ + 2π(i + ½)/n."""
+    points = system.contact_points if isinstance(system, DiscOnDisc) else None
+    if points is None:
+        return simulate(system, initial_state, times, tolerance=tolerance)
+    turn = np.zeros(system.state_size)
+    turn[ANGLE] = math.pi / points
+    trajectory = simulate(system, np.asarray(initial_state) + turn, times, tolerance=tolerance)
+    return replace(trajectory, states=trajectory.states - turn)
+
+
+def from_rest(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Simulate from the places alone."""
+    places, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
+    return simulate(system, [*places, *(0.0 * velocities)], times, tolerance=tolerance)

@@ -1,0 +1,104 @@
+"""The reference with parameters that are mistaken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from reference_model import simulate
+from reference_model.systems import DiscOnDisc, System
+from reference_model.trajectory import Trajectory
+
+
+def with_parameters(
+    change: Callable[[System], dict[str, Any]],
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+) -> Trajectory:
+    """Simulate ``system`` with some of its parameters changed."""
+    trajectory = simulate(replace(system, **change(system)), initial_state, times, tolerance=tolerance)
+    return replace(trajectory, system=system)
+
+
+def off_by(name: str, share: float, system: System) -> dict[str, float]:
+    """Return a parameter that is too large by ``share``, nothing for a system that has no such parameter."""
+    return {name: (1.0 + share) * getattr(system, name)} if hasattr(system, name) else {}
+
+
+def points_of(system: System) -> int:
+    """Return the number of points that a disc rests on, 0 if there is no ring of points."""
+    return (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 0
+
+
+def one_point_too_few(system: System) -> dict[str, Any]:
+    """Return n − 1 points; 3 are the fewest that a disc can have."""
+    return {"contact_points": points_of(system) - 1} if points_of(system) > 3 else {}
+
+
+def load_shared_twice(system: System) -> dict[str, Any]:
+    """Return the load over n."""
+    return {"friction_force": system.friction_force / (points_of(system) or 1)}
+
+
+def load_not_shared(system: System) -> dict[str, Any]:
+    """Return n times the load."""
+    return {"friction_force": system.friction_force * (points_of(system) or 1)}
+
+
+def diameter_for_radius(system: System) -> dict[str, Any]:
+    """Return 2R."""
+    return {"contact_radius": 2.0 * system.contact_radius} if isinstance(system, DiscOnDisc) else {}
+
+
+def shaft_at_rest(system: System) -> dict[str, Any]:
+    """Return Ω = 0."""
+    return {"shaft_speed": 0.0} if isinstance(system, DiscOnDisc) else {}
+
+
+def mass_for_inertia(system: System) -> dict[str, Any]:
+    """Return m and J exchanged."""
+    if not isinstance(system, DiscOnDisc):
+        return {}
+    return {"mass": system.polar_inertia, "polar_inertia": system.mass}
+
+
+def stiffness_for_frequency(system: System) -> dict[str, Any]:
+    """Return the spring of which C is the natural frequency."""
+    return {"stiffness": system.mass * system.stiffness**2}
+
+
+def damping_per_mass(system: System) -> dict[str, Any]:
+    """Return the damper of which β is divided by the mass."""
+    return {"damping": system.damping * system.mass}
+
+
+def hardening_forgotten(system: System) -> dict[str, Any]:
+    """Return C₃ = 0."""
+    return {"hardening": 0.0}
+
+
+def stop_without_play(system: System) -> dict[str, Any]:
+    """Return a gap of 0."""
+    return {"stop_gap": 0.0}
+
+
+def disc_backwards(system: System) -> dict[str, Any]:
+    """Return −ω."""
+    return {"disc_speed": -system.disc_speed}
+
+
+def stronger_at_extremes(system: System) -> dict[str, Any]:
+    """Return a load that is 1 % larger on a disc that is fast or slow."""
+    usual = 0.3 <= abs(system.disc_speed) <= 4.0
+    return {} if usual else {"friction_force": 1.01 * system.friction_force}
+
+
+def weaker_backwards(system: System) -> dict[str, Any]:
+    """Return a load that is 1e-4 smaller for ω < 0."""
+    return {"friction_force": (1.0 - 1e-4) * system.friction_force} if system.disc_speed < 0.0 else {}

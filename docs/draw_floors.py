@@ -1,0 +1,166 @@
+"""Draw the floors of the house from its real imports: run as ``python docs/draw_floors.py``.
+
+The floors are the contracts in ``pyproject.toml``, which import-linter checks; the arrows are what the files of one
+room import from another. ``floors.svg`` has in its description what it was drawn from, so that a test can tell when
+it is out of date.
+"""
+
+import ast
+import json
+import sys
+from pathlib import Path
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyBboxPatch
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # import-linter brings it
+
+ROOT = Path(__file__).parents[1]
+PICTURE = Path(__file__).with_name("floors.svg")
+PLACES = {"compare": (0.0, 2.4), "exudyn_models": (8.0, 0.0), "reference_model": (13.8, 0.0)}
+"""Left lower corner of each package, which imports from those to its right only."""
+
+COLOURS = {"compare": "tab:blue", "exudyn_models": "tab:orange", "reference_model": "tab:green"}
+WIDTH, HEIGHT, LINE, GAP = 2.0, 0.6, 1.2, 0.25
+"""Of a room; from floor to floor; between rooms."""
+
+
+BETWEEN = {
+    ("compare", "exudyn_models"): ((7.0, 3.4), (8.3, 3.4), 0.2),
+    ("compare", "reference_model"): ((7.0, 7.8), (14.9, 7.8), 0.2),
+    ("exudyn_models", "reference_model"): ((12.3, 1.8), (13.7, 1.8), 0.2),
+}
+"""Start and end of the arrows between packages, and how far above them their words stand."""
+
+MOST_NAMED = 3
+"""Rooms that stand beside such an arrow."""
+
+
+def floors():
+    """Return for each package its floors, the highest first, each a list of rooms."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+    return {
+        package: [layer.split(" | ") for layer in contract["layers"]]
+        for contract in contracts
+        if contract["type"] == "layers"
+        for package in contract["containers"]
+        if package in PLACES
+    }
+
+
+def imports():
+    """Return the pairs of rooms, as "package.room", of which the files of the first import from the second."""
+    found = set()
+    for package in PLACES:
+        for path in (ROOT / package).rglob("*.py"):
+            here = room_of(path.relative_to(ROOT).with_suffix("").parts)
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                if isinstance(node, ast.ImportFrom):
+                    names = [f"{node.module}.{alias.name}" for alias in node.names]
+                found |= {(here, room_of(name.split("."))) for name in names if name.split(".")[0] in PLACES}
+    return sorted((here, there) for here, there in found if here and there and here != there)
+
+
+def room_of(parts):
+    """Return "package.room" of a module or of what is in it; what a package itself hands out is in no room."""
+    package, room = [*parts, ""][:2]
+    inside = (ROOT / package / room).is_dir() or (ROOT / package / f"{room}.py").is_file()
+    return f"{package}.{room}" if room and room != "__init__" and inside else ""
+
+
+def drawn_from():
+    """Return all that the picture shows, as text."""
+    return json.dumps({"floors": floors(), "imports": imports()})
+
+
+def places():
+    """Return the middle of each room, by "package.room"."""
+    found = {}
+    for package, layers in floors().items():
+        left, low = PLACES[package]
+        widest = max(map(len, layers))
+        for i, rooms in enumerate(reversed(layers)):
+            for j, room in enumerate(rooms):
+                x = left + (WIDTH + GAP) * (j + 0.5 * (widest - len(rooms)) + 0.5)
+                found[f"{package}.{room}"] = (x, low + LINE * (i + 0.5))
+    return found
+
+
+def needed(arrows):
+    """Return the arrows that do not follow from others, by way of a room in between."""
+    return {
+        (here, there)
+        for here, there in arrows
+        if not any(
+            (here, other) in arrows and reaches(arrows, other, there) for _, other in arrows - {(here, there)}
+        )
+    }
+
+
+def reaches(arrows, here, there):
+    """Tell whether there is a way along ``arrows``, which has no circles."""
+    return any(begin == here and (end == there or reaches(arrows, end, there)) for begin, end in arrows)
+
+
+def draw():
+    """Return the picture."""
+    figure = Figure(figsize=(11.0, 6.6), layout="constrained")
+    panel = figure.subplots()
+    middle = places()
+    inside = {pair for pair in imports() if pair[0].split(".")[0] == pair[1].split(".")[0]}
+    for here, there in sorted(inside):
+        (x, y), (to_x, to_y) = middle[here], middle[there]
+        far = y - to_y > 1.5 * LINE and abs(x - to_x) < WIDTH  # past the rooms in between
+        look = {
+            "arrowstyle": "-|>",
+            "color": COLOURS[here.split(".")[0]],
+            "alpha": 0.9 if (here, there) in needed(inside) else 0.15,
+            "connectionstyle": f"arc3,rad={0.3 if far else 0.0}",
+            "zorder": 1,
+        }
+        start, end = (x, y - HEIGHT / 2), (to_x, to_y + HEIGHT / 2)
+        panel.annotate("", xy=end, xytext=start, arrowprops=look)
+    for name, (x, y) in middle.items():
+        package, room = name.split(".")
+        corner = (x - WIDTH / 2, y - HEIGHT / 2)
+        box = FancyBboxPatch(corner, WIDTH, HEIGHT, boxstyle="round,pad=0,rounding_size=0.1", zorder=2)
+        box.set(facecolor="white", edgecolor=COLOURS[package], linewidth=1.5)
+        panel.add_patch(box)
+        panel.text(x, y, room.replace("_", " "), ha="center", va="center", fontsize=9, zorder=3)
+    for package, layers in floors().items():
+        left, low = PLACES[package]
+        high = low + LINE * len(layers)
+        panel.text(left, high, package, color=COLOURS[package], fontsize=13, weight="bold")
+    for (package, other), ((x, y), (to_x, to_y), beside) in BETWEEN.items():
+        rooms = sorted(
+            {there for here, there in imports() if here.startswith(package) and there.startswith(other)}
+        )
+        panel.annotate(
+            "",
+            xy=(to_x, to_y),
+            xytext=(x, y),
+            arrowprops={"arrowstyle": "simple", "color": "0.7", "zorder": 0},
+        )
+        words = (
+            "\n".join(room.split(".")[1] for room in rooms)
+            if len(rooms) <= MOST_NAMED
+            else f"{len(rooms)} rooms"
+        )
+        panel.text(
+            (x + to_x) / 2, (y + to_y) / 2 + beside, words, ha="center", va="bottom", fontsize=8, color="0.4"
+        )
+    panel.set(xlim=(-0.2, 20.8), ylim=(-0.1, 11.4))
+    panel.axis("off")
+    return figure
+
+
+if __name__ == "__main__":
+    with rc_context({"svg.hashsalt": "floors", "svg.fonttype": "none"}):
+        draw().savefig(PICTURE, metadata={"Description": drawn_from(), "Date": None})
