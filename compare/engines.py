@@ -398,9 +398,9 @@ plain = register(
         _simulate_plain,
         EVERY_KIND,
         sticks=False,
-        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous at "
-        "slow slip: what sticks creeps, and it tells no stick from slip. Nothing but the parameters is shared with the "
-        "reference.",
+        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
+        "at slow slip: what sticks creeps, and it tells no stick from slip. Of the reference it takes nothing but the "
+        "parameters.",
     ),
     on_request=True,
 )

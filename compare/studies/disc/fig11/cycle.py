@@ -15,7 +15,7 @@ from compare.engines import Engine
 from compare.studies.toolkit.fig11_motion import RING, SIX, SOURCE, START, integrated
 from compare.studies.toolkit.study_parameters import parameters_of
 from reference_model import Trajectory, simulate
-from reference_model.orbits.shooting import modulated_cycle
+from reference_model.orbits import modulated_cycle
 from reference_model.systems import DiscOnDisc, FloatArray
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
