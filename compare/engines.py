@@ -399,8 +399,8 @@ plain = register(
         EVERY_KIND,
         sticks=False,
         about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
-        "at slow slip: what sticks creeps, and it tells no stick from slip. Of the reference it takes nothing but the "
-        "parameters.",
+        "at slow slip: what sticks creeps, and it tells no stick from slip. It takes only the parameters from the "
+        "reference.",
     ),
     on_request=True,
 )
