@@ -350,6 +350,14 @@ def _simulate_compiled(
     return reference_model.simulate(system, initial_state, times, tolerance=tolerance, compiled=True)
 
 
+def _simulate_plain(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    from reference_model import plain
+
+    return plain.simulate(system, initial_state, times, tolerance=tolerance)
+
+
 def _simulate_exudyn(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
@@ -383,4 +391,16 @@ exudyn_native = register(
 )
 compiled = register(
     Engine("compiled", _simulate_compiled, EVERY_KIND, nonlinear=False, kin="reference"), on_request=True
+)
+plain = register(
+    Engine(
+        "plain",
+        _simulate_plain,
+        EVERY_KIND,
+        sticks=False,
+        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
+        "at slow slip: what sticks creeps, and it tells no stick from slip. It takes only the parameters from the "
+        "reference.",
+    ),
+    on_request=True,
 )

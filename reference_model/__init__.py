@@ -2,28 +2,34 @@
 
 Where to find what:
 
-- parameters and results: ``systems``, ``trajectory``;
-- the force of a support that may harden or have a stop: ``support``;
-- laws of friction: ``contact`` with ``ring_integrals``, ``annulus``;
-- the paper's closed forms: ``pin_formulas``, ``disc_formulas``; ``harmonic_balance`` for a hardening support;
-- simulation: ``integrate``, which goes through ``phases`` of ``slip`` and ``sticking`` by the equations of motion of
-  ``pin`` and ``disc``; ``points`` with ``pivot`` and ``limit_surface`` for discs on single points, ``growth`` for how
-  slip begins, ``units`` and ``stepping`` below;
-- many trajectories at once, or a single one, compiled: ``ensemble``;
-- steady motions: ``steady_states`` with ``disc_balance`` and ``zeros``; ``orbits`` by shooting, ``stick_slip`` by the
-  map from release to release;
-- boundaries of basins: ``basins`` with ``dividing_curves``;
-- stability: ``stability``, ``characteristic``, ``modulation``; ``boundaries`` by ``continuation``;
-- a check of any engine: ``power``.
+- to begin with: ``plain``, the paper's equations as printed, integrated by SciPy, in 100 lines;
+- parameters and results: ``systems``, ``trajectory``; the force of a support that may harden or stop: ``support``;
+- the door to a simulation: ``simulation``;
+- ``contact``: the laws of friction of a pin, of points, of a ring and of an annulus, and what they can hold;
+- ``formulas``: the paper's closed forms, of the ``pin`` and the ``disc``; harmonic balance for a hardening support,
+  balances of torques, characteristic polynomials; and ``power_balance``, a check of any engine;
+- ``motion``: what a simulation goes through, slip and stick, from one phase to the next;
+- ``steady``: steady motions, their stability, and where it is lost, as curves in planes of two parameters;
+- ``orbits``: periodic motions by shooting, their branches, the map from release to release, boundaries of basins;
+- ``ensemble``: many trajectories at once, or a single one, compiled;
+- ``numerics``: roots, curves by continuation, curves on which a sign changes.
+
+Older paths of modules, such as ``reference_model.stability``, work and warn with the new one.
 """
+
+import importlib
+import sys
+import warnings
+from types import ModuleType
+from typing import Any
 
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing
 from reference_model.formulas.pin import sticking_radius
 from reference_model.formulas.power_balance import PowerBalance, power_balance
+from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
 from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
 from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
-from reference_model.orbits.shooting import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
 from reference_model.simulation import simulate
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
@@ -75,3 +81,28 @@ __all__ = [
     "why_no_equilibrium",
     "why_no_whirl",
 ]
+
+
+class _Moved(ModuleType):
+    """A module at its older path: it hands out what is at the new one, and says where that is."""
+
+    def __init__(self, name: str, place: str) -> None:
+        super().__init__(name, f"Moved to ``{place}``.")
+        self._place = place
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # the machinery of imports asks for those, not the user
+            raise AttributeError(name)
+        message = f"{self.__name__} has moved: import {name} from {self._place}"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(importlib.import_module(self._place), name)
+
+
+for _old, _new in {
+    "integrate": "simulation",
+    "pin_formulas": "formulas.pin",
+    "disc_formulas": "formulas.disc",
+    "steady_states": "steady.steady_states",
+    "stability": "steady.stability",
+}.items():
+    sys.modules[f"{__name__}.{_old}"] = _Moved(f"{__name__}.{_old}", f"{__name__}.{_new}")

@@ -97,41 +97,16 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     if len(trajectory.times) < 2:
         raise ValueError("the trajectory has one time only: a power balance takes at least two")
     body = trajectory.system
-    law = contact_of(body, contact)
     m, beta, omega, X0 = body.mass, body.damping, body.disc_speed, body.offset
     support = Support.of(body)
-    inertia, b, Omega = 0.0, 0.0, 0.0
-    if isinstance(body, DiscOnDisc):
-        inertia, b, Omega = body.polar_inertia, body.shaft_damping, body.shaft_speed
-    times, states, integrals = [], [], []
-    total = np.zeros(6)
-    for kind, t, state in _spans(trajectory):
-        z, angle, v, spin = _motion(body, state)
-        u = v - 1j * omega * z
-        springs = _of_deflection(support.secant, z - X0)
-        if kind == "stick":
-            holding = -m * omega**2 * z + 1j * beta * omega * z + springs * (z - X0)
-            heating: FloatArray = b * (omega - Omega) * (omega - spin) - (holding.conj() * u).real
-        else:
-            slip = _mean_slip(law, u, omega - spin, angle)
-            full = np.maximum(slip, trajectory.solution.regularisation)
-            share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
-            heating = body.friction_force * share * slip
-        lag = spin - Omega
-        rates: FloatArray = np.column_stack(
-            (heating, abs(v) ** 2, (z.conj() * v).imag, springs * z.imag, lag, lag**2)
-        )
-        growth = _integral(t, rates)
-        times.append(t)
-        states.append(state)
-        integrals.append(total + growth)
-        total = total + growth[-1]
-    z, _, v, spin = _motion(body, np.concatenate(states))
-    friction_heat, squared_speed, areal, across, lag, squared_lag = np.concatenate(integrals).T
+    inertia, b, Omega = _shaft_of(body)
+    times, states, integrals = _integrals(trajectory, contact_of(body, contact))
+    z, _, v, spin = _motion(body, states)
+    friction_heat, squared_speed, areal, across, lag, squared_lag = integrals.T
     momentum = m * (z.conj() * v).imag + inertia * spin
     impulse = momentum - momentum[0] + beta * areal + X0 * across + b * lag
     return PowerBalance(
-        times=np.concatenate(times),
+        times=times,
         drive_work=omega * impulse,
         friction_heat=friction_heat,
         damper_heat=beta * squared_speed + b * squared_lag,
@@ -140,6 +115,49 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
         + 0.5 * inertia * spin**2
         + _of_deflection(support.energy, z - X0),
     )
+
+
+def _shaft_of(body: System) -> tuple[float, float, float]:
+    """Return J in kg m², b in N m s/rad and Ω in rad/s; a pin has none of them."""
+    if isinstance(body, DiscOnDisc):
+        return body.polar_inertia, body.shaft_damping, body.shaft_speed
+    return 0.0, 0.0, 0.0
+
+
+def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times (n,), states (n, 4 or 6) and what has come up since the start (n, 6), phase after phase.
+
+    The columns are the integrals of :func:`_rates`.
+    """
+    times, states, integrals = [], [], []
+    total = np.zeros(6)
+    for kind, t, state in _spans(trajectory):
+        growth = _integral(t, _rates(trajectory, law, kind, state))
+        times.append(t)
+        states.append(state)
+        integrals.append(total + growth)
+        total = total + growth[-1]
+    return np.concatenate(times), np.concatenate(states), np.concatenate(integrals)
+
+
+def _rates(trajectory: Trajectory, law: Contact, kind: str, state: FloatArray) -> FloatArray:
+    """Return friction's power, |v|², r×v, C·y, φ̇ − Ω and its square at the states of a phase, shape (n, 6)."""
+    body = trajectory.system
+    omega, X0 = body.disc_speed, body.offset
+    _, b, Omega = _shaft_of(body)
+    z, angle, v, spin = _motion(body, state)
+    u = v - 1j * omega * z
+    springs = _of_deflection(Support.of(body).secant, z - X0)
+    if kind == "stick":
+        holding = -body.mass * omega**2 * z + 1j * body.damping * omega * z + springs * (z - X0)
+        heating: FloatArray = b * (omega - Omega) * (omega - spin) - (holding.conj() * u).real
+    else:
+        slip = _mean_slip(law, u, omega - spin, angle)
+        full = np.maximum(slip, trajectory.solution.regularisation)
+        share = np.divide(slip, full, out=np.zeros_like(slip), where=full > 0.0)
+        heating = body.friction_force * share * slip
+    lag = spin - Omega
+    return np.column_stack((heating, abs(v) ** 2, (z.conj() * v).imag, springs * z.imag, lag, lag**2))
 
 
 def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> FloatArray:

@@ -2,6 +2,9 @@
 
 Each point is predicted along the tangent and corrected across it by Newton's method, so that a curve may turn back
 in every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems).
+
+It is written out because SciPy has no continuation, and packages that have it bring their own problem descriptions
+for what takes a page here.
 """
 
 from __future__ import annotations

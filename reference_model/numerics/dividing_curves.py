@@ -3,6 +3,9 @@
 A grid tells where they are. Each is followed from point to point with no more than the sign and the zero of the
 function: the next point is the zero on an arc ahead of the last one. So the function need not be smooth, and away
 from its zeros it may be as good as constant.
+
+Libraries of contours interpolate between values on a grid. That takes a function that is smooth there, and gives
+points as exact as the grid is fine; here a value costs a simulation, and each point is on the curve to 1e-13.
 """
 
 from __future__ import annotations

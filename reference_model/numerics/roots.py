@@ -1,4 +1,8 @@
-"""All zeros of a function of one variable on an interval."""
+"""All zeros of a function of one variable on an interval.
+
+SciPy finds one zero in a bracket, or one near a guess. That all are found, those next to the ends of the interval and
+pairs in a dip among them, takes the search for brackets that is written here; ``brentq`` does the rest.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Closed orbits by shooting, branches of them, and the boundaries of basins that unstable ones make."""
 
-from reference_model.orbits.shooting import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
+from reference_model.orbits.branch import last_whirl, whirl_branch
+from reference_model.orbits.modulated import modulated_cycle
+from reference_model.orbits.shooting import Orbit
+from reference_model.orbits.whirl import whirl_orbit
 
 __all__ = ["Orbit", "last_whirl", "modulated_cycle", "whirl_branch", "whirl_orbit"]

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from reference_model.contact.contact_law import require_whole
 from reference_model.numerics.continuation import Curve
 from reference_model.numerics.dividing_curves import dividing_curves
-from reference_model.orbits.release_map import JUMP, ROUGH, Release, Releases, StickSlipOrbit
+from reference_model.orbits.release_map import JUMP, ROUGH, Release, ReleaseMap, StickSlipOrbit
 from reference_model.systems import FloatArray, checked_state, finite_number
 
 COMPONENTS = ("x", "y", "vx", "vy")
@@ -39,23 +39,23 @@ DISTINCT = 0.1
 
 
 @dataclass(frozen=True)
-class Sides:
+class Separatrix:
     """The two sides of the stable set of a saddle orbit.
 
     Parameters
     ----------
     orbit : StickSlipOrbit
         The saddle.
-    releases : Releases
+    releases : ReleaseMap
         How releases follow each other.
 
     """
 
     orbit: StickSlipOrbit
-    releases: Releases
+    releases: ReleaseMap
 
     @classmethod
-    def of(cls, orbit: StickSlipOrbit) -> Sides:
+    def of(cls, orbit: StickSlipOrbit) -> Separatrix:
         """Return the sides of ``orbit``; raise ``ValueError`` if it does not separate two motions."""
         if not isinstance(orbit, StickSlipOrbit):
             raise ValueError(f"orbit = {orbit!r}: it must be a StickSlipOrbit")
@@ -64,14 +64,14 @@ class Sides:
                 f"orbit has the multiplier {orbit.multiplier:g}: only the stable set of one with a multiplier > 1 "
                 "has two sides that lead to different motions"
             )
-        sides = cls(orbit, Releases(orbit.system, orbit.flow.tolerance))
-        before, behind = sides.ends
+        separatrix = cls(orbit, ReleaseMap(orbit.system, orbit.problem.tolerance))
+        before, behind = separatrix.ends
         if abs(before - behind) < DISTINCT * max(before, behind):
             raise ValueError(
                 f"from both sides of the orbit the pin comes to motions of the same radius, {before:g} m and "
                 f"{behind:g} m: the orbit does not separate them"
             )
-        return sides
+        return separatrix
 
     @cached_property
     def ends(self) -> tuple[float, float]:
@@ -83,7 +83,7 @@ class Sides:
         return math.hypot(*before[:2]), math.hypot(*behind[:2])
 
     @cached_property
-    def rough(self) -> Releases:
+    def rough(self) -> ReleaseMap:
         """The releases with an error that matters only next to the boundary."""
         return replace(self.releases, tolerance=max(ROUGH, self.releases.tolerance))
 
@@ -147,8 +147,8 @@ def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -
         If what separates the starts is not the stable set of this orbit.
 
     """
-    sides = Sides.of(orbit)
-    return sides.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
+    separatrix = Separatrix.of(orbit)
+    return separatrix.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
 
 
 def basin_boundary(
@@ -185,7 +185,7 @@ def basin_boundary(
         If some boundary is not in the stable set of this orbit, or if a curve can't be followed.
 
     """
-    sides = Sides.of(orbit)
+    separatrix = Separatrix.of(orbit)
     places = _checked_places(components)
     low, high = _checked_ranges(components, ranges)
     state = checked_state(orbit.system, others)
@@ -197,10 +197,10 @@ def basin_boundary(
         return result
 
     curves = dividing_curves(
-        lambda point: sides.miss(start(point)), low, high, cells, error=SPARE * orbit.flow.tolerance
+        lambda point: separatrix.miss(start(point)), low, high, cells, error=SPARE * orbit.problem.tolerance
     )
     for point in (point for curve in curves for point in curve.points):
-        sides.require_on_boundary(start(point))
+        separatrix.require_on_boundary(start(point))
     return curves
 
 

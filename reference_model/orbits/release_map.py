@@ -26,7 +26,7 @@ from scipy.optimize import newton
 
 from reference_model.contact.contact_law import require_whole
 from reference_model.motion.pin_equations import SlipMotion
-from reference_model.orbits.shooting import Flow, Orbit
+from reference_model.orbits.shooting import Orbit, ShootingProblem
 from reference_model.simulation import simulate
 from reference_model.support import require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system
@@ -72,7 +72,7 @@ class Release(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Releases:
+class ReleaseMap:
     """How the releases of a pin follow each other.
 
     Parameters
@@ -274,11 +274,11 @@ def stick_slip_orbits(
     require_system(pin, PinOnDisc)
     require_linear_support(pin)
     require_whole("samples", samples, least=1)
-    releases = Releases(pin, checked_tolerance(tolerance))
+    releases = ReleaseMap(pin, checked_tolerance(tolerance))
     return tuple(_orbit(releases, angle, samples) for angle in releases.fixed()) if releases.possible else ()
 
 
-def _orbit(releases: Releases, angle: float, samples: int) -> StickSlipOrbit:
+def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
     """Return the orbit that is released at ``angle``."""
     pin, tolerance = releases.pin, releases.tolerance
     release = releases.after(angle)
@@ -294,7 +294,7 @@ def _orbit(releases: Releases, angle: float, samples: int) -> StickSlipOrbit:
         period=period,
         residual=float(np.max(np.abs(miss)) / np.max(np.abs(start))),
         trajectory=trajectory,
-        flow=Flow(simulate, pin, tolerance),
+        problem=ShootingProblem(simulate, pin, tolerance),
         release=state,
         release_angle=angle,
         stick_time=release.stick_time,

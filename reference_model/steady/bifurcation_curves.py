@@ -15,21 +15,22 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
 from reference_model.formulas.characteristic_polynomial import Coefficients, characteristic_coefficients
-from reference_model.formulas.disc import pin_of, whirl_arm
-from reference_model.formulas.pin import whirl_radius
+from reference_model.formulas.disc import whirl_arm
 from reference_model.numerics.continuation import follow
-from reference_model.support import require_linear_support
+from reference_model.steady.parameter_plane import ParameterPlane
 from reference_model.systems import DiscOnDisc, FloatArray
+
+__all__ = ["Boundary", "Kind", "ParameterPlane", "boundaries", "crossings"]
 
 Kind = Literal["Hopf", "fold", "onset"]
 
@@ -54,79 +55,11 @@ INERTIA = "polar_inertia"
 SLOWEST = 3e-3
 """Frequency ν of a pair at which a Hopf curve ends, as a fraction of k: the two are about to become real."""
 
-LINES = 9
-"""On which curves are looked for, in each direction of the plane."""
-
 NODES = 41
 """Ratios that are tried on each of them."""
 
-INSET = 1e-6
-"""Distance of the outermost lines from the borders of a plane, so that all starts are inside."""
-
 SAME = 3e-3
 """Distance from a known curve in units of the scales at which a start is taken to lie on it."""
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A rectangle in two parameters of a disc; the others are those of ``disc``.
-
-    Parameters
-    ----------
-    disc : DiscOnDisc
-        The other parameters.
-    names : tuple of str
-        The two parameters, as the fields of ``DiscOnDisc`` are called; all but those of contact and stop.
-    lower, upper : tuple of float
-        Their ranges.
-
-    Raises
-    ------
-    ValueError
-        If a name is no parameter, a range is empty or reaches where no whirl exists at any load, or if there is
-        an offset or a support that is not linear.
-
-    """
-
-    disc: DiscOnDisc
-    names: tuple[str, str]
-    lower: tuple[float, float]
-    upper: tuple[float, float]
-
-    def __post_init__(self) -> None:
-        """Refuse a plane in which nothing can be traced."""
-        if self.disc.offset != 0.0:
-            raise ValueError(
-                f"offset = {self.disc.offset:g} m: boundaries are known for whirls without offset"
-            )
-        require_linear_support(self.disc)
-        # A contact that is handed over has a radius of its own.
-        fixed = ("offset", "hardening", "stop_gap", "stop_stiffness", "contact_radius", "contact_points")
-        allowed = [field.name for field in fields(self.disc) if field.name not in fixed]
-        if len(set(self.names)) != 2 or not set(self.names) <= set(allowed):
-            raise ValueError(f"names = {self.names}: they must be two of {', '.join(allowed)}")
-        for name, low, high in zip(self.names, self.lower, self.upper, strict=True):
-            if not low < high:
-                raise ValueError(f"{name} from {low:g} to {high:g}: the range must not be empty")
-            if name == "disc_speed" and low < 0.0 < high:
-                raise ValueError(f"disc_speed from {low:g} to {high:g} rad/s: there is no whirl at rest")
-        for corner in itertools.product(*zip(self.lower, self.upper, strict=True)):
-            whirl_radius(pin_of(self.at(corner)))
-
-    def at(self, values: Iterable[float]) -> DiscOnDisc:
-        """Return the disc with the two parameters of these values."""
-        changes: dict[str, Any] = dict(zip(self.names, map(float, values), strict=True))
-        return replace(self.disc, **changes)
-
-    def lines(self, which: int) -> FloatArray:
-        """Return the values of one parameter on the lines where curves are looked for, shape (LINES,)."""
-        inset = INSET * self.size[which]
-        return np.linspace(self.lower[which] + inset, self.upper[which] - inset, LINES)
-
-    @property
-    def size(self) -> FloatArray:
-        """Length of both ranges, shape (2,)."""
-        return np.subtract(self.upper, self.lower)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,16 +86,16 @@ class Boundary:
 
 
 def boundaries(
-    plane: Plane, kind: Kind, contact: IsotropicContact | None = None, *, step: float = 0.03
+    plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None = None, *, step: float = 0.03
 ) -> tuple[Boundary, ...]:
     """Return all curves of a kind in ``plane``.
 
-    They are looked for on LINES lines in each direction, the borders among them: only a closed curve between
-    neighbouring lines would not be found.
+    They are looked for on ``parameter_plane.LINES`` lines in each direction, the borders among them: only a closed
+    curve between neighbouring lines would not be found.
 
     Parameters
     ----------
-    plane : Plane
+    plane : ParameterPlane
         The parameters and their ranges.
     kind : str
         "Hopf", "fold" or "onset".
@@ -183,7 +116,7 @@ def boundaries(
 
 
 def crossings(
-    plane: Plane, kind: Kind, name: str, value: float, contact: IsotropicContact | None = None
+    plane: ParameterPlane, kind: Kind, name: str, value: float, contact: IsotropicContact | None = None
 ) -> tuple[float, ...]:
     """Return where a line in ``plane`` crosses the curves of a kind, in increasing order.
 
@@ -222,7 +155,7 @@ def crossings(
     )
 
 
-def _conditions(plane: Plane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
+def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
     """Yield the equations on both sides of U = W and for both signs of ω − Ω, as far as there are such."""
     if kind not in get_args(Kind):
         raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
@@ -240,7 +173,7 @@ class _Condition:
     the two parameters.
     """
 
-    plane: Plane
+    plane: ParameterPlane
     kind: Kind
     law: IsotropicContact
     side: int

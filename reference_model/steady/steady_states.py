@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import overload
-
-import numpy as np
 
 from reference_model.contact.contact_law import IsotropicContact, contact_of, isotropic_contact_of
 from reference_model.formulas.disc import held_pin, pin_of, shaft_torque
@@ -22,101 +19,28 @@ from reference_model.formulas.pin import (
 )
 from reference_model.formulas.torque_balance import circles, least_load_with_whirl, resting_places
 from reference_model.steady.stability import equilibrium_eigenvalues, whirl_eigenvalues
+from reference_model.steady.steady_motions import (
+    SelfCentredEquilibrium,
+    SpinningEquilibrium,
+    SpinningWhirl,
+    Whirl,
+    circling,
+    resting,
+)
 from reference_model.support import Support
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System, require_system
+from reference_model.systems import DiscOnDisc, PinOnDisc, System, require_system
 
-
-@dataclass(frozen=True, kw_only=True)
-class SelfCentredEquilibrium:
-    """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
-
-    Parameters
-    ----------
-    x, y : float
-        In m.
-    eigenvalues : tuple of complex
-        In 1/s, the one that decays slowest first: four of a pin, five of a disc, whose angle drops out.
-    stable : bool
-        Whether all small deviations die out.
-
-    """
-
-    x: float
-    y: float
-    eigenvalues: tuple[complex, ...]
-    stable: bool
-
-    @property
-    def state(self) -> FloatArray:
-        """The state as it is simulated, shape (4,)."""
-        return np.array([self.x, self.y, 0.0, 0.0])
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpinningEquilibrium(SelfCentredEquilibrium):
-    """The self-centred equilibrium of a disc, which spins about its resting centre.
-
-    Parameters
-    ----------
-    spin : float
-        φ̇ in rad/s.
-
-    """
-
-    spin: float
-
-    @property
-    def state(self) -> FloatArray:
-        """The state as it is simulated, with the angle zero, shape (6,)."""
-        return _resting(self.x, self.y, self.spin)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Whirl:
-    """A motion on a circle about the axis with permanent slip (11).
-
-    Parameters
-    ----------
-    radius : float
-        In m.
-    frequency : float
-        In rad/s, negative where the centre turns clockwise.
-    eigenvalues : tuple of complex
-        In 1/s, in the frame that turns with the whirl: first the exact zero of the free phase, then the
-        others, the one that decays slowest first: three of a pin, four of a disc, whose angle drops out.
-    stable : bool
-        Whether all small deviations die out but for a shift in phase.
-
-    """
-
-    radius: float
-    frequency: float
-    eigenvalues: tuple[complex, ...]
-    stable: bool
-
-    @property
-    def state(self) -> FloatArray:
-        """The state as it is simulated, with the centre on the x axis, shape (4,)."""
-        return np.array([self.radius, 0.0, 0.0, self.frequency * self.radius])
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpinningWhirl(Whirl):
-    """The whirl of a disc, which spins about its circling centre.
-
-    Parameters
-    ----------
-    spin : float
-        φ̇ in rad/s, the same all the time.
-
-    """
-
-    spin: float
-
-    @property
-    def state(self) -> FloatArray:
-        """The state as it is simulated, with the centre on the x axis and the angle zero, shape (6,)."""
-        return _circling(self.radius, self.frequency, self.spin)
+__all__ = [
+    "SelfCentredEquilibrium",
+    "SpinningEquilibrium",
+    "SpinningWhirl",
+    "Whirl",
+    "self_centred_equilibria",
+    "smallest_load_with_whirl",
+    "whirls",
+    "why_no_equilibrium",
+    "why_no_whirl",
+]
 
 
 @overload
@@ -178,15 +102,24 @@ def self_centred_equilibria(
     require_system(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # refuses any
-        if _why_no_equilibrium_of_pin(system) is not None:
-            return ()
-        x, y = equilibrium_position(system)
-        eigenvalues = equilibrium_eigenvalues(system)
-        return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=eigenvalues, stable=_decay(eigenvalues)),)
-    law = isotropic_contact_of(system, contact, "steady motions")
+        return _equilibria_of_pin(system)
+    return _equilibria_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
+
+
+def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
+    """Return the one of (3), if there is one."""
+    if _why_no_equilibrium_of_pin(pin) is not None:
+        return ()
+    x, y = equilibrium_position(pin)
+    eigenvalues = equilibrium_eigenvalues(pin)
+    return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=eigenvalues, stable=_decay(eigenvalues)),)
+
+
+def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
+    """Return those that are left by the balances of forces and moments."""
     found = []
-    for z, spin in resting_places(system, law):
-        eigenvalues = equilibrium_eigenvalues(system, _resting(z.real, z.imag, spin), law)
+    for z, spin in resting_places(disc, law):
+        eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
         found.append(
             SpinningEquilibrium(
                 x=z.real, y=z.imag, spin=spin, eigenvalues=eigenvalues, stable=_decay(eigenvalues)
@@ -240,24 +173,33 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     _require_centred(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # refuses any
-        if _why_no_whirl_of_pin(system) is not None:
-            return ()
-        eigenvalues = whirl_eigenvalues(system)
-        return (
-            Whirl(
-                radius=whirl_radius(system),
-                frequency=whirl_frequency(system),
-                eigenvalues=eigenvalues,
-                stable=_decay(eigenvalues[1:]),  # all but the phase
-            ),
-        )
-    law = isotropic_contact_of(system, contact, "steady motions")
-    if _why_no_circle_of_disc(system) is not None:
+        return _whirls_of_pin(system)
+    return _whirls_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
+
+
+def _whirls_of_pin(pin: PinOnDisc) -> tuple[Whirl, ...]:
+    """Return the one of (11), if there is one."""
+    if _why_no_whirl_of_pin(pin) is not None:
+        return ()
+    eigenvalues = whirl_eigenvalues(pin)
+    return (
+        Whirl(
+            radius=whirl_radius(pin),
+            frequency=whirl_frequency(pin),
+            eigenvalues=eigenvalues,
+            stable=_decay(eigenvalues[1:]),  # all but the phase
+        ),
+    )
+
+
+def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWhirl, ...]:
+    """Return those that are left by the balances of forces and moments, the largest first."""
+    if _why_no_circle_of_disc(disc) is not None:
         return ()
     found = []
-    for radius, spin in circles(system, law):
-        frequency = math.copysign(circling_speed(pin_of(system), radius), system.disc_speed)
-        eigenvalues = whirl_eigenvalues(system, _circling(radius, frequency, spin), law)
+    for radius, spin in circles(disc, law):
+        frequency = math.copysign(circling_speed(pin_of(disc), radius), disc.disc_speed)
+        eigenvalues = whirl_eigenvalues(disc, circling(radius, frequency, spin), law)
         found.append(
             SpinningWhirl(
                 radius=radius,
@@ -381,16 +323,6 @@ def _require_centred(system: System) -> None:
             f"offset = {system.offset:g} m: without an offset of 0 the periodic orbit is no circle about the axis; "
             "it is found by shooting, see whirl_orbit()"
         )
-
-
-def _resting(x: float, y: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its resting centre."""
-    return np.array([x, y, 0.0, 0.0, 0.0, spin])
-
-
-def _circling(radius: float, frequency: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its circling centre, which is on the x axis."""
-    return np.array([radius, 0.0, 0.0, 0.0, frequency * radius, spin])
 
 
 def _decay(eigenvalues: tuple[complex, ...]) -> bool:

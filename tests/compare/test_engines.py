@@ -35,6 +35,15 @@ def test_compiled_runs_take_part_only_where_they_are_named():
     np.testing.assert_allclose(found.at_end, plain.at_end, atol=1e-8)
 
 
+def test_the_plain_equations_take_part_only_where_they_are_named_and_tell_no_stick():
+    assert "plain" not in [engine.name for engine in engines()]
+    (plain,) = engines(["plain"])
+    found = plain.simulate(FIG11, [0.1, 0.0, 0.0, 0.03, 0.0, 1.0], [0.0, 2.0], tolerance=1e-6)
+    assert found.solution.method == "Radau"
+    with pytest.raises(UnsupportedSystemError, match="plain does not simulate stick"):
+        plain.simulate(replace(FIG5, friction_force=0.2), [0.0] * 4, [0.0, 1.0])
+
+
 def test_an_engine_of_linear_supports_says_so_of_each_system():
     (compiled,) = engines(["compiled"])
     hard = replace(FIG5, hardening=2.0), replace(FIG5, stop_stiffness=1.0)

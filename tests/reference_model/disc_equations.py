@@ -1,10 +1,11 @@
-"""Eq. 19 written down as plainly as can be, for complex arguments too, to judge the disc's formulas by."""
+"""Eq. 19 of the plain equations, for complex arguments too, and (23), to judge the disc's formulas by."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from compare.claims.paper_parameters import FIG9
+from reference_model import plain
 from reference_model.systems import DiscOnDisc
 
 FIG_9 = replace(FIG9, offset=0.0)
@@ -15,19 +16,8 @@ LARGE = DiscOnDisc(
 
 
 def points_on_ring(disc, number):
-    """Force and moment of ``number`` points that share μN, from (20) and (21)."""
-    places = 2.0 * np.pi * np.arange(number) / number
-
-    def friction(slip_x, slip_y, relative_spin, angle):
-        R = disc.contact_radius
-        sine, cosine = np.sin(angle + places), np.cos(angle + places)
-        x, y = slip_x + R * relative_spin * sine, slip_y - R * relative_spin * cosine
-        speed = np.sqrt(x**2 + y**2)
-        share = disc.friction_force / number
-        moment = share * R * np.sum((x * sine - y * cosine) / speed)
-        return -share * np.sum(x / speed), -share * np.sum(y / speed), moment
-
-    return friction
+    """Force and moment of ``number`` points that share μN, from (20) and (21), with friction full at any slip."""
+    return plain.on_ring(disc.friction_force, disc.contact_radius, number, epsilon=0.0)
 
 
 def eq_23(disc):
@@ -49,23 +39,7 @@ def eq_23(disc):
 
 def rates(disc, friction, state):
     """Right side of (19) as a first-order system, for x, y, angle, vx, vy, spin."""
-    x, y, angle, vx, vy, spin = state
-    omega = disc.disc_speed
-    force_x, force_y, moment = friction(vx + omega * y, vy - omega * x, omega - spin, angle)
-    squared = (x - disc.offset) ** 2 + y**2
-    stiffness = disc.stiffness + disc.hardening * squared
-    if squared.real > disc.stop_gap**2:
-        stiffness += disc.stop_stiffness * (1.0 - disc.stop_gap / np.sqrt(squared))
-    return np.array(
-        [
-            vx,
-            vy,
-            spin,
-            (-disc.damping * vx - stiffness * (x - disc.offset) + force_x) / disc.mass,
-            (-disc.damping * vy - stiffness * y + force_y) / disc.mass,
-            (-disc.shaft_damping * (spin - disc.shaft_speed) + moment) / disc.polar_inertia,
-        ]
-    )
+    return np.array(plain.rates(disc, friction, state))
 
 
 def rates_in_turning_axes(disc, friction, frequency, state):

@@ -13,7 +13,7 @@ import numpy as np
 
 from compare.sweep.define.plan import Map
 from reference_model.formulas.pin import largest_load_with_equilibrium
-from reference_model.steady.bifurcation_curves import Kind, Plane, boundaries
+from reference_model.steady.bifurcation_curves import Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 NODES = 101
@@ -67,7 +67,7 @@ def _boundaries(plan: Map, disc: DiscOnDisc) -> Iterator[Curve]:
     x, y = plan.x, plan.y
     centred = replace(disc, offset=0.0, contact_points=None)
     try:
-        plane = Plane(centred, (x.name, y.name), (x.low, y.low), (x.high, y.high))
+        plane = ParameterPlane(centred, (x.name, y.name), (x.low, y.low), (x.high, y.high))
     except ValueError:  # a parameter that it does not have, or a range beyond the existence of whirls
         return
     for kind in get_args(Kind):

@@ -9,8 +9,8 @@ from matplotlib.path import Path
 
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, basin_boundary, boundary_point, simulate, stick_slip_orbits
-from reference_model.orbits.basin_boundary import Sides
-from reference_model.orbits.release_map import Releases
+from reference_model.orbits.basin_boundary import Separatrix
+from reference_model.orbits.release_map import ReleaseMap
 
 RANGES = ((-0.3, 0.5), (-0.4, 0.4))
 
@@ -34,7 +34,7 @@ def point(saddle):
 
 
 def with_tolerance(orbit, tolerance):
-    return replace(orbit, flow=replace(orbit.flow, tolerance=tolerance))
+    return replace(orbit, problem=replace(orbit.problem, tolerance=tolerance))
 
 
 def whirls(start, duration, tolerance):
@@ -77,7 +77,7 @@ def test_boundary_of_fig_5_is_that_of_bisection_by_end_states(point):
 
 def test_pin_that_starts_on_the_boundary_follows_the_saddle_as_long_as_its_error_stays_small(saddle, point):
     trajectory = simulate(FIG5, point, [0.0, 15.0 * saddle.period], tolerance=1e-12)
-    misses = [abs(r.angle - saddle.release_angle) for r in Releases(FIG5, 1e-12).along(trajectory)]
+    misses = [abs(r.angle - saddle.release_angle) for r in ReleaseMap(FIG5, 1e-12).along(trajectory)]
     assert len(misses) >= 13
     # That of the point, 1e-10 or less, and of its release, grows by the multiplier from release to release.
     assert np.all(np.array(misses) <= 1e-10 * saddle.multiplier ** np.arange(len(misses)))
@@ -145,10 +145,10 @@ def test_other_components_and_a_state_that_they_replace_give_another_cut(saddle,
     )
     # It goes through the very same point, and all of its points are on the boundary.
     assert np.min(np.linalg.norm(curve.points, axis=1)) < 0.02
-    sides = Sides.of(saddle)
-    assert sides.miss(point) == pytest.approx(0.0, abs=1e-9)
+    separatrix = Separatrix.of(saddle)
+    assert separatrix.miss(point) == pytest.approx(0.0, abs=1e-9)
     for vy, y in curve.points:
-        assert sides.miss([point[0], y, point[2], vy]) == pytest.approx(0.0, abs=1e-5)
+        assert separatrix.miss([point[0], y, point[2], vy]) == pytest.approx(0.0, abs=1e-5)
 
 
 def test_boundary_between_a_cycle_and_the_whirl_of_one_pin_is_found_as_well():

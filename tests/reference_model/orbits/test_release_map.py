@@ -16,7 +16,7 @@ from reference_model import (
     stick_slip_orbits,
     whirl_orbit,
 )
-from reference_model.orbits.release_map import Releases
+from reference_model.orbits.release_map import ReleaseMap
 
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
 DAMPED = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.85, friction_force=0.47, disc_speed=2.4, offset=0.46)
@@ -56,7 +56,7 @@ def release_angles(pin, state, duration):
 )
 @pytest.mark.parametrize("angle", [0.3, 1.2, 2.8])
 def test_at_a_release_the_pin_rests_on_the_disc_and_its_growing_pull_is_friction(pin, angle):
-    releases = Releases(pin, 1e-9)
+    releases = ReleaseMap(pin, 1e-9)
     x, y, vx, vy = releases.state(angle)
     assert complex(vx, vy) == pytest.approx(1j * pin.disc_speed * complex(x, y))
 
@@ -84,7 +84,7 @@ def test_below_the_least_disc_speed_of_the_whirl_no_orbit_lies_between():
     assert stick_slip_orbits(pin) == ()
     (equilibrium,) = self_centred_equilibria(pin)
     for angle in (0.5, 1.5, 2.5, 3.0):
-        end = simulate(pin, Releases(pin, 1e-9).state(angle), [0.0, 600.0]).at_end
+        end = simulate(pin, ReleaseMap(pin, 1e-9).state(angle), [0.0, 600.0]).at_end
         assert end == pytest.approx(equilibrium.state, abs=1e-6)
 
 
@@ -126,7 +126,7 @@ def test_multiplier_is_an_eigenvalue_of_the_monodromy_matrix_and_the_others_are_
 
 @pytest.mark.parametrize("deviation", [1e-5, -1e-5])
 def test_small_deviations_from_the_saddle_grow_by_its_multiplier_from_release_to_release(saddle, deviation):
-    state = Releases(FIG5, 1e-12).state(saddle.release_angle + deviation)
+    state = ReleaseMap(FIG5, 1e-12).state(saddle.release_angle + deviation)
     angles = release_angles(FIG5, state, 5.5 * saddle.period)
     growth = (np.array(angles) - saddle.release_angle) / deviation
     assert len(growth) == 5
@@ -136,7 +136,7 @@ def test_small_deviations_from_the_saddle_grow_by_its_multiplier_from_release_to
 
 
 def test_both_sides_of_the_saddle_lead_to_the_two_motions_of_fig_5(saddle):
-    releases = Releases(FIG5, 1e-10)
+    releases = ReleaseMap(FIG5, 1e-10)
     before, behind = (
         simulate(FIG5, releases.state(saddle.release_angle + side), np.linspace(0.0, 400.0, 4001))
         for side in (-1e-6, 1e-6)
@@ -161,7 +161,7 @@ def test_power_of_the_drive_is_all_turned_into_heat_in_a_period(which, request):
 def test_saddle_comes_nearer_with_the_tolerance(saddle):
     errors = []
     for tolerance in (1e-6, 1e-8, 1e-10):
-        releases = Releases(FIG5, tolerance)
+        releases = ReleaseMap(FIG5, tolerance)
         angle = brentq(releases.change, saddle.release_angle - 0.01, saddle.release_angle + 0.01, xtol=1e-15)
         errors.append(abs(angle - saddle.release_angle))
         # Differences over 1e-3 of a map with an error of the tolerance.
@@ -170,27 +170,27 @@ def test_saddle_comes_nearer_with_the_tolerance(saddle):
 
 
 def test_map_of_a_disc_that_turns_the_other_way_or_has_its_offset_elsewhere_is_the_same(saddle):
-    mirrored = Releases(replace(FIG5, disc_speed=-1.5), 1e-12)
-    turned = Releases(replace(FIG5, offset=-0.1), 1e-12)
+    mirrored = ReleaseMap(replace(FIG5, disc_speed=-1.5), 1e-12)
+    turned = ReleaseMap(replace(FIG5, offset=-0.1), 1e-12)
     # In other units: of length 0.5 m, of time 0.25 s, of mass 3 kg.
     scaled = PinOnDisc(
         mass=3.0, stiffness=48.0, damping=1.2, friction_force=2.16, disc_speed=6.0, offset=0.05
     )
     for angle in (0.7, saddle.release_angle, 1.5):
-        expected = Releases(FIG5, 1e-12).after(angle)
-        for releases, time in ((mirrored, 1.0), (turned, 1.0), (Releases(scaled, 1e-12), 0.25)):
+        expected = ReleaseMap(FIG5, 1e-12).after(angle)
+        for releases, time in ((mirrored, 1.0), (turned, 1.0), (ReleaseMap(scaled, 1e-12), 0.25)):
             release = releases.after(angle)
             assert release.angle == pytest.approx(expected.angle, abs=1e-11)
             assert release.time == pytest.approx(expected.time * time, abs=1e-11)
             assert release.stick_time == pytest.approx(expected.stick_time * time, abs=1e-11)
-    release = Releases(FIG5, 1e-12).state(0.7)
+    release = ReleaseMap(FIG5, 1e-12).state(0.7)
     assert mirrored.state(0.7) == pytest.approx(release * [1.0, -1.0, 1.0, -1.0], abs=1e-15)
     assert turned.state(0.7) == pytest.approx(-release, abs=1e-15)
 
 
 def test_multiplier_next_to_a_gap_is_the_slope_of_the_map_there():
     # Here the stick phase of the saddle has nearly vanished: at larger angles the pin does not stick in this turn.
-    releases = Releases(replace(FIG5, disc_speed=1.19705), 1e-11)
+    releases = ReleaseMap(replace(FIG5, disc_speed=1.19705), 1e-11)
     angle = 2.340178286
     assert releases.change(angle) == pytest.approx(0.0, abs=1e-9)
     assert not abs(releases.change(angle + 2e-3)) < 2e-3

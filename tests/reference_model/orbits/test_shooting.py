@@ -11,7 +11,8 @@ from compare.claims.paper_parameters import FIG11
 from reference_model import PinOnDisc, last_whirl, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas import pin as formulas
-from reference_model.orbits.shooting import Flow, modulated_cycle, whirl_branch
+from reference_model.orbits import modulated_cycle, whirl_branch
+from reference_model.orbits.shooting import ShootingProblem
 from reference_model.systems import DiscOnDisc
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -446,5 +447,5 @@ def test_orbits_of_another_engine_are_found_with_its_simulate():
 
     orbit = whirl_orbit(FIG_5, simulate=engine, tolerance=1e-10)
     assert set(calls) == {1e-10}
-    assert isinstance(orbit.flow, Flow)
+    assert isinstance(orbit.problem, ShootingProblem)
     assert orbit.state == pytest.approx(whirl_orbit(FIG_5).state, abs=1e-9)

@@ -12,20 +12,21 @@ from reference_model.formulas.characteristic_polynomial import characteristic_co
 from reference_model.formulas.disc import whirl_at
 from reference_model.formulas.pin import characteristic_coefficients as coefficients_of_pin
 from reference_model.steady import bifurcation_curves as module
-from reference_model.steady.bifurcation_curves import Plane, boundaries, crossings
+from reference_model.steady import parameter_plane
+from reference_model.steady.bifurcation_curves import ParameterPlane, boundaries, crossings
 from reference_model.steady.stability import onset_load, whirl_eigenvalues
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 LAWS = pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
-SPEED_LOAD = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+SPEED_LOAD = ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
 PLANES = (
     SPEED_LOAD,
-    Plane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
-    Plane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
-    Plane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
-    Plane(FIG11, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
+    ParameterPlane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    ParameterPlane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    ParameterPlane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+    ParameterPlane(FIG11, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
 )
 
 traced = functools.cache(boundaries)
@@ -145,13 +146,13 @@ def test_curves_do_not_depend_on_the_step(kind):
 @pytest.mark.parametrize("plane", PLANES[1:4], ids=lambda plane: ", ".join(plane.names))
 def test_more_lines_and_ratios_find_no_more_curves(plane, monkeypatch):
     found = traced(plane, "Hopf")
-    monkeypatch.setattr(module, "LINES", 23)
+    monkeypatch.setattr(parameter_plane, "LINES", 23)
     monkeypatch.setattr(module, "NODES", 97)
     assert len(boundaries(plane, "Hopf", step=0.1)) == len(found)
 
 
 def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
-    mirrored = Plane(
+    mirrored = ParameterPlane(
         replace(FIG11, shaft_speed=-1.25),
         SPEED_LOAD.names,
         (-3.0, SPEED_LOAD.lower[1]),
@@ -198,7 +199,7 @@ def test_a_modulation_needs_inertia():
 def test_a_plane_without_whirls_is_refused(changes, message):
     values = {"disc": FIG11, "names": SPEED_LOAD.names, "lower": SPEED_LOAD.lower, "upper": SPEED_LOAD.upper}
     with pytest.raises(ValueError, match=message):
-        Plane(**(values | changes))
+        ParameterPlane(**(values | changes))
 
 
 def test_bad_questions_are_refused():
@@ -208,6 +209,8 @@ def test_bad_questions_are_refused():
         crossings(SPEED_LOAD, "Hopf", "damping", 0.5)
     with pytest.raises(ValueError, match=r"disc_speed = 4: it must lie between 1\.3 and 3"):
         crossings(SPEED_LOAD, "Hopf", "disc_speed", 4.0)
-    points = Plane(replace(FIG11, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper)
+    points = ParameterPlane(
+        replace(FIG11, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper
+    )
     with pytest.raises(ValueError, match="contact_points = 6"):
         boundaries(points, "Hopf")

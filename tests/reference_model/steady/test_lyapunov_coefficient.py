@@ -8,12 +8,12 @@ import pytest
 from compare.claims.paper_parameters import FIG11
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.simulation import simulate
-from reference_model.steady.bifurcation_curves import Plane, crossings
+from reference_model.steady.bifurcation_curves import ParameterPlane, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude, polar_rates
 from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import whirls
 
-PLANE = Plane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
+PLANE = ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 
 

@@ -15,7 +15,7 @@ from compare.claims.study import Findings
 from compare.engines import Engine
 from compare.studies.toolkit.fig11_motion import RING, SIX, SOURCE, START, integrated
 from reference_model import Trajectory, simulate
-from reference_model.orbits.shooting import modulated_cycle
+from reference_model.orbits import modulated_cycle
 from reference_model.systems import DiscOnDisc, FloatArray
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)

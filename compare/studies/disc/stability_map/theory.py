@@ -23,7 +23,7 @@ from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTer
 from reference_model.formulas.disc import whirl_at
 from reference_model.formulas.pin import upper_branch_margin
 from reference_model.simulation import simulate
-from reference_model.steady.bifurcation_curves import Boundary, Kind, Plane, boundaries, crossings
+from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
 from reference_model.steady.stability import (
     equilibrium_eigenvalues,
@@ -47,10 +47,10 @@ LAWS: dict[str, IsotropicContact] = {
 }
 
 PLANES = {
-    "load": Plane(DISC, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),
-    "dampers": Plane(DISC, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
-    "speeds": Plane(DISC, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
-    "inertia": Plane(DISC, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+    "load": ParameterPlane(DISC, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),
+    "dampers": ParameterPlane(DISC, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    "speeds": ParameterPlane(DISC, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    "inertia": ParameterPlane(DISC, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
 }
 
 KINDS: tuple[Kind, ...] = ("onset", "Hopf", "fold")

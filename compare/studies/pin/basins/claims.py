@@ -22,8 +22,8 @@ from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.pin.basins.pictures import draw
 from reference_model import StickSlipOrbit, basin_boundary, boundary_point, simulate, stick_slip_orbits
-from reference_model.orbits.basin_boundary import Sides
-from reference_model.orbits.release_map import Release, Releases
+from reference_model.orbits.basin_boundary import Separatrix
+from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def closes_claim(engine: Engine) -> Claim:
 def returns_claim(engine: Engine) -> Claim:
     """Compare period, time of stick and multiplier of the saddle in the engine's own map of releases."""
     orbit = saddle()
-    releases = Releases(FIG5, ON_BOUNDARY)
+    releases = ReleaseMap(FIG5, ON_BOUNDARY)
 
     def after(angle: float, tolerance: float) -> Release:
         times = [0.0, 1.5 * orbit.period]
@@ -319,7 +319,7 @@ def divides_claim(places: FloatArray, ends: NDArray[np.uint8], curve: FloatArray
     beyond, whirled = places[other], ends[other] == EndState.WHIRL
     off = distances(beyond, curve)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Sides.of(saddle(ON_BOUNDARY))
+    sides = Separatrix.of(saddle(ON_BOUNDARY))
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)

@@ -6,7 +6,7 @@ from compare.claims.paper_parameters import FIG5, FIG11
 from compare.sweep.compute.curves import MEANINGS, NODES, PIN, curves
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import Map
-from reference_model.steady.bifurcation_curves import Plane, crossings
+from reference_model.steady.bifurcation_curves import ParameterPlane, crossings
 
 COMMON = {"duration": 100.0, "tolerance": 1e-9, "seed": 1}
 
@@ -36,7 +36,7 @@ def test_a_pin_whirls_above_its_natural_frequency():
 def test_curves_of_a_disc_pass_through_the_crossings_that_the_reference_finds():
     x, y = Axis("disc_speed", 1.05, 1.95, 3), Axis("friction_force", 0.005, 0.06, 3)
     plan = Map(system=replace(FIG11, offset=0.1, contact_points=6), starts=((0.0,) * 6,), x=x, y=y, **COMMON)
-    plane = Plane(FIG11, (x.name, y.name), (x.low, y.low), (x.high, y.high))
+    plane = ParameterPlane(FIG11, (x.name, y.name), (x.low, y.low), (x.high, y.high))
     for kind in ("Hopf", "onset"):
         found = points_of(plan, MEANINGS[kind])
         for load in crossings(plane, kind, "disc_speed", FIG11.disc_speed):

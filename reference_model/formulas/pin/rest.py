@@ -1,0 +1,106 @@
+"""Section 2 of the paper: the self-centred equilibrium, (3) to (5)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.formulas.pin.conditions import turning_direction
+from reference_model.support import Support
+from reference_model.systems import FloatArray, PinOnDisc
+
+
+def equilibrium_radius(pin: PinOnDisc) -> float:
+    """ρ* of (3), the distance of the pin at rest from the axis, in m.
+
+    Friction acts along the circle about the axis, so that springs must pull at a right angle to ρ*, and by μN: their
+    deflection d* = √(X0² − ρ*²) is that of the force μN, μN/C of a linear support.
+
+    Raises
+    ------
+    ValueError
+        If (5) fails, if there are no springs, or if the disc stands still under a pin with friction.
+
+    """
+    _require_equilibrium(pin)
+    if pin.linear_support:
+        largest, load = largest_load_with_equilibrium(pin), pin.friction_force
+        # As a product: the difference of two nearly equal squares would lose the digits near the limit (5).
+        return math.sqrt((largest - load) * (largest + load)) / pin.stiffness
+    offset, deflection = abs(pin.offset), _equilibrium_deflection(pin)
+    return math.sqrt(max((offset - deflection) * (offset + deflection), 0.0))
+
+
+def equilibrium_angle(pin: PinOnDisc) -> float:
+    """ψ* of (3), the angle of the pin at rest, in rad between −π and π.
+
+    Raises
+    ------
+    ValueError
+        As :func:`equilibrium_radius`, and for an offset of zero, where no direction is distinguished.
+
+    """
+    _require_equilibrium(pin)
+    if pin.offset == 0.0:
+        raise ValueError("offset = 0 m: the equilibrium is the axis itself and has no angle")
+    angle = math.atan2(_equilibrium_deflection(pin), equilibrium_radius(pin))
+    if pin.offset < 0.0:
+        angle -= math.pi
+    return turning_direction(pin) * angle
+
+
+def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
+    """x* and y* of (3), the position of the pin at rest, in m.
+
+    Raises
+    ------
+    ValueError
+        As :func:`equilibrium_radius`.
+
+    """
+    radius = equilibrium_radius(pin)
+    if pin.offset == 0.0:
+        return 0.0, 0.0
+    x = radius**2 / pin.offset
+    y = turning_direction(pin) * _equilibrium_deflection(pin) / pin.offset * radius
+    return x, y
+
+
+def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
+    """Left side minus right side of (4), in m²: zero on the circle through the axis and (X0, 0).
+
+    ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    residual: FloatArray = (x - pin.offset / 2.0) ** 2 + y**2 - pin.offset**2 / 4.0
+    return residual
+
+
+def largest_load_with_equilibrium(pin: PinOnDisc) -> float:
+    """Return C·|X0| of (5) in N, the pull of the springs on the axis: up to this μN the equilibrium exists."""
+    return Support.of(pin).pull(abs(pin.offset))
+
+
+def largest_load_in_words(pin: PinOnDisc) -> str:
+    """Say what :func:`largest_load_with_equilibrium` is."""
+    return "stiffness·|offset|" if pin.linear_support else "force of the support at |offset|"
+
+
+def _require_equilibrium(pin: PinOnDisc) -> None:
+    support = Support.of(pin)
+    if not (support.centring or (pin.stop_stiffness > 0.0 and pin.friction_force > 0.0)):
+        raise ValueError("stiffness = 0 N/m: without springs there is no self-centred equilibrium")
+    if pin.friction_force > largest_load_with_equilibrium(pin):
+        raise ValueError(
+            f"friction_force = {pin.friction_force:g} N: the self-centred equilibrium exists only up to "
+            f"{largest_load_in_words(pin)} = {largest_load_with_equilibrium(pin):g} N (eq. 5)"
+        )
+    if pin.disc_speed == 0.0 and pin.friction_force > 0.0:
+        raise ValueError("disc_speed = 0 rad/s: a pin at rest sticks to a disc at rest and does not slide")
+
+
+def _equilibrium_deflection(pin: PinOnDisc) -> float:
+    """Return the deflection in m of the support that pulls by μN."""
+    return Support.of(pin).deflection(pin.friction_force)

@@ -1,0 +1,162 @@
+"""Section 2 of the paper: sticking, (6) to (9)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.formulas.pin.conditions import turning_direction
+from reference_model.formulas.pin.rest import largest_load_with_equilibrium
+from reference_model.support import require_linear_support
+from reference_model.systems import FloatArray, PinOnDisc
+
+
+def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLike) -> FloatArray:
+    """Return the right side of (7) in N²: the square of the friction force that holds a pin on the disc.
+
+    Parameters
+    ----------
+    pin : PinOnDisc
+        The parameters.
+    radius : float or array
+        A, the distance of the stuck pin from the axis, in m.
+    disc_angle : float or array
+        ωt, the angle at which the stuck pin is, in rad.
+
+    Raises
+    ------
+    ValueError
+        If the support is not linear.
+
+    """
+    require_linear_support(pin)
+    A, angle = np.asarray(radius, dtype=float), np.asarray(disc_angle, dtype=float)
+    C, X0, omega = pin.stiffness, pin.offset, pin.disc_speed
+    elastic = C - pin.mass * omega**2
+    viscous = pin.damping * omega
+    squared_force: FloatArray = (
+        elastic**2 * A**2
+        + viscous**2 * A**2
+        + C**2 * X0**2
+        - 2.0 * C * X0 * A * (elastic * np.cos(angle) - viscous * np.sin(angle))
+    )
+    return squared_force
+
+
+def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
+    """Angle by which the disc turns until it can't hold the pin: the first root of (7) with equality.
+
+    The holding force is the third side of a triangle. The first two are the force that carries the pin round
+    on springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset.
+    Only the angle between these two changes in time, and it grows as the disc turns.
+
+    Parameters
+    ----------
+    pin : PinOnDisc
+        The parameters.
+    radius : float
+        A, the distance of the stuck pin from the axis, in m, >= 0.
+    start_angle : float
+        The angle of the pin at the start, in rad.
+
+    Returns
+    -------
+    float
+        In rad, >= 0 for either sense of turning; ``inf`` if the pin stays on the disc for ever, 0 if friction
+        can't hold it at the start.
+
+    Raises
+    ------
+    ValueError
+        If ``radius`` is negative or the support not linear.
+
+    """
+    require_linear_support(pin)
+    if radius < 0.0:
+        raise ValueError(f"radius = {radius:g} m: it must be >= 0")
+    carry = _dynamic_stiffness(pin) * radius
+    pull = largest_load_with_equilibrium(pin)
+    friction = pin.friction_force
+    if carry + pull <= friction:  # (8)
+        return math.inf
+    excess = carry - pull
+    if abs(excess) > friction:
+        return 0.0
+    direction = turning_direction(pin)
+    lead = math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
+    half_turn = math.pi if pin.offset < 0.0 else 0.0
+    start = math.remainder(direction * (start_angle + lead) + half_turn, 2.0 * math.pi)
+    # Law of cosines for half the angle: keeps its digits where the triangle is flat, which an arccos loses.
+    opening = 2.0 * math.atan2(
+        math.sqrt((friction - excess) * (friction + excess)),
+        math.sqrt((carry + pull - friction) * (carry + pull + friction)),
+    )
+    if abs(start) > opening:
+        return 0.0
+    return opening - start if pin.disc_speed != 0.0 else math.inf
+
+
+def release_time(pin: PinOnDisc, radius: float, start_angle: float) -> float:
+    """Time in s until a pin stuck at ``radius`` (m) and ``start_angle`` (rad) lets go, by (7) with equality.
+
+    ``inf`` if it stays on the disc for ever, 0 if friction can't hold it at the start. Raises ``ValueError``
+    as :func:`turn_until_release`.
+    """
+    turn = turn_until_release(pin, radius, start_angle)
+    return turn / abs(pin.disc_speed) if 0.0 < turn < math.inf else turn
+
+
+def sticking_margin(pin: PinOnDisc, radius: float) -> float:
+    """Right side minus left side of (8) in N: >= 0 where a pin at ``radius`` (m) sticks in every position.
+
+    Raises ``ValueError`` if the support is not linear.
+    """
+    return pin.friction_force - largest_load_with_equilibrium(pin) - _dynamic_stiffness(pin) * radius
+
+
+def sticking_radius(pin: PinOnDisc) -> float:
+    """Right side of (9) in m: up to this distance from the axis the pin sticks for ever.
+
+    ``inf`` where an undamped pin is carried round at its natural frequency, which takes no force.
+
+    Raises
+    ------
+    ValueError
+        If μN <= C·|X0|: then friction is too weak to hold the pin even on the axis; if the support is not linear.
+
+    """
+    spare = sticking_margin(pin, 0.0)
+    if spare <= 0.0:
+        raise ValueError(
+            f"friction_force = {pin.friction_force:g} N: the pin sticks for ever only above "
+            f"stiffness·|offset| = {largest_load_with_equilibrium(pin):g} N (eq. 9)"
+        )
+    dynamic_stiffness = _dynamic_stiffness(pin)
+    return spare / dynamic_stiffness if dynamic_stiffness > 0.0 else math.inf
+
+
+def resonant_disc_speed(pin: PinOnDisc) -> float:
+    """ω* below (9) in rad/s, the speed at which the sticking domain is largest.
+
+    Raises
+    ------
+    ValueError
+        If C/m <= β²/2m²: then the domain shrinks from ω = 0 on; if the support is not linear.
+
+    """
+    require_linear_support(pin)
+    spring, damper = pin.stiffness / pin.mass, pin.damping**2 / (2.0 * pin.mass**2)
+    if spring <= damper:
+        raise ValueError(
+            f"damping = {pin.damping:g} N s/m: the sticking domain has a largest size only below "
+            f"√(2·mass·stiffness) = {math.sqrt(2.0 * pin.mass * pin.stiffness):g} N s/m"
+        )
+    return math.sqrt(spring - damper)
+
+
+def _dynamic_stiffness(pin: PinOnDisc) -> float:
+    """√((C − mω²)² + β²ω²) of (8) in N/m: force a metre of radius for carrying the pin round."""
+    require_linear_support(pin)
+    return math.hypot(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)

@@ -1,0 +1,121 @@
+"""Orbits continued from load to load: the branch of whirls or modulated cycles, and the fold where whirls end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+from scipy.optimize import minimize_scalar
+
+from reference_model.orbits.modulated import modulated_cycle
+from reference_model.orbits.shooting import Orbit, Simulate
+from reference_model.orbits.whirl import whirl_orbit
+from reference_model.simulation import simulate as reference_simulate
+from reference_model.systems import System
+
+BRANCH_STEP = 0.08
+"""Relative step in x along the branch of whirls."""
+
+
+def whirl_branch(
+    orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
+) -> Iterator[Orbit]:
+    """Yield ``orbit``, a whirl or a modulated cycle, and those of other loads that continue it, by decreasing x.
+
+    x is where they cross the axis. Each is sought from the line through the two before it, for a fall in x by the
+    fraction ``step``; where Newton's method fails, half of that is tried. The load rises or falls along the
+    branch as it will, and stick phases may come in.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where to start; its engine and tolerance are used for all.
+    until : float
+        Smallest crossing x in m to go to, > 0.
+    step : float
+        Largest fraction of x between neighbours.
+    samples : int
+        Intervals of each trajectory.
+
+    Raises
+    ------
+    RuntimeError
+        If the branch breaks off: if not even a step of ``step``/64 finds an orbit.
+
+    """
+    seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
+    before, last = None, orbit
+    yield last
+    fraction = step
+    while last.state[0] > until:
+        x = max(until, last.state[0] * (1.0 - fraction))
+        try:
+            found = seek(
+                last.system,
+                simulate=last.problem.simulate,
+                guess=last if before is None else _extrapolated(before, last, x),
+                at_crossing=x,
+                tolerance=last.problem.tolerance,
+                samples=samples,
+            )
+        except RuntimeError:
+            if fraction < step / 64.0:
+                raise
+            fraction /= 2.0
+            continue
+        before, last, fraction = last, found, min(step, 2.0 * fraction)
+        yield last
+
+
+def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
+    """Return a guess for the orbit at the crossing ``x`` on the line through two others."""
+    ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
+    load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
+    return replace(
+        last,
+        system=replace(last.system, friction_force=float(load)),
+        state=last.state + ahead * (last.state - before.state),
+        period=last.period + ahead * (last.period - before.period),
+        turn=last.turn + ahead * (last.turn - before.turn),
+    )
+
+
+def last_whirl(
+    system: System,
+    *,
+    simulate: Simulate = reference_simulate,
+    guess: Orbit | None = None,
+    tolerance: float = 1e-12,
+) -> Orbit:
+    """Return the whirl at the smallest load for which there is one: the fold of the branch.
+
+    There the whirl meets the unstable one that separates it from the other motions, and below it neither
+    exists. The paper does not give this load. The branch is followed from the load of ``system``, or from
+    ``guess``, towards the axis; the fold is the minimum of the load over the crossing x.
+
+    Raises
+    ------
+    ValueError, RuntimeError
+        As ``whirl_orbit``: if there is no whirl to start from, or if the branch ends before it folds.
+
+    """
+    orbit = guess or whirl_orbit(system, simulate=simulate, tolerance=tolerance, samples=2)
+
+    def load(x: float) -> float:
+        nonlocal orbit
+        orbit = whirl_orbit(
+            system, simulate=simulate, guess=orbit, at_crossing=x, tolerance=tolerance, samples=2
+        )
+        return orbit.system.friction_force
+
+    first = float(orbit.state[0])
+    x, loads = [first * (1.0 + BRANCH_STEP)], [math.inf]
+    for follower in whirl_branch(orbit, 0.0, samples=2):
+        orbit = follower
+        x.append(float(orbit.state[0]))
+        loads.append(orbit.system.friction_force)
+        if loads[-1] > loads[-2]:
+            break
+    best = minimize_scalar(load, bracket=tuple(x[-3:]), tol=1e-5)
+    return whirl_orbit(system, simulate=simulate, guess=orbit, at_crossing=float(best.x), tolerance=tolerance)

@@ -1,0 +1,119 @@
+"""The cycle of a whirl whose radius swells and shrinks (Fig. 11), by shooting; without offset only."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reference_model.orbits.shooting import (
+    PERIOD,
+    SPIN,
+    TURN,
+    VX,
+    VY,
+    Orbit,
+    ShootingProblem,
+    Simulate,
+    X,
+    Y,
+    hold_crossing,
+    require_start,
+    rotated,
+    shoot,
+    size_of,
+    without_angle,
+)
+from reference_model.simulation import simulate as reference_simulate
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Trajectory
+
+RECURRENCE = 0.05
+"""Largest relative difference of two states between which a motion is taken to have come round."""
+
+LEAST_MODULATION = 1e-6
+"""Swing of the radius, as a fraction of it, that tells a modulated cycle from a whirl found to ``CONVERGED``."""
+
+
+def modulated_cycle(
+    system: System,
+    guess: Trajectory | Orbit,
+    *,
+    simulate: Simulate = reference_simulate,
+    at_crossing: float | None = None,
+    tolerance: float = 1e-12,
+    samples: int = 1024,
+) -> Orbit:
+    """Return the cycle of a whirl whose radius swells and shrinks, X0 = 0 only, by shooting (Fig. 11).
+
+    Two frequencies are in it, that of the modulation and the carrier. But without offset it is periodic but for a
+    turn: after the period T of the modulation all is the same turned about the axis by an angle θ. The orbit starts
+    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    guess : Trajectory or Orbit
+        Where to start: a simulation that has come near to the cycle in its end, over more than a period of the
+        modulation and at times close enough to resolve a turn; or the cycle of nearby parameters.
+    simulate, at_crossing, tolerance, samples
+        As in :func:`whirl_orbit`.
+
+    Raises
+    ------
+    ValueError
+        If the offset is not zero, if a disc rests on single points, or if ``guess`` does not come round.
+    RuntimeError
+        If Newton's method does not converge, or finds a whirl of constant radius: there is no such cycle near the
+        guess.
+
+    """
+    require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
+    if system.offset != 0.0:
+        raise ValueError(
+            f"offset = {system.offset:g} m: a modulated cycle comes back turned about the axis, which takes an "
+            "offset of 0"
+        )
+    if isinstance(guess, Trajectory):
+        state, period, turn = _recurrence(guess)
+    else:
+        state, period, turn = guess.state, guess.period, guess.turn
+    problem = ShootingProblem(simulate, system, tolerance)
+    unknowns = problem.unknowns(state, period, system.friction_force, turn)
+    unknowns[[Y, VX]] = 0.0
+    sought = [X, *range(VY, len(unknowns[:PERIOD])), PERIOD, TURN]
+    if at_crossing is not None:
+        hold_crossing(at_crossing, guess, unknowns, sought)
+    orbit = shoot(problem, unknowns, sought, samples, "modulated cycle")
+    radius = orbit.trajectory.radius
+    if np.ptp(radius) < LEAST_MODULATION * np.max(radius):
+        raise RuntimeError(
+            f"no modulated cycle near the guess for friction_force = {system.friction_force:g} N: shooting found a "
+            f"whirl of constant radius {radius[0]:g} m"
+        )
+    return orbit
+
+
+def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
+    """Return state, period and turn of the last round between two like maxima of the radius.
+
+    The state is turned so that the centre lies on the x axis. Raises ``ValueError`` if there is no such round.
+    """
+    states, times = trajectory.states, trajectory.times
+    velocities = trajectory.system.state_size // 2
+    z = states[:, 0] + 1j * states[:, 1]
+    v = states[:, velocities] + 1j * states[:, velocities + 1]
+    outward = (z.conjugate() * v).real
+    maxima = np.flatnonzero((outward[:-1] > 0.0) & (outward[1:] <= 0.0))
+    angles = np.unwrap(np.angle(z))
+    if len(maxima):
+        last = rotated(without_angle(states[maxima[-1]]), -float(angles[maxima[-1]]))
+        for i in maxima[-2::-1]:
+            before = rotated(without_angle(states[i]), -float(angles[i]))
+            if np.all(np.abs(last - before) < RECURRENCE * size_of(trajectory.system, last)):
+                period = float(times[maxima[-1]] - times[i])
+                state = np.insert(last, 2, 0.0) if len(last) > SPIN else last
+                return state, period, float(angles[maxima[-1]] - angles[i])
+    raise ValueError(
+        f"the trajectory does not come round by t = {times[-1]:g} s: no two of {len(maxima)} maxima of its radius "
+        "are alike; simulate longer, or start nearer to the cycle"
+    )

@@ -1,0 +1,92 @@
+"""Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
+
+One thing is changed. Where the paper divides by the slip speed, this file divides by max(slip speed, ε): so friction
+has a value at rest too, and what sticks creeps slower than ε. The rest of the package needs no ε.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate import solve_ivp
+
+from reference_model.systems import DiscOnDisc, System, checked_state, checked_times, checked_tolerance
+from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+
+FINEST = 1e-10
+"""Tolerance below which Radau no longer solves for the creep: slip is the difference of two velocities."""
+
+Friction = Callable[[Any, Any, Any, Any], "tuple[Any, Any, Any]"]
+"""From slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex, to F_x, F_y (N) and M (N m)."""
+
+
+def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
+    """Return the friction of (20), whose integral over χ is a mean over ``points`` that slip by (21).
+
+    One point and R = 0 is the pin of (1).
+    """
+    chi = 2.0 * np.pi * np.arange(points) / points
+
+    def friction(slip_x: Any, slip_y: Any, relative_spin: Any, angle: Any) -> tuple[Any, Any, Any]:
+        sine, cosine = np.sin(angle + chi), np.cos(angle + chi)
+        v_x = slip_x + R * relative_spin * sine
+        v_y = slip_y - R * relative_spin * cosine
+        speed = np.maximum(np.sqrt(v_x**2 + v_y**2), epsilon)
+        moment = load * R * np.mean((v_x * sine - v_y * cosine) / speed)
+        return -load * np.mean(v_x / speed), -load * np.mean(v_y / speed), moment
+
+    return friction
+
+
+def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
+    """Return C in N/m, and what a hardening and a stop, which the paper has not, add at the deflection w."""
+    squared = w_x**2 + w_y**2
+    result = system.stiffness + system.hardening * squared
+    if system.stop_stiffness > 0.0 and squared.real > system.stop_gap**2:
+        result += system.stop_stiffness * (1.0 - system.stop_gap / np.sqrt(squared))
+    return result
+
+
+def rates(system: System, friction: Friction, state: Any) -> list[Any]:
+    """Return the time derivatives of a state, (4,) or (6,): (1) of a pin and (19) of a disc."""
+    (x, y, *angle), (vx, vy, *spin) = np.split(np.asarray(state), 2)
+    omega, C = system.disc_speed, stiffness(system, x - system.offset, y)
+    turning = (omega - spin[0], angle[0]) if isinstance(system, DiscOnDisc) else (0.0, 0.0)
+    force_x, force_y, moment = friction(vx + omega * y, vy - omega * x, *turning)
+    ax = (force_x - system.damping * vx - C * (x - system.offset)) / system.mass
+    ay = (force_y - system.damping * vy - C * y) / system.mass
+    if not isinstance(system, DiscOnDisc):
+        return [vx, vy, ax, ay]
+    shaft = system.shaft_damping * (spin[0] - system.shaft_speed)
+    return [vx, vy, spin[0], ax, ay, (moment - shaft) / system.polar_inertia]
+
+
+def simulate(
+    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+) -> Trajectory:
+    """Return the motion as :func:`reference_model.simulate` does, but that nothing is said to stick: it creeps."""
+    clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), FINEST)
+    start, times = checked_state(system, initial_state), checked_times(times)
+    (x, y, *_), (vx, vy, *_) = np.split(start, 2)
+    R, points = 0.0, 1
+    if isinstance(system, DiscOnDisc):  # where a point of a ring rests, the mean is wrong by some 1/points²
+        R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
+    size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
+    speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0
+    epsilon = 10.0 * fine * speed  # stick is wrong by ε at least, and finer steps would not help it
+    friction = on_ring(system.friction_force, R, points, epsilon)
+    run = solve_ivp(
+        lambda _, state: rates(system, friction, state), (times[0], times[-1]), start, "Radau", times,
+        rtol=0.1 * fine, atol=1e-3 * fine * np.repeat((size, speed), len(start) // 2),
+    )  # fmt: skip
+    if not run.success:
+        raise SimulationError(f"Radau gave up: {run.message}; try a larger tolerance")
+    states = np.vstack((start, *np.transpose(run.y)[1:]))  # SciPy returns none at a single time
+    phase = Phase("slip", float(times[0]), float(times[-1]), start)
+    solution = Solution("Radau", tolerance, run.nfev, len(run.t), time.perf_counter() - clock, epsilon)
+    return Trajectory(system, times, states, (phase,), solution)
