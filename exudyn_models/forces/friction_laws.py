@@ -1,8 +1,8 @@
 """Coulomb friction of a pin, of points on a ring, of a ring and of an annulus, compiled for Exudyn's user functions.
 
-All are gradients of a mean slip speed. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
-and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is P(u, S). The
-friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
+All are gradients of a slip potential. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
+and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is the potential
+P(u, S). The friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
 
 Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
 release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
@@ -26,7 +26,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.slip_potential import mean_slip_gradient, mean_slip_hessian, mean_slip_of_circles
+from exudyn_models.forces.slip_potential import (
+    slip_potential_gradient,
+    slip_potential_hessian,
+    slip_potential_of_circles,
+)
 from reference_model.systems import FloatArray
 
 CONTINUOUS = 0
@@ -103,7 +107,7 @@ def friction_of_slip(
     fx = fy = moment = 0.0
     speed = math.sqrt(ux * ux + uy * uy)
     if speed > 0.0 or spin != 0.0:
-        by_speed, by_spin = mean_slip_gradient(speed, abs(spin), inner, radius)
+        by_speed, by_spin = slip_potential_gradient(speed, abs(spin), inner, radius)
         mean = by_speed * speed + by_spin * abs(spin)
         factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
         if speed > 0.0:
@@ -115,11 +119,11 @@ def friction_of_slip(
 
 
 @compiled
-def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
-    """Return P in m/s for the arguments of ``friction_of_slip``."""
+def slip_potential_of_contact(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
+    """Return the slip potential P, the mean slip speed in m/s, for the arguments of ``friction_of_slip``."""
     radius, points, _, _, _, inner = contact
     if points == CONTINUOUS:
-        return mean_slip_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
+        return slip_potential_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
     mean = 0.0
     for i in range(points):
         mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
@@ -326,8 +330,8 @@ def _derivatives_of_circles(
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     # At rest the slope depends on the direction in which slip starts: take one without spin.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
-    by_speed, by_spin = mean_slip_gradient(size, abs(spin), inner, radius)
-    by_speed_twice, mixed, by_spin_twice = mean_slip_hessian(size, abs(spin), inner, radius)
+    by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius)
+    by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius)
     across = by_speed / size if size > 0.0 else by_speed_twice
     by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
     mean = by_speed * speed + by_spin * spin

@@ -1,6 +1,6 @@
 """Friction of a planar disc on a rotor or on a planar master: in closed form, at a third of the cost of other pairs.
 
-Their arguments are those of the functions for any pair, in ``slip_map``.
+Their arguments are those of the functions for any pair, in ``slip_jacobian``.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from exudyn_models.forces.friction_laws import (
     contact_of,
     derivatives_by_slip,
     friction_of_slip,
-    mean_slip_speed,
+    slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import compiled
 from reference_model.systems import FloatArray
@@ -60,7 +60,7 @@ Array = NDArray[Any]
 
 
 @compiled
-def slip_map(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
+def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
@@ -114,13 +114,13 @@ def friction_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
 ) -> tuple[FloatArray, float, float]:
     """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, and P in m/s."""
-    to_slip, axes, (cosine, sine) = slip_map(kinds, coordinates)
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
     radius = radius_of_disc(kinds, coordinates, axes)
-    return forces, radius, mean_slip_speed(ux, uy, spin, angle, contact)
+    return forces, radius, slip_potential_of_contact(ux, uy, spin, angle, contact)
 
 
 @compiled
@@ -136,13 +136,13 @@ def friction_derivatives_on_nodes(
 
     They are weighted sums of those by the coordinates and by the velocities.
     """
-    to_slip, _, (cosine, sine) = slip_map(kinds, coordinates)
+    to_slip, _, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     # Friction is −μN·∂P/∂(u, S), or P/ε of that; P does not change if slip and disc are turned alike.
-    speed = mean_slip_speed(ux, uy, spin, angle, contact)
+    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
     size = len(coordinates)
@@ -150,7 +150,7 @@ def friction_derivatives_on_nodes(
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_map(kinds, stepped)
+        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_jacobian(kinds, stepped)
         stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
         motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
         map_change = position_factor * stepped_map.imag / IMAGINARY_STEP

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.friction_laws import point_regularisation
-from exudyn_models.forces.slip_potential import mean_slip_slopes, mean_slip_speeds
+from exudyn_models.forces.slip_potential import ring_potential_slopes, ring_potentials
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 WHOLE = 0
@@ -28,7 +28,7 @@ def creep_ratios(system: System, states: FloatArray, epsilon: float) -> FloatArr
     ux, uy = vx + omega * y, vy - omega * x
     rim = system.contact_radius * (spin - omega)
     if system.contact_points is None:
-        return np.asarray(mean_slip_speeds(np.hypot(ux, uy)[:, 0], rim[:, 0])[:, None] / epsilon)
+        return np.asarray(ring_potentials(np.hypot(ux, uy)[:, 0], rim[:, 0])[:, None] / epsilon)
     alpha = angle + _angles_between(system.contact_points)
     speeds = np.hypot(ux - rim * np.sin(alpha), uy + rim * np.cos(alpha))
     delta = point_regularisation(epsilon, system.contact_points)
@@ -47,7 +47,7 @@ def creep_ratio_rates(
     rim = system.contact_radius * (state[5] - omega)
     rim_rate = system.contact_radius * acceleration[2]
     if system.contact_points is None:
-        by_speed, by_rim = mean_slip_slopes(abs(slip[0]), abs(rim))
+        by_speed, by_rim = ring_potential_slopes(abs(slip[0]), abs(rim))
         growth = by_speed * _growth(slip, rate) + by_rim * math.copysign(1.0, rim) * rim_rate
         return np.asarray(growth / epsilon)
     across = 1j * np.exp(1j * (state[2] + _angles_between(system.contact_points)))

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_models.forces.friction_laws import CONTINUOUS, point_regularisation
-from exudyn_models.forces.load_and_coefficient import checked_strength
+from exudyn_models.forces.load_and_coefficient import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
 from exudyn_models.paper.alternating_solvers import Friction, Part
 from exudyn_models.paper.creep import WHOLE, creep_ratios, creeping
@@ -157,7 +157,7 @@ def add_native_friction(
 
     """
     radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
-    friction = checked_strength("friction_coefficient", friction_coefficient, "") * checked_strength(
+    friction = checked_not_negative("friction_coefficient", friction_coefficient, "") * checked_not_negative(
         "normal_load", normal_load, " N"
     )
     if points == CONTINUOUS:

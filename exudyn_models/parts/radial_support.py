@@ -2,8 +2,8 @@
 
 At the deflection w, d = |w|, it pulls the disc back with C·d + C₃·d³ + C_s·max(0, d − gap), and damps with β·ẇ. On a
 body it turns with it: w and ẇ are those that an observer on the body sees, so that a motion of both as one rigid body
-does nothing, and the damper only takes energy. ẇ is the slip J(q)·q̇ of ``slip_map``; its transpose puts the whole
-reaction on the body, the moment −d×F included, as friction does.
+does nothing, and the damper only takes energy. ẇ is the slip J(q)·q̇ of ``slip_kinematics``; Jᵀ puts the whole reaction
+on the body, the moment −d×F included, as friction does.
 
 A support that is linear and on the ground is Exudyn's own ``CartesianSpringDamper``, which takes a tenth of the time
 of a Python function. Any other is an ``ObjectGenericODE2`` without mass.
@@ -22,7 +22,7 @@ import numpy as np
 
 from exudyn_models.forces.any_pair import ForceFunction, JacobianFunction
 from exudyn_models.forces.jit import compiled, taking_lists
-from exudyn_models.forces.load_and_coefficient import checked_strength
+from exudyn_models.forces.load_and_coefficient import checked_not_negative
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
     PLANAR,
@@ -33,7 +33,7 @@ from exudyn_models.forces.slip_kinematics import (
     TRANSLATIONS,
     Kinds,
     place_of_disc,
-    slip_map,
+    slip_jacobian,
 )
 from exudyn_models.parts.ring_friction import checked_kind
 from reference_model.systems import FloatArray, finite_number
@@ -125,7 +125,7 @@ class RadialSupport:
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
-        to_slip, axes, _ = slip_map(self._kinds, coordinates)
+        to_slip, axes, _ = slip_jacobian(self._kinds, coordinates)
         w = np.array(place_of_disc(self._kinds, coordinates, axes)) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
         force = axes[:, :2] @ (-secant_stiffness(square, self._law) * w - damping * rate)
@@ -180,11 +180,11 @@ def add_radial_support(
 
     """
     law: Law = (
-        checked_strength("stiffness", stiffness, " N/m"),
-        checked_strength("hardening", hardening, " N/m³"),
-        checked_strength("stop_gap", stop_gap, " m"),
-        checked_strength("stop_stiffness", stop_stiffness, " N/m"),
-        checked_strength("damping", damping, " N s/m"),
+        checked_not_negative("stiffness", stiffness, " N/m"),
+        checked_not_negative("hardening", hardening, " N/m³"),
+        checked_not_negative("stop_gap", stop_gap, " m"),
+        checked_not_negative("stop_stiffness", stop_stiffness, " N/m"),
+        checked_not_negative("damping", damping, " N s/m"),
     )
     place = _checked_offset(offset)
     disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, ROTATION_VECTOR, TAIT_BRYAN))
@@ -364,7 +364,7 @@ def support_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, offset: Offset, law: Law
 ) -> FloatArray:
     """Return the generalised forces on both nodes, shape (n,)."""
-    to_slip, axes, _ = slip_map(kinds, coordinates)
+    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
     x, y = place_of_disc(kinds, coordinates, axes)
     wx, wy = x - offset[0], y - offset[1]
     rate = to_slip @ velocities
@@ -385,7 +385,7 @@ def support_derivatives_on_nodes(
     law: Law,
 ) -> FloatArray:
     """Return the derivatives of the generalised forces by coordinates and velocities, weighted and added, (n, n)."""
-    to_slip, axes, _ = slip_map(kinds, coordinates)
+    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
     w = np.array(place_of_disc(kinds, coordinates, axes)) - np.array(offset)
     rate = to_slip @ velocities
     square, damping = w[0] * w[0] + w[1] * w[1], law[4]
@@ -395,7 +395,7 @@ def support_derivatives_on_nodes(
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, _ = slip_map(kinds, stepped)
+        stepped_map, stepped_axes, _ = slip_jacobian(kinds, stepped)
         shifts = place_of_disc(kinds, stepped, stepped_axes)
         map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
         rate_change = map_change @ velocities + velocity_factor * to_slip[:, j]

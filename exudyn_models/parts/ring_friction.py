@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import functions_of_pair
+from exudyn_models.forces.any_pair import force_and_jacobian
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
-from exudyn_models.forces.load_and_coefficient import NumberOrFunction, Strength
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import KINDS
 from exudyn_models.parts.friction_sensors import RingFriction
 from reference_model.systems import finite_number
@@ -123,14 +123,14 @@ def add_ring_friction(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
     unit = (radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner)
-    strength = Strength(unit, friction_coefficient, normal_load)
+    factors = LoadAndCoefficient(unit, friction_coefficient, normal_load)
     kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
     if int(master_node) == int(disc_node):
         raise ValueError(f"disc_node {int(disc_node)} is the master_node too: friction takes two bodies")
     reference = np.hstack(
         [mbs.GetNodeParameter(node, "referenceCoordinates") for node in (master_node, disc_node)]
     )
-    force, jacobian = functions_of_pair(kinds, reference, strength)
+    force, jacobian = force_and_jacobian(kinds, reference, factors)
     size = len(reference)
     item = mbs.AddObject(
         items.ObjectGenericODE2(
@@ -140,7 +140,7 @@ def add_ring_friction(
             jacobianUserFunction=jacobian,
         )
     )
-    return RingFriction(mbs, item, (master_node, disc_node), kinds, reference, strength)
+    return RingFriction(mbs, item, (master_node, disc_node), kinds, reference, factors)
 
 
 def checked_contact(
