@@ -2,7 +2,7 @@
 
 All are gradients of a slip potential. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
 and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is the potential
-P(u, S). The friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
+P(u, S). The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
 
 Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
 release leaves an error of ε^0.8 behind, here all errors are of first order in ε.

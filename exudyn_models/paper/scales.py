@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_models.parts.radial_support import Law, potential, secant_stiffness
+from exudyn_models.forces.radial_springs import Law, elastic_energy, secant_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 
@@ -35,7 +35,7 @@ def hardened_stiffness(system: System, state: FloatArray) -> float:
 def support_energy(system: System, state: FloatArray) -> float:
     """Return the energy in J of the centre's motion and of its support, from the place where that is relaxed."""
     position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
-    return system.mass * abs(velocity) ** 2 / 2.0 + potential(
+    return system.mass * abs(velocity) ** 2 / 2.0 + elastic_energy(
         abs(position - system.offset) ** 2, _law_of(system)
     )
 

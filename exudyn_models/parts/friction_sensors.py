@@ -21,6 +21,7 @@ from exudyn_models.forces.slip_kinematics import (
     radius_of_disc,
     slip_jacobian,
 )
+from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -94,7 +95,7 @@ class RingFriction:
         """
         if quantity not in get_args(Quantity):
             raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
-        options = {"storeInternal": True, "writeToFile": False} | options
+        options = IN_MEMORY | options
         if quantity == "heat":
             return self._add_heat(options)
         return self.mbs.AddSensor(
