@@ -254,17 +254,7 @@ def _derivatives_of_points(
     radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
-    # P and its derivatives, which count where the contact creeps as a whole, and the slowest point.
-    mean, lowest, slow = 0.0, math.inf, held
-    by_mean = np.zeros(4)
-    for i in range(points):
-        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
-        speed = abs(slip)
-        mean += speed / points
-        for j in range(4):
-            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
-        if held == NONE_HELD and speed < lowest:
-            slow, lowest = i, speed
+    mean, by_mean, slow = _mean_slip_of_points(ux, uy, spin, angle, contact)
     creeps = mean < epsilon
     creep = mean / epsilon if creeps else 1.0
     # What the others lose of the slip of the slowest point, and its derivatives.
@@ -309,6 +299,25 @@ def _derivatives_of_points(
         result[2, 3] += ((1j * arm).conjugate() * push).imag  # the arm turns with the disc
         force += push
     return force.real, force.imag, result
+
+
+@compiled
+def _mean_slip_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, FloatArray, int]:
+    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the point that is held, or else slowest."""
+    radius, points, _, _, held, _ = contact
+    mean, lowest, slow = 0.0, math.inf, held
+    by_mean = np.zeros(4)
+    for i in range(points):
+        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        speed = abs(slip)
+        mean += speed / points
+        for j in range(4):
+            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
+        if held == NONE_HELD and speed < lowest:
+            slow, lowest = i, speed
+    return mean, by_mean, slow
 
 
 @compiled

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,10 +11,9 @@ from numpy.typing import ArrayLike
 
 from exudyn_models.forces.friction_laws import point_regularisation
 from exudyn_models.paper.alternating_solvers import Friction, Part
-from exudyn_models.paper.creep import WHOLE, creep_ratios, creeping
-from exudyn_models.paper.nondimensional import Units
+from exudyn_models.paper.creep import WHOLE, RegularisedContact
 from exudyn_models.paper.scales import support_energy
-from exudyn_models.paper.simulate import simulate
+from exudyn_models.paper.simulate import METHODS, Run
 from exudyn_models.parts.native_contact import add_native_friction
 from reference_model.systems import (
     DiscOnDisc,
@@ -23,6 +21,7 @@ from reference_model.systems import (
     System,
     checked_state,
     checked_times,
+    checked_tolerance,
 )
 from reference_model.trajectory import Trajectory
 
@@ -39,23 +38,21 @@ def simulate_with_native_contact(
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
-    # Friction is added in the units of the motion.
-    reach = _reach(system, state, float(grid[-1] - grid[0])) / Units.of(system, state).length
+    run = Run.of(system, state, grid, checked_tolerance(tolerance), None)
+    reach = _reach(system, state, float(grid[-1] - grid[0])) / run.units.length
     friction = Friction(partial(_add_friction, reach=reach), _creeping)
-    trajectory = simulate(system, state, grid, tolerance=tolerance, friction=friction)
-    solution = replace(trajectory.solution, method=f"{trajectory.solution.method}, built-in contact")
-    return replace(trajectory, solution=solution)
+    return run.trajectory(f"{METHODS['explicit']}, built-in contact", run.explicit(), friction)
 
 
-def _creeping(system: System, state: list[float], epsilon: float) -> Part | None:
+def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:
     """Return ``WHOLE`` if all points slip with less than δ, else the numbers of those that do, or None.
 
     A disc that is hardly held any more creeps with some of its points faster than that, under Coulomb friction.
     """
-    part = creeping(system, state, epsilon)
+    part, system = contact.creeping(state), contact.system
     if part is None or not isinstance(system, DiscOnDisc):
         return part
-    slow = np.flatnonzero(creep_ratios(system, np.array([state]), epsilon)[0, 1:] < 1.0)
+    slow = np.flatnonzero(contact.slip_ratios(np.array([state]))[0, 1:] < 1.0)
     return WHOLE if len(slow) == system.contact_points else frozenset(slow.tolist()) or None
 
 

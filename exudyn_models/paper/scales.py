@@ -1,13 +1,50 @@
-"""How fast, how far and how hard a system moves: what steps and tolerances are measured by."""
+"""How fast, how far and how hard a system moves: what the steps and tolerances of a run are measured by.
+
+All numbers are in the units in which ``system`` and ``state`` are given, SI or those of ``nondimensional``.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from exudyn_models.forces.radial_springs import Law, elastic_energy, secant_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Sizes of a run, which follow from the system, its start and its span.
+
+    Parameters
+    ----------
+    time : float
+        In which the motion changes, see ``time_scale``.
+    motion : float
+        By which the error of DOPRI5 is measured, see ``motion_scale``.
+    angle_rounding : float
+        Of the angle at the end of the span, see ``angle_rounding``.
+    force : float
+        By which the residual of Newton's iteration is measured, see ``force_scale``.
+
+    """
+
+    time: float
+    motion: float
+    angle_rounding: float
+    force: float
+
+    @classmethod
+    def of(cls, system: System, state: FloatArray, span: float) -> Scales:
+        """Return those of the motion of ``system`` from ``state`` (shape (4,) or (6,)) over ``span`` (s)."""
+        return cls(
+            time_scale(system, state, span),
+            motion_scale(system, state),
+            angle_rounding(system, state, span),
+            force_scale(system, state),
+        )
 
 
 def time_scale(system: System, state: FloatArray, span: float) -> float:
@@ -82,29 +119,3 @@ def _law_of(system: System) -> Law:
         system.stop_stiffness,
         system.damping,
     )
-
-
-RELAXATIONS = 40.0
-"""What comes to rest settles to its creep like exp(−t/relaxation time); after 40 times that nothing is left of it."""
-
-
-def settling_time(system: System, epsilon: float) -> float:
-    """Return the time in s after which slip below ε has settled to its creep but for slow relaxations."""
-    return RELAXATIONS * relaxation_times(system, epsilon)[0]
-
-
-def relaxation_times(system: System, epsilon: float) -> tuple[float, float]:
-    """Return the times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
-
-    The viscous part of the law resists slip of a pin with μN/ε per m/s; that of a disc and of its rim on a continuous
-    ring with half of that or more, and on one of n points that rests alone with the n-th part. The inertia of the
-    rim, J/R², may be far larger than the mass. Without friction both are infinite.
-    """
-    if system.friction_force == 0.0:
-        return math.inf, math.inf
-    inertias, share = [system.mass], 1
-    if isinstance(system, DiscOnDisc):
-        inertias.append(system.polar_inertia / system.contact_radius**2)
-        share = system.contact_points or 2
-    times = sorted(share * inertia * epsilon / system.friction_force for inertia in inertias)
-    return times[0], times[-1]
