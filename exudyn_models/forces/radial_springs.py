@@ -14,7 +14,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from exudyn_models.forces.any_pair import ForceFunction, JacobianFunction
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
@@ -25,6 +24,7 @@ from exudyn_models.forces.slip_kinematics import (
     place_of_disc,
     slip_jacobian,
 )
+from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 from reference_model.systems import FloatArray
 
 Law = tuple[float, float, float, float, float]

@@ -34,40 +34,22 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
-    released = 0
-    for first, beyond in _runs(creeping):
-        if creeping[first] == NOTHING:
-            continue
-        settled = steps.times[min(beyond, len(creeping) - 1)] - steps.times[first] > contact.settling_time
-        if creeping[first] == WHOLE:
-            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
-            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
-        else:
-            kept = settled
-        if kept:
-            if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
-                creeping[released:first] = (
-                    WHOLE  # slip that comes back before it has got anywhere is no release
-                )
-            released = beyond
-        else:
-            creeping[first:beyond] = NOTHING
+    _leave_what_is_held(contact, steps.times, ratios, load, creeping)
     last = float(steps.times[-1])
-    runs_before = {beyond: first for first, beyond in _runs(creeping)[:-1]}
-    changes = list(runs_before)
-    times = [float(steps.times[0])]
-    for i in changes:
+    changes, times = [0], [float(steps.times[0])]
+    for first, i in _runs(creeping)[:-1]:
         before, after = creeping[i - 1], creeping[i]
         if before == WHOLE:
-            time = _release(steps.times, load - 1.0, runs_before[i], i)
+            time = _release(steps.times, load - 1.0, first, i)
         elif after == NOTHING:
             time = _crossing(steps.times, ratios[:, before] - 1.0, i - 1)
         else:
             time = _time_of_rest(contact, steps, ratios[:, after], after, i - 1)
+        changes.append(i)
         times.append(min(max(time, times[-1]), last))
     found: list[Phase] = []
     part_before = None
-    for i, start, end in zip([0, *changes], times, [*times[1:], last], strict=True):
+    for i, start, end in zip(changes, times, [*times[1:], last], strict=True):
         if start == end < last:
             continue
         if found and (start == end or creeping[i] == part_before):
@@ -76,6 +58,32 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
             found.append(Phase(_kind(creeping[i]), start, end, states_at(steps, np.array([start]))[0]))
         part_before = creeping[i]
     return tuple(found)
+
+
+def _leave_what_is_held(
+    contact: RegularisedContact,
+    times: FloatArray,
+    ratios: FloatArray,
+    load: FloatArray,
+    creeping: NDArray[np.int_],
+) -> None:
+    """Change ``creeping`` at all steps so that only what friction holds creeps there, from stick to its release."""
+    released = 0
+    for first, beyond in _runs(creeping):
+        if creeping[first] == NOTHING:
+            continue
+        settled = times[min(beyond, len(creeping) - 1)] - times[first] > contact.settling_time
+        if creeping[first] == WHOLE:
+            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
+            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
+        else:
+            kept = settled
+        if not kept:
+            creeping[first:beyond] = NOTHING
+            continue
+        if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
+            creeping[released:first] = WHOLE  # slip that comes back before it got anywhere is no release
+        released = beyond
 
 
 NEIGHBOURS = 100

@@ -13,8 +13,8 @@ from typing import Any
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import ForceFunction, JacobianFunction
 from exudyn_models.forces.slip_kinematics import KINDS
+from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 

@@ -11,16 +11,16 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import force_and_jacobian
+from exudyn_models.forces.any_pair import friction_on_nodes
 from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Kinds,
-    friction_on_nodes,
     radius_of_disc,
     slip_jacobian,
 )
+from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
 

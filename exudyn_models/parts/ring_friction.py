@@ -10,9 +10,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from exudyn_models.forces.any_pair import force_and_jacobian
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind
 from exudyn_models.parts.friction_sensors import RingFriction
 from reference_model.systems import finite_number
