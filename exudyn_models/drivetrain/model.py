@@ -193,22 +193,12 @@ def build_drivetrain(
         normal_load=normal_load,
         regularisation=regularisation,
     )
-    torques = {"engine": (engine, engine_torque), "vehicle": (vehicle, vehicle_torque)}
-    balance = add_energy_balance(
-        mbs,
-        gains={
-            name: _add_torque(mbs, node, torque)
-            for name, (node, torque) in torques.items()
-            if torque is not None
-        },
-        losses={
-            "friction": friction.power,
-            "radial damper": support.power,
-            "torsional damper": _heat_of_torsion(torsion, drivetrain.torsional_damping),
-        },
-        stored=[support.stored_energy, spring_energy(torsion)],
-        unit=ENERGY_UNIT,
-    )
+    gains = {
+        name: _add_torque(mbs, node, torque)
+        for name, node, torque in (("engine", engine, engine_torque), ("vehicle", vehicle, vehicle_torque))
+        if torque is not None
+    }
+    balance = _add_balance(mbs, gains, friction, support, torsion, drivetrain.torsional_damping)
     sensors = _add_sensors(mbs, (engine, disc, vehicle))
     mbs.Assemble()
     return DrivetrainModel(container, mbs, engine, disc, vehicle, friction, support, sensors, balance)
@@ -262,14 +252,31 @@ def _add_torsional_spring(mbs: Any, drivetrain: Drivetrain, vehicle: Any, disc: 
     )
 
 
-def _heat_of_torsion(torsion: Any, damping: float) -> Power:
-    """Return what the torsional damper (N m s/rad) turns into heat."""
+def _add_balance(
+    mbs: Any,
+    gains: dict[str, Power],
+    friction: RingFriction,
+    support: RadialSupport,
+    torsion: Any,
+    torsional_damping: float,
+) -> Callable[[], EnergyBalance]:
+    """Add the energy balance of what the torques do; return what reads it."""
 
-    def power(mbs: Any, t: float) -> float:
+    def torsional_heat(mbs: Any, t: float) -> float:
         rate = mbs.GetObjectOutput(torsion, exu.OutputVariableType.Velocity)
-        return float(damping * rate * rate)
+        return float(torsional_damping * rate * rate)
 
-    return power
+    return add_energy_balance(
+        mbs,
+        gains=gains,
+        losses={
+            "friction": friction.power,
+            "radial damper": support.power,
+            "torsional damper": torsional_heat,
+        },
+        stored=[support.stored_energy, spring_energy(torsion)],
+        unit=ENERGY_UNIT,
+    )
 
 
 def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:

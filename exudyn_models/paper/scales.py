@@ -23,11 +23,12 @@ class Scales:
     time : float
         In which the motion changes, see ``time_scale``.
     motion : float
-        By which the error of DOPRI5 is measured, see ``motion_scale``.
+        By which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
     angle_rounding : float
-        Of the angle at the end of the span, see ``angle_rounding``.
+        Rounding error in rad of the angle that a disc may have after the span; 0 for a pin.
     force : float
-        By which the residual of Newton's iteration is measured, see ``force_scale``.
+        By which the residual of Newton's iteration is measured: the forces on the body in N, or the moments in N m
+        where these are smaller; > 0.
 
     """
 
@@ -41,9 +42,9 @@ class Scales:
         """Return those of the motion of ``system`` from ``state`` (shape (4,) or (6,)) over ``span`` (s)."""
         return cls(
             time_scale(system, state, span),
-            motion_scale(system, state),
-            angle_rounding(system, state, span),
-            force_scale(system, state),
+            _size_of_motion(system, state),
+            _angle_rounding(system, state, span),
+            _size_of_forces(system, state),
         )
 
 
@@ -77,8 +78,8 @@ def support_energy(system: System, state: FloatArray) -> float:
     )
 
 
-def motion_scale(system: System, state: FloatArray) -> float:
-    """Return the number by which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
+def _size_of_motion(system: System, state: FloatArray) -> float:
+    """Return 1, or the largest of distances in m and speeds in m/s where it is above that.
 
     A disc adds its spin and those of shaft and master, but not its angle, whose origin is arbitrary.
     """
@@ -89,16 +90,14 @@ def motion_scale(system: System, state: FloatArray) -> float:
     return float(max(sizes))
 
 
-def angle_rounding(system: System, state: FloatArray, span: float) -> float:
-    """Return the rounding error in rad of the angle that a disc may have after ``span`` (s); 0 for a pin."""
+def _angle_rounding(system: System, state: FloatArray, span: float) -> float:
     if not isinstance(system, DiscOnDisc):
         return 0.0
     spin = max(abs(state[5]), abs(system.disc_speed), abs(system.shaft_speed))
     return float(np.spacing(abs(state[2]) + spin * span))
 
 
-def force_scale(system: System, state: FloatArray) -> float:
-    """Return the size in N of the forces on the body, or in N m that of the moments where it is smaller; > 0."""
+def _size_of_forces(system: System, state: FloatArray) -> float:
     position, velocity = state.reshape(2, -1)
     deflection = math.hypot(*position[:2]) + abs(system.offset)
     spring = secant_stiffness(deflection**2, _law_of(system)) * deflection

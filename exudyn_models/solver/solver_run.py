@@ -164,32 +164,16 @@ def solve(
     if quasi_static:
         settings.timeIntegration.generalizedAlpha.spectralRadius = 0.0
         settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = balanced
-    explicit = integrator in EXPLICIT
-    solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
-    first_acceleration = None
-    with quiet():
-        try:
-            if explicit:
-                first_acceleration = _initial_acceleration(model, start)
-            with after_every_step(model.mbs, look):
-                success = solver.SolveSystem(model.mbs, settings)
-        except exu.ExudynError as error:
-            raise_interrupt(error)
-            time = solver.it.currentTime * count.seconds
-            raise SimulationError(advice(integrator, time, str(error))) from error
-    if look.too_many:
-        raise SimulationError(look.too_many)
-    if look.failure or not success:
-        time = solver.it.currentTime * count.seconds
-        raise SimulationError(advice(integrator, time, look.failure or "the solver gave up"))
+    solver, first_acceleration = _run_solver(model, integrator, settings, look)
     times, positions, velocities, accelerations = _recorded(model)
     if not look.stopped:  # what fixed steps add up to may differ from it in the last digits
         times[-1] = end
     if quasi_static:
         accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
-    if explicit:
+    if first_acceleration is not None:
         accelerations[0] = first_acceleration
-    return Steps(times, np.hstack((positions, velocities)), accelerations, _evaluations(solver, explicit))
+    evaluations = _evaluations(solver, integrator in EXPLICIT)
+    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
 
 
 def _no_steps(model: Model, time: float) -> Steps:
@@ -202,12 +186,38 @@ def _no_steps(model: Model, time: float) -> Steps:
     return Steps(np.array([time]), np.hstack(initial)[None, :], np.zeros((1, model.size)), 0)
 
 
+def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
+    """Return the solver after its run, and the acceleration at the start that an explicit one does not record.
+
+    Raises ``SimulationError`` for what went wrong.
+    """
+    explicit = integrator in EXPLICIT
+    solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
+    first_acceleration = None
+    with quiet():
+        try:
+            if explicit:
+                first_acceleration = _initial_acceleration(model, settings.timeIntegration.startTime)
+            with after_every_step(model.mbs, look):
+                success = solver.SolveSystem(model.mbs, settings)
+        except exu.ExudynError as error:
+            raise_interrupt(error)
+            time = solver.it.currentTime * look.count.seconds
+            raise SimulationError(advice(integrator, time, str(error))) from error
+    if look.too_many:
+        raise SimulationError(look.too_many)
+    if look.failure or not success:
+        time = solver.it.currentTime * look.count.seconds
+        raise SimulationError(advice(integrator, time, look.failure or "the solver gave up"))
+    return solver, first_acceleration
+
+
 class _Look:
     """Looks at the state after every step of a run, and ends it where Exudyn would not or where ``watch`` does."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
         self._data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
-        self._start, self._end, self._watch, self._count = start, end, watch, count
+        self._start, self._end, self._watch, self.count = start, end, watch, count
         self._previous = start
         #: In s: a step below the resolution of time leaves it where it is.
         self.smallest_step = 8.0 * float(np.spacing(max(abs(start), abs(end))))
@@ -220,9 +230,9 @@ class _Look:
         if not math.isfinite(sum(state)):
             self.failure = NOT_FINITE
         elif self._start < t < self._end and t - self._previous <= self.smallest_step:
-            self.failure = f"the step fell to {(t - self._previous) * self._count.seconds:.1g} s"
+            self.failure = f"the step fell to {(t - self._previous) * self.count.seconds:.1g} s"
         self._previous = t
-        self.too_many = self._count.count(t)
+        self.too_many = self.count.count(t)
         watch = self._watch
         self.stopped = bool(self.failure or self.too_many) or not (watch is None or watch(t, state))
         return not self.stopped
