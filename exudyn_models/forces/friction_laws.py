@@ -254,7 +254,7 @@ def _derivatives_of_points(
     radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
-    mean, by_mean, slow = _mean_slip_of_points(ux, uy, spin, angle, contact)
+    mean, by_mean, slow = _potential_of_points(ux, uy, spin, angle, contact)
     creeps = mean < epsilon
     creep = mean / epsilon if creeps else 1.0
     # What the others lose of the slip of the slowest point, and its derivatives.
@@ -302,7 +302,7 @@ def _derivatives_of_points(
 
 
 @compiled
-def _mean_slip_of_points(
+def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
     """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the point that is held, or else slowest."""

@@ -328,7 +328,7 @@ class _Creep:
 
     def __init__(self, motion: _Turns, state: FloatArray, part: Part) -> None:
         self.creeping, self.seen, self.part = motion.friction.creeping, motion.contact.in_master_axes, part
-        self._speed, self._steps = self._mean_slip(state), 0
+        self._speed, self._steps = self._slip_ratio(state), 0
 
     def __call__(self, t: float, state: list[float]) -> bool:
         self._steps += 1
@@ -336,9 +336,9 @@ class _Creep:
             return False
         if self._steps == LOOK_BACK:
             return False
-        return self.part == WHOLE or 0.5 < self._mean_slip(np.array(state)) / self._speed < 2.0
+        return self.part == WHOLE or 0.5 < self._slip_ratio(np.array(state)) / self._speed < 2.0
 
-    def _mean_slip(self, state: FloatArray) -> float:
+    def _slip_ratio(self, state: FloatArray) -> float:
         return float(self.seen.slip_ratios(state[None, :])[0, WHOLE])
 
 
