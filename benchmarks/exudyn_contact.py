@@ -28,7 +28,7 @@ from compare.claims.paper_parameters import FIG5, FIG11
 from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
-from exudyn_models.paper.native_contact import add_native_friction
+from exudyn_models.parts.native_contact import add_native_friction
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 

@@ -1,1 +1,1 @@
-"""Engine, clutch and car: the drivetrain around a clutch disc, and its picture."""
+"""The drivetrain around a clutch disc: its parameters, the model made of public parts, and a picture of it."""

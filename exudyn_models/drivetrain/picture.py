@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from exudyn_models.drivetrain.model import Drivetrain
+from exudyn_models.drivetrain.parameters import Drivetrain
 from reference_model.systems import FloatArray
 
 graphics: Any = exudyn.graphics  # its type hints do not fit its own calls

@@ -1,1 +1,1 @@
-"""Laws of friction, and the force between two objects that follows from one."""
+"""Laws of friction and support as compiled functions: the forces that Exudyn asks for, on any pair of bodies."""

@@ -1,103 +1,119 @@
-"""Force and Jacobian of a friction contact as the functions that Exudyn calls.
-
-Where μN is a number Exudyn calls compiled code as it would call Python; where it is a function of time there is a
-call of Python in between, and one that depends on the motion multiplies in Python what compiled code finds for 1 N.
-"""
+"""Friction on any pair of nodes, by the transpose of the slip Jacobian: generalised forces and derivatives."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from typing import Any, cast
+import math
+from typing import Any
 
+import numba.np.unsafe.ndarray
 import numpy as np
 
-from exudyn_models.forces.friction_laws import CONTACT_SIZE
-from exudyn_models.forces.jit import taking_lists
-from exudyn_models.forces.load_and_coefficient import Strength
-from exudyn_models.forces.planar_pairs import LAWS
-from exudyn_models.forces.slip_kinematics import (
-    Floats,
-    Kinds,
-    force_on_any,
-    friction_derivatives_on_nodes,
-    friction_on_nodes,
-    jacobian_on_any,
+from exudyn_models.forces.friction_laws import (
+    CONTACT_SIZE,
+    Contact,
+    contact_of,
+    derivatives_by_slip,
+    friction_of_slip,
+    slip_potential_of_contact,
 )
-from exudyn_models.forces.stick_dampers import StickDampers
+from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, Floats, Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
-ForceFunction = Callable[[Any, float, int, Floats, Floats], Floats]
-JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], FloatArray]
+to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than it is told to be
 
 
-def functions_of_pair(
-    kinds: Kinds, reference: FloatArray, strength: Strength
-) -> tuple[ForceFunction, JacobianFunction]:
-    """Return force and Jacobian for the strength as it is now, with the nodes' ``reference`` coordinates.
+@compiled
+def friction_on_nodes(
+    kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
+) -> tuple[FloatArray, float, float]:
+    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, and P in m/s."""
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    ux, uy, spin = to_slip @ velocities
+    angle = math.atan2(sine, cosine)
+    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
+    forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
+    radius = radius_of_disc(kinds, coordinates, axes)
+    return forces, radius, slip_potential_of_contact(ux, uy, spin, angle, contact)
 
-    The force carries the ``StickDampers`` of the contact.
+
+@compiled
+def friction_derivatives_on_nodes(
+    kinds: Kinds,
+    coordinates: FloatArray,
+    velocities: FloatArray,
+    position_factor: float,
+    velocity_factor: float,
+    contact: Contact,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the derivatives of the generalised forces, shape (n, n), and of radius and slip speed, shape (2, n).
+
+    They are weighted sums of those by the coordinates and by the velocities.
     """
-    if strength.depends_on_motion:
-        force = _force_by_motion(kinds, reference, strength)
-        jacobian = _jacobian_by_motion(kinds, reference, strength)
-    else:
-        laws = LAWS.get(kinds, (force_on_any, jacobian_on_any))
-        rest, size = [*kinds, *reference.tolist()], len(reference)
-        sizes = CONTACT_SIZE + len(rest), None, None, None, size, size
-        force = _under(strength, rest, taking_lists(laws[0], *sizes))
-        jacobian = _under(strength, rest, taking_lists(laws[1], *sizes, float, float))
-    setattr(force, _DAMPERS, StickDampers(kinds, reference, strength))
-    return force, jacobian
+    to_slip, _, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    ux, uy, spin = to_slip @ velocities
+    angle = math.atan2(sine, cosine)
+    force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
+    _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
+    # Friction is −μN·∂P/∂(u, S), or P/ε of that; P does not change if slip and disc are turned alike.
+    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+    creep = min(1.0, speed / contact[3])
+    slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
+    size = len(coordinates)
+    by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((2, size))
+    for j in range(size):
+        stepped = coordinates.astype(np.complex128)
+        stepped[j] += 1j * IMAGINARY_STEP
+        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_jacobian(kinds, stepped)
+        stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
+        motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
+        map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
+        turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
+        turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
+        slip_change = map_change @ velocities + velocity_factor * to_slip[:, j]
+        force_change = by_slip[:, :3].copy() @ slip_change + by_slip[:, 3] * turn
+        for i in range(3):
+            by_nodes[:, j] += force[i] * map_change[i] + force_change[i] * to_slip[i]
+            motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
+        motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
+    return by_nodes, motion_by_nodes
 
 
-_DAMPERS = "stick_dampers"
+@compiled
+def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+    """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
+
+    These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
+    """
+    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    forces, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
+    result: Floats = to_tuple(forces, len(q))
+    return result
 
 
-def stick_dampers_of(force: Any) -> StickDampers | None:
-    """Return what a ``force`` of ``functions_of_pair`` carries, None for any other function."""
-    return getattr(force, _DAMPERS, None)
+@compiled
+def jacobian_on_any(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (n, n)."""
+    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    return -friction_derivatives_on_nodes(
+        kinds, coordinates, velocities, position_factor, velocity_factor, contact
+    )[0]
 
 
-def _under(strength: Strength, rest: Floats, evaluate: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function with parameters before its other arguments as one with those of a strength."""
-    if strength.contact is not None:
-        return partial(evaluate, [float(number) for number in (*strength.contact, *rest)])
-
-    def function(mbs: Any, t: float, *motion: Any) -> Any:
-        return evaluate([*strength.contact_at(t), *rest], mbs, t, *motion)
-
-    return function
-
-
-def _force_by_motion(kinds: Kinds, reference: FloatArray, strength: Strength) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = strength.contact_at(t)
-        forces, radius, slip_speed = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
-        forces *= strength.friction(t, radius, slip_speed)
-        return cast(list[float], forces.tolist())
-
-    return force
-
-
-def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, strength: Strength) -> JacobianFunction:
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        contact = strength.contact_at(t)
-        state = kinds, reference + q, np.array(q_t)
-        derivatives, motion_derivatives = friction_derivatives_on_nodes(
-            *state, position_factor, velocity_factor, contact
-        )
-        forces, *motion = friction_on_nodes(*state, contact)
-        derivatives *= strength.friction(t, *motion)
-        derivatives += np.outer(forces, strength.friction_slopes(t, *motion) @ motion_derivatives)
-        return -derivatives  # Exudyn takes those of the left-hand side
-
-    return jacobian
+@compiled
+def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
+    contact, kinds = contact_of(parameters)
+    coordinates, velocities = np.empty(len(q)), np.empty(len(q))
+    for i in range(len(q)):
+        coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
+        velocities[i] = q_t[i]
+    return contact, (int(kinds[0]), int(kinds[1])), coordinates, velocities

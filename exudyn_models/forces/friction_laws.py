@@ -1,8 +1,8 @@
 """Coulomb friction of a pin, of points on a ring, of a ring and of an annulus, compiled for Exudyn's user functions.
 
-All are gradients of a mean slip speed. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
-and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is P(u, S). The
-friction on the disc is −μN·∂P/∂u and the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
+All are gradients of a slip potential. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
+and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is the potential
+P(u, S). The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
 
 Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
 release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
@@ -26,7 +26,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.slip_potential import mean_slip_gradient, mean_slip_hessian, mean_slip_of_circles
+from exudyn_models.forces.slip_potential import (
+    slip_potential_gradient,
+    slip_potential_hessian,
+    slip_potential_of_circles,
+)
 from reference_model.systems import FloatArray
 
 CONTINUOUS = 0
@@ -103,7 +107,7 @@ def friction_of_slip(
     fx = fy = moment = 0.0
     speed = math.sqrt(ux * ux + uy * uy)
     if speed > 0.0 or spin != 0.0:
-        by_speed, by_spin = mean_slip_gradient(speed, abs(spin), inner, radius)
+        by_speed, by_spin = slip_potential_gradient(speed, abs(spin), inner, radius)
         mean = by_speed * speed + by_spin * abs(spin)
         factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
         if speed > 0.0:
@@ -115,11 +119,11 @@ def friction_of_slip(
 
 
 @compiled
-def mean_slip_speed(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
-    """Return P in m/s for the arguments of ``friction_of_slip``."""
+def slip_potential_of_contact(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
+    """Return the slip potential P, the mean slip speed in m/s, for the arguments of ``friction_of_slip``."""
     radius, points, _, _, _, inner = contact
     if points == CONTINUOUS:
-        return mean_slip_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
+        return slip_potential_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
     mean = 0.0
     for i in range(points):
         mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
@@ -250,17 +254,7 @@ def _derivatives_of_points(
     radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
-    # P and its derivatives, which count where the contact creeps as a whole, and the slowest point.
-    mean, lowest, slow = 0.0, math.inf, held
-    by_mean = np.zeros(4)
-    for i in range(points):
-        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
-        speed = abs(slip)
-        mean += speed / points
-        for j in range(4):
-            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
-        if held == NONE_HELD and speed < lowest:
-            slow, lowest = i, speed
+    mean, by_mean, slow = _potential_of_points(ux, uy, spin, angle, contact)
     creeps = mean < epsilon
     creep = mean / epsilon if creeps else 1.0
     # What the others lose of the slip of the slowest point, and its derivatives.
@@ -308,6 +302,25 @@ def _derivatives_of_points(
 
 
 @compiled
+def _potential_of_points(
+    ux: float, uy: float, spin: float, angle: float, contact: Contact
+) -> tuple[float, FloatArray, int]:
+    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the point that is held, or else slowest."""
+    radius, points, _, _, held, _ = contact
+    mean, lowest, slow = 0.0, math.inf, held
+    by_mean = np.zeros(4)
+    for i in range(points):
+        _, slip, by_arguments = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)
+        speed = abs(slip)
+        mean += speed / points
+        for j in range(4):
+            by_mean[j] += (by_arguments[j] * slip.conjugate()).real / speed / points if speed > 0.0 else 0.0
+        if held == NONE_HELD and speed < lowest:
+            slow, lowest = i, speed
+    return mean, by_mean, slow
+
+
+@compiled
 def _slip_of_point(
     ux: float, uy: float, spin: float, alpha: float, radius: float
 ) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
@@ -326,8 +339,8 @@ def _derivatives_of_circles(
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     # At rest the slope depends on the direction in which slip starts: take one without spin.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
-    by_speed, by_spin = mean_slip_gradient(size, abs(spin), inner, radius)
-    by_speed_twice, mixed, by_spin_twice = mean_slip_hessian(size, abs(spin), inner, radius)
+    by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius)
+    by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius)
     across = by_speed / size if size > 0.0 else by_speed_twice
     by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
     mean = by_speed * speed + by_spin * spin

@@ -1,4 +1,4 @@
-"""How strong the friction of a contact is: coefficient and normal load, as numbers or as functions."""
+"""Normal load and friction coefficient of a contact, numbers or functions, whose product is the friction force."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exudyn_models.forces.friction_laws import Contact
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
-"""A function takes any of ``ARGUMENTS``, by name."""
+"""A load or coefficient; a function takes any of ``ARGUMENTS``, by name."""
 
 Factor: TypeAlias = Callable[[float, float, float], float]
 """μ or N as a function of all of ``ARGUMENTS``."""
@@ -29,7 +29,7 @@ DIFFERENCE = 1e-5
 """Relative step of the central differences that give the slopes of μN over radius and slip speed."""
 
 
-class Strength:
+class LoadAndCoefficient:
     """Friction coefficient μ and normal load N of a contact, which may be changed between two runs.
 
     Parameters
@@ -69,27 +69,27 @@ class Strength:
         self.contact = (
             None
             if callable(friction_coefficient) or callable(normal_load)
-            else self._with(self.friction(math.nan, math.nan, math.nan))
+            else self._with(self.friction_force(math.nan, math.nan, math.nan))
         )
 
     def contact_at(self, t: float) -> Contact:
         """Return the contact with μN at the time t (s), or with 1 N in its place if that depends on the motion."""
-        return self._with(1.0 if self.depends_on_motion else self.friction(t, math.nan, math.nan))
+        return self._with(1.0 if self.depends_on_motion else self.friction_force(t, math.nan, math.nan))
 
-    def friction(self, t: float, radius: float, slip_speed: float) -> float:
-        """Return μN in N at a time in s, a radius in m and a mean slip speed in m/s."""
+    def friction_force(self, t: float, radius: float, slip_speed: float) -> float:
+        """Return the friction force μN in N at a time in s, a radius in m and a mean slip speed in m/s."""
         return self._coefficient(t, radius, slip_speed) * self._load(t, radius, slip_speed)
 
-    def friction_slopes(self, t: float, radius: float, slip_speed: float) -> FloatArray:
+    def friction_force_slopes(self, t: float, radius: float, slip_speed: float) -> FloatArray:
         """Return the derivatives of μN by the radius in N/m and by the slip speed in N s/m, shape (2,)."""
         result = np.zeros(2)
         if self._by_radius and radius > 0.0:  # on the axis the radius itself has no derivative
             result[0] = _slope(
-                lambda r: self.friction(t, r, slip_speed), radius, max(radius, self.contact_radius)
+                lambda r: self.friction_force(t, r, slip_speed), radius, max(radius, self.contact_radius)
             )
         if self._by_slip_speed:
             result[1] = _slope(
-                lambda v: self.friction(t, radius, v), slip_speed, max(slip_speed, self._contact[3])
+                lambda v: self.friction_force(t, radius, v), slip_speed, max(slip_speed, self._contact[3])
             )
         return result
 
@@ -101,7 +101,7 @@ class Strength:
 def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[Factor, tuple[str, ...]]:
     """Return a coefficient or load as a function of all ``ARGUMENTS``, and which of them it depends on."""
     if not callable(value):
-        number = checked_strength(name, value, unit)
+        number = checked_not_negative(name, value, unit)
         return lambda time, radius, slip_speed: number, ()
     function, arguments = value, _arguments(name, value)
     call = _CALLS[arguments]
@@ -117,7 +117,7 @@ def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[Factor, tupl
             for (argument, unit_of_it), given in known
             if argument == "time" or argument in arguments
         ]
-        return checked_strength(f"{name}({', '.join(told)})", result, unit)
+        return checked_not_negative(f"{name}({', '.join(told)})", result, unit)
 
     return factor, arguments
 
@@ -163,7 +163,7 @@ def _slope(function: Callable[[float], float], value: float, scale: float) -> fl
     return (function(high) - function(low)) / (high - low)
 
 
-def checked_strength(name: str, value: float, unit: str) -> float:
+def checked_not_negative(name: str, value: float, unit: str) -> float:
     """Return ``value`` as a float; raise ``ValueError`` if it is not a finite number >= 0."""
     number = finite_number(name, value)
     if number < 0.0:

@@ -1,6 +1,6 @@
 """Friction of a planar disc on a rotor or on a planar master: in closed form, at a third of the cost of other pairs.
 
-Their arguments are those of the functions for any pair, in ``slip_map``.
+Their arguments are those of the functions for any pair, in ``any_pair``.
 """
 
 from __future__ import annotations
@@ -46,14 +46,8 @@ def jacobian_on_rotor(
     """Return the derivatives of the left-hand side, where the force stands with a minus, shape (4, 4)."""
     contact, _ = contact_of(parameters)
     derivatives = ring_friction_derivatives(*_on_rotor(parameters, q, q_t), contact)
-    return _over_both_nodes(
-        derivatives,
-        position_factor,
-        velocity_factor,
-        _FORCES_ON_ROTOR,
-        _POSITIONS_ON_ROTOR,
-        _VELOCITIES_ON_ROTOR,
-    )
+    # A rotor is a planar master without x and y.
+    return _over_both_nodes(derivatives, position_factor, velocity_factor)[2:, 2:].copy()
 
 
 @compiled
@@ -70,14 +64,7 @@ def jacobian_on_planar(
     """Return the derivatives of the left-hand side, where the force stands with a minus, shape (6, 6)."""
     contact, _ = contact_of(parameters)
     derivatives = ring_friction_derivatives(*_on_planar(parameters, q, q_t), contact)
-    return _over_both_nodes(
-        derivatives,
-        position_factor,
-        velocity_factor,
-        _FORCES_ON_PLANAR,
-        _POSITIONS_ON_PLANAR,
-        _VELOCITIES_ON_PLANAR,
-    )
+    return _over_both_nodes(derivatives, position_factor, velocity_factor)
 
 
 LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
@@ -103,27 +90,20 @@ def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
     return dx, dy, angle + q[5], q_t[3] - q_t[0], q_t[4] - q_t[1], q_t[2], q_t[5]
 
 
-# Generalised forces from (F_x, F_y, M, M_master), and what the kernel takes of positions and velocities of the nodes.
-_FORCES_ON_ROTOR = np.array([[0, 0, 0, 1], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], dtype=float)
-_POSITIONS_ON_ROTOR = np.hstack((np.zeros((3, 1)), np.eye(3)))
-_VELOCITIES_ON_ROTOR = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float)
-_FORCES_ON_PLANAR = np.vstack(([[-1, 0, 0, 0], [0, -1, 0, 0]], _FORCES_ON_ROTOR))
-_POSITIONS_ON_PLANAR = np.hstack((-np.diag([1.0, 1.0, 0.0]), np.eye(3)))
-_VELOCITIES_ON_PLANAR = np.array(
-    [[-1, 0, 0, 1, 0, 0], [0, -1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]], dtype=float
-)
-
-
 @compiled
-def _over_both_nodes(
-    derivatives: FloatArray,
-    position_factor: float,
-    velocity_factor: float,
-    forces: FloatArray,
-    positions: FloatArray,
-    velocities: FloatArray,
-) -> FloatArray:
-    """Return minus the derivatives over the coordinates of both nodes from those of the kernel."""
-    by_position = derivatives[:, :3].copy() @ positions  # a product of matrices takes whole ones only
-    by_velocity = derivatives[:, 3:].copy() @ velocities
-    return -(forces @ (position_factor * by_position + velocity_factor * by_velocity))
+def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_factor: float) -> FloatArray:
+    """Return minus the derivatives of the forces on two planar nodes over their coordinates, shape (6, 6).
+
+    From those of the kernel, of (F_x, F_y, M, M_master) over ``Relative``, shape (4, 7).
+    """
+    by_nodes = np.zeros((4, 6))
+    for i in range(4):
+        dx, dy, angle, dvx, dvy, master_spin, disc_spin = derivatives[i]
+        by_nodes[i, 3] = position_factor * dx + velocity_factor * dvx
+        by_nodes[i, 4] = position_factor * dy + velocity_factor * dvy
+        by_nodes[i, :2] = -by_nodes[i, 3:5]
+        by_nodes[i, 2] = velocity_factor * master_spin
+        by_nodes[i, 5] = position_factor * angle + velocity_factor * disc_spin
+    result = np.zeros((6, 6))
+    result[:2], result[2], result[3:] = by_nodes[:2], -by_nodes[3], -by_nodes[:3]
+    return result

@@ -1,7 +1,7 @@
-"""Slip as a linear map of the velocities of two nodes, and friction as its transpose, for every kind of node.
+"""Slip as a linear map of the velocities of two nodes, for every kind of node.
 
 The slip u of the disc's centre over the master, in the axes of the master's body, and the relative spin S about the
-master's axis are J(q)·q̇. Friction with the force F and the moment M has the power F·u + M·S, so that its generalised
+master's axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so that their generalised
 forces on both nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. That is an exchange of momentum and
 angular momentum, however the axes lie, and the derivatives of the forces follow from those of J.
 
@@ -11,24 +11,13 @@ imaginary axis (Squire & Trapp, SIAM Review 40 (1998) 110).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
-import numba.np.unsafe.ndarray
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.friction_laws import (
-    CONTACT_SIZE,
-    Contact,
-    contact_of,
-    derivatives_by_slip,
-    friction_of_slip,
-    mean_slip_speed,
-)
 from exudyn_models.forces.jit import compiled
-from reference_model.systems import FloatArray
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN = 0, 1, 2, 3
 
@@ -53,14 +42,12 @@ Kinds = tuple[int, int]
 
 Floats = Sequence[float]
 
-to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than it is told to be
-
 Array = NDArray[Any]
 """Of real numbers, or of complex ones where derivatives are asked for."""
 
 
 @compiled
-def slip_map(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
+def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
@@ -107,102 +94,6 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> Any:
     """Return the distance in m of the disc's node from the axis of the master with ``axes``, across it."""
     x, y = place_of_disc(kinds, coordinates, axes)
     return np.sqrt(x * x + y * y)
-
-
-@compiled
-def friction_on_nodes(
-    kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
-) -> tuple[FloatArray, float, float]:
-    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, and P in m/s."""
-    to_slip, axes, (cosine, sine) = slip_map(kinds, coordinates)
-    ux, uy, spin = to_slip @ velocities
-    angle = math.atan2(sine, cosine)
-    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
-    radius = radius_of_disc(kinds, coordinates, axes)
-    return forces, radius, mean_slip_speed(ux, uy, spin, angle, contact)
-
-
-@compiled
-def friction_derivatives_on_nodes(
-    kinds: Kinds,
-    coordinates: FloatArray,
-    velocities: FloatArray,
-    position_factor: float,
-    velocity_factor: float,
-    contact: Contact,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of the generalised forces, shape (n, n), and of radius and slip speed, shape (2, n).
-
-    They are weighted sums of those by the coordinates and by the velocities.
-    """
-    to_slip, _, (cosine, sine) = slip_map(kinds, coordinates)
-    ux, uy, spin = to_slip @ velocities
-    angle = math.atan2(sine, cosine)
-    force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
-    _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
-    # Friction is −μN·∂P/∂(u, S), or P/ε of that; P does not change if slip and disc are turned alike.
-    speed = mean_slip_speed(ux, uy, spin, angle, contact)
-    creep = min(1.0, speed / contact[3])
-    slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
-    size = len(coordinates)
-    by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((2, size))
-    for j in range(size):
-        stepped = coordinates.astype(np.complex128)
-        stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_map(kinds, stepped)
-        stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
-        motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
-        map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
-        turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
-        turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
-        slip_change = map_change @ velocities + velocity_factor * to_slip[:, j]
-        force_change = by_slip[:, :3].copy() @ slip_change + by_slip[:, 3] * turn
-        for i in range(3):
-            by_nodes[:, j] += force[i] * map_change[i] + force_change[i] * to_slip[i]
-            motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
-        motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
-    return by_nodes, motion_by_nodes
-
-
-@compiled
-def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
-    """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
-
-    These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
-    """
-    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    forces, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
-    result: Floats = to_tuple(forces, len(q))
-    return result
-
-
-@compiled
-def jacobian_on_any(
-    parameters: Floats,
-    mbs: Any,
-    t: float,
-    item: int,
-    q: Floats,
-    q_t: Floats,
-    position_factor: float,
-    velocity_factor: float,
-) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (n, n)."""
-    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    return -friction_derivatives_on_nodes(
-        kinds, coordinates, velocities, position_factor, velocity_factor, contact
-    )[0]
-
-
-@compiled
-def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
-    contact, kinds = contact_of(parameters)
-    coordinates, velocities = np.empty(len(q)), np.empty(len(q))
-    for i in range(len(q)):
-        coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
-        velocities[i] = q_t[i]
-    return contact, (int(kinds[0]), int(kinds[1])), coordinates, velocities
 
 
 @compiled

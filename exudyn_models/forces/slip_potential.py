@@ -1,4 +1,6 @@
-"""The mean slip speed P of circles of contact: that of a ring in closed form, that of an annulus averaged over it.
+"""The slip potential P of circles of contact: that of a ring in closed form, that of an annulus averaged over it.
+
+P is the mean slip speed over the contact; friction is −μN times its gradient, see ``friction_laws``.
 
 A circle of radius r whose centre slips with U and which turns with S over what it touches has a rim that moves with
 W = r·|S|. Its P(U, W) is a complete elliptic integral, from an arithmetic-geometric mean without cancellation.
@@ -32,7 +34,6 @@ RINGS = 12
 CLUSTERING = 3
 """Exponent of the substitution that draws the rings towards r₀."""
 
-
 FARTHEST = 4.0
 """r₀ over the outer radius, beyond which it makes no difference where it is."""
 
@@ -40,13 +41,13 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(RINGS)
 
 
 @compiled
-def mean_slip_gradient(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float]:
+def slip_potential_gradient(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), a ring if alike.
 
     U >= 0 in m/s and |S| >= 0 in rad/s are not both zero.
     """
     if inner == outer:
-        by_speed, by_rim = mean_slip_slopes(speed, outer * spin)
+        by_speed, by_rim = ring_potential_slopes(speed, outer * spin)
         return by_speed, outer * by_rim
     resting = _resting_radius(speed, spin, outer)
     by_speed = by_spin = 0.0
@@ -54,19 +55,21 @@ def mean_slip_gradient(speed: float, spin: float, inner: float, outer: float) ->
         if length != 0.0:
             for i in range(RINGS):
                 radius, width = _ring(i, resting, start, length)
-                load = width * radius
-                along_slip, along_rim = mean_slip_slopes(speed, radius * spin)
-                by_speed += load * along_slip
-                by_spin += load * radius * along_rim
+                weight = width * radius
+                along_slip, along_rim = ring_potential_slopes(speed, radius * spin)
+                by_speed += weight * along_slip
+                by_spin += weight * radius * along_rim
     total = (outer - inner) * (outer + inner) / 2.0
     return by_speed / total, by_spin / total
 
 
 @compiled
-def mean_slip_hessian(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float, float]:
-    """Return ∂²P/∂U², ∂²P/∂U∂|S| and ∂²P/∂|S|² for the arguments of ``mean_slip_gradient``."""
+def slip_potential_hessian(
+    speed: float, spin: float, inner: float, outer: float
+) -> tuple[float, float, float]:
+    """Return ∂²P/∂U², ∂²P/∂U∂|S| and ∂²P/∂|S|² for the arguments of ``slip_potential_gradient``."""
     if inner == outer:
-        twice, mixed, by_rim_twice = mean_slip_curvatures(speed, outer * spin)
+        twice, mixed, by_rim_twice = ring_potential_curvatures(speed, outer * spin)
         return twice, outer * mixed, outer * outer * by_rim_twice
     resting = _resting_radius(speed, spin, outer)
     by_speed_twice = mixed = by_spin_twice = 0.0
@@ -74,11 +77,11 @@ def mean_slip_hessian(speed: float, spin: float, inner: float, outer: float) -> 
         if length != 0.0:
             for i in range(RINGS):
                 radius, width = _ring(i, resting, start, length)
-                load = width * radius
-                along_slip, across, along_rim = mean_slip_curvatures(speed, radius * spin)
-                by_speed_twice += load * along_slip
-                mixed += load * radius * across
-                by_spin_twice += load * radius * radius * along_rim
+                weight = width * radius
+                along_slip, across, along_rim = ring_potential_curvatures(speed, radius * spin)
+                by_speed_twice += weight * along_slip
+                mixed += weight * radius * across
+                by_spin_twice += weight * radius * radius * along_rim
     total = (outer - inner) * (outer + inner) / 2.0
     return by_speed_twice / total, mixed / total, by_spin_twice / total
 
@@ -108,7 +111,7 @@ def _ring(i: int, resting: float, start: float, length: float) -> tuple[float, f
 
 
 @compiled
-def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
+def ring_potential_slopes(speed: float, rim: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂W of a ring whose centre slips with U >= 0 and whose rim turns with W >= 0, not both zero.
 
     With k = W/U <= 1, a₀ = 1, b₀ = √(1 − k²) and c₀ = k, the arithmetic-geometric mean A and
@@ -125,7 +128,7 @@ def mean_slip_slopes(speed: float, rim: float) -> tuple[float, float]:
 
 
 @compiled
-def mean_slip_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
+def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
     """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² at U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
     larger, smaller = max(speed, rim), min(speed, rim)
     ratio = smaller / larger
@@ -153,7 +156,7 @@ def _slopes(larger: float, smaller: float) -> tuple[float, float]:
 
 @compiled
 def _mean(ratio: float, complement: float) -> tuple[float, float]:
-    """Return A and T of ``mean_slip_slopes`` for k and 1 − k² > 0."""
+    """Return A and T of ``ring_potential_slopes`` for k and 1 − k² > 0."""
     m = ratio * ratio
     b = math.sqrt(complement)
     a = 0.5 * (1.0 + b)
@@ -173,18 +176,18 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
 
 
 @compiled
-def mean_slip_of_circles(speed: float, spin: float, inner: float, outer: float) -> float:
-    """Return P in m/s for the arguments of ``mean_slip_gradient``, which both may be zero here."""
+def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: float) -> float:
+    """Return P in m/s for the arguments of ``slip_potential_gradient``, which both may be zero here."""
     if speed == 0.0 and spin == 0.0:
         return 0.0
-    by_speed, by_spin = mean_slip_gradient(speed, spin, inner, outer)
+    by_speed, by_spin = slip_potential_gradient(speed, spin, inner, outer)
     return by_speed * speed + by_spin * spin
 
 
 @compiled
-def mean_slip_speeds(speeds: FloatArray, rims: FloatArray) -> FloatArray:
+def ring_potentials(speeds: FloatArray, rims: FloatArray) -> FloatArray:
     """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
     result = np.zeros(len(speeds))
     for i in range(len(speeds)):
-        result[i] = mean_slip_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0)
+        result[i] = slip_potential_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0)
     return result

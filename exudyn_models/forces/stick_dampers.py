@@ -3,7 +3,7 @@
 With x = (u, S), the slip of the disc's centre and the relative spin, friction near rest is −(μN/ε)·P·∇P of the mean
 slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, and just that where
 the disc only moves sideways or only turns: friction resists slip like a damper (μN/ε)·V or less. x = J·q̇ of
-``slip_map`` makes it one between two bodies, D = (μN/ε)·Jᵀ·V·J.
+``slip_jacobian`` makes it one between two bodies, D = (μN/ε)·Jᵀ·V·J.
 
 Where P > ε one of several points can stick alone, while the disc pivots about it. It then is a damper with its share
 of μN over the δ of ``friction_laws``.
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, point_regularisation
-from exudyn_models.forces.load_and_coefficient import Strength
-from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_map
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
+from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
 
@@ -28,12 +28,12 @@ class StickDampers:
 
     kinds: Kinds
     reference: FloatArray
-    strength: Strength
+    factors: LoadAndCoefficient
 
     @property
     def vary(self) -> bool:
         """Whether load or coefficient is a function."""
-        return self.strength.contact is None
+        return self.factors.contact is None
 
     def at(self, t: float, coordinates: FloatArray) -> FloatArray:
         """Return D, and that of each point which can stick alone, shape (1 + points, n, n).
@@ -41,9 +41,9 @@ class StickDampers:
         They are those at the time t (s) and the nodes' ``coordinates`` without reference values, shape (n,).
         """
         place = self.reference + coordinates
-        to_slip, axes, (cosine, sine) = slip_map(self.kinds, place)
-        friction = self.strength.friction(t, float(radius_of_disc(self.kinds, place, axes)), 0.0)
-        dampers = friction * slip_dampers(self.strength.contact_at(t), math.atan2(sine, cosine))
+        to_slip, axes, (cosine, sine) = slip_jacobian(self.kinds, place)
+        friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0)
+        dampers = friction * slip_dampers(self.factors.contact_at(t), math.atan2(sine, cosine))
         if not to_slip[:2].any():  # two rotors: all points slip alike
             dampers = dampers[:1]
         return np.asarray(to_slip.T @ dampers @ to_slip)

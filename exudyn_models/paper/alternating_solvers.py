@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
+from exudyn_models.paper.creep import RELAXATIONS, WHOLE, RegularisedContact
 from exudyn_models.paper.dense_output import creep_at, creep_until
 from exudyn_models.paper.models.build import build
 from exudyn_models.paper.recording import Recording
-from exudyn_models.paper.scales import RELAXATIONS, relaxation_times, time_scale
+from exudyn_models.paper.scales import time_scale
 from exudyn_models.paper.turning_axes import FIXED, Axes
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIRST_STEP, LOOK_BACK, StepCount, Steps, solve
@@ -42,42 +42,48 @@ STEPS_OF_RELAXATION = 20.0
 Part = int | frozenset[int]
 """What of a contact creeps: ``WHOLE``, or some of several points by what an ``add`` takes as ``held``."""
 
-Creeping = Callable[[System, list[float], float], Part | None]
+Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 
 
 @dataclass(frozen=True)
 class Friction:
     """A way to put friction between two discs.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` is a function like ``creep.creeping``: it
-    says what of the contact creeps so that a model in which it stays viscous can take over; for some of several
-    points that is made by the argument ``held`` of ``add``. Both are asked in the units and in the axes of a run.
+    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` is a function like
+    ``RegularisedContact.creeping``: it says what of the contact creeps so that a model in which it stays viscous can
+    take over; for some of several points that is made by the argument ``held`` of ``add``. Both are asked in the
+    units and in the axes of a run.
     """
 
     add: Callable[..., Any]
     creeping: Creeping
 
 
-def nothing_creeps(system: System, state: list[float], epsilon: float) -> None:
+def nothing_creeps(contact: RegularisedContact, state: list[float]) -> None:
     """Say that nothing creeps: one solver then goes through all of the motion."""
 
 
-RING_FRICTION = Friction(add_ring_friction, creeping)
+RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
+
+
+@dataclass(frozen=True)
+class SlipSolver:
+    """What goes through slip, as ``solver_run.solve`` takes it: an integrator, its step and its tolerance."""
+
+    integrator: str
+    step: float
+    tolerance: float
 
 
 def solve_in_turns(
-    system: System,
+    contact: RegularisedContact,
     state: FloatArray,
     times: FloatArray,
-    epsilon: float,
-    *,
-    integrator: str,
-    step: float,
-    tolerance: float,
+    solver: SlipSolver,
     friction: Friction,
     seconds: float,
 ) -> Recording:
-    """Solve up to the last of ``times`` with ``integrator`` where the contact slips, generalised-α where it creeps.
+    """Solve up to the last of ``times`` with ``solver`` where the contact slips, generalised-α where it creeps.
 
     There an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn with
     the master disc what creeps rests but for its creep, which changes as the ground turns: steps of a part of a turn
@@ -89,41 +95,27 @@ def solve_in_turns(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        In units in which the motion is of order one, as are all other numbers.
+    contact : RegularisedContact
+        Of the system, in units in which its motion is of order one, as are all other numbers.
     state : array of shape (4,) or (6,)
         At the start.
     times : array of shape (n,)
         From 0 on.
-    epsilon : float
-        ε.
-    integrator, step, tolerance
-        Of slip, as ``solve`` takes them.
+    solver : SlipSolver
+        Of slip.
     friction : Friction
         Between the discs.
     seconds : float
         The unit of time in s, for messages.
 
     """
-    end = float(times[-1])
-    motion = _Turns(system, epsilon, friction, Recording(system, times, epsilon), StepCount(end, seconds))
+    motion = _Turns(
+        contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds)
+    )
     start, part, creep_began, first_step = 0.0, None, 0.0, FIRST_STEP
     while not motion.recording.finished:
         if part is None:
-            slip = _Slip(motion)
-            run = solve(
-                build(system, state, regularisation=epsilon, friction=friction.add),
-                start,
-                end,
-                integrator=integrator,
-                step=step,
-                tolerance=tolerance,
-                watch=slip,
-                first_step=first_step,
-                count=motion.count,
-            )
-            motion.recording.add(run, FIXED)
-            part = slip.settled
+            run, part = motion.slip(state, start, first_step)
             creep_began = float(run.times[-1])
             first_step = float(run.times[-1] - run.times[-2]) if len(run.times) > 1 else FIRST_STEP
         else:
@@ -137,11 +129,33 @@ def solve_in_turns(
 class _Turns:
     """A motion under way."""
 
-    system: System
-    epsilon: float
+    contact: RegularisedContact
+    solver: SlipSolver
     friction: Friction
     recording: Recording
     count: StepCount
+
+    def slip(self, state: FloatArray, start: float, first_step: float) -> tuple[Steps, Part | None]:
+        """Solve from ``state`` on until something has settled to creep, and record it.
+
+        Return the steps and what creeps, None where a part of the run ends before that.
+        """
+        watch = _Slip(self)
+        run = solve(
+            build(
+                self.contact.system, state, regularisation=self.contact.epsilon, friction=self.friction.add
+            ),
+            start,
+            self.count.end,
+            integrator=self.solver.integrator,
+            step=self.solver.step,
+            tolerance=self.solver.tolerance,
+            watch=watch,
+            first_step=first_step,
+            count=self.count,
+        )
+        self.recording.add(run, FIXED)
+        return run, watch.settled
 
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
         """Solve from the last of the steps ``before`` on while ``part`` creeps, and record it.
@@ -155,22 +169,21 @@ class _Turns:
         if part != WHOLE:
             self.count.look_from(start)
         while True:
-            axes = Axes(self.system.disc_speed, start)
-            seen = replace(self.system, disc_speed=0.0)  # as ``creeping`` sees it in these axes
+            axes = Axes(self.contact.system.disc_speed, start)
             run = solve(
                 self._creep_model(axes, state, part),
                 start,
                 until,
                 integrator="GeneralizedAlpha",
                 step=step,
-                tolerance=CREEP_NEWTON_TOLERANCE * self.system.friction_force * _lever(self.system),
+                tolerance=_newton_tolerance(self.contact.system),
                 quasi_static=part == WHOLE,
                 balanced=balanced,
-                watch=_Creep(self, seen, axes.start(state), part),
+                watch=_Creep(self, axes.start(state), part),
                 count=self.count,
             )
-            crossing = self._end_of_creep(seen, run, part)
-            fine = self._fine_up_to(seen, run, step, crossing) if part == WHOLE else None
+            crossing = self._end_of_creep(run, part)
+            fine = self._fine_up_to(run, step, crossing) if part == WHOLE else None
             if fine is not None:
                 run = run.only(np.arange(fine + 1))
             elif crossing is not None:
@@ -184,37 +197,38 @@ class _Turns:
             until = min(until, start + 2.0 * REFINEMENT * step)
             balanced = balanced or len(run.times) > 1  # only what has crept for a step is
 
-    def _fine_up_to(self, seen: System, run: Steps, step: float, crossing: float | None) -> int | None:
+    def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the number of the step after which smaller ones are needed, None if all are fine.
 
         They are for a release at ``crossing``, and where the load comes so near to what friction holds that the error
         of the creep, (ωh)²/12 of it, decides whether and when it is exceeded.
         """
-        unclear = (self.system.disc_speed * step) ** 2 > GRAZING
+        error = (self.contact.system.disc_speed * step) ** 2
+        unclear = error > GRAZING
         if crossing is not None:
             last = int(np.searchsorted(run.times, crossing)) - 1
-            return last if unclear or step > self._release_step(seen, run, last) else None
+            return last if unclear or step > self._release_step(run, last) else None
         if not unclear:
             return None
-        grazed = _tops(seen, run, self.epsilon, 1.0 - (self.system.disc_speed * step) ** 2)
+        grazed = _tops(self.contact.in_master_axes, run, 1.0 - error)
         return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
-    def _release_step(self, seen: System, run: Steps, last: int) -> float:
+    def _release_step(self, run: Steps, last: int) -> float:
         """Return the step in which what is released after step ``last`` gets no faster than a part of ε."""
-        ratio = creep_ratios(seen, run.states[last : last + 2], self.epsilon)[:, WHOLE]
+        ratio = self.contact.in_master_axes.slip_ratios(run.states[last : last + 2])[:, WHOLE]
         rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
-        return math.sqrt(0.12 * relaxation_times(seen, self.epsilon)[0] / rate) if rate > 0.0 else 0.0
+        return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
 
     def _creep_step(self, before: Steps, part: Part, began: float) -> tuple[float, float]:
         """Return the step for creep from the last of the steps ``before`` on and the time up to which it holds."""
-        system, end = self.system, self.count.end
+        system, end = self.contact.system, self.count.end
         state, start = before.states[-1], float(before.times[-1])
         speed = abs(system.disc_speed)
         step = CREEP_ANGLE / speed if speed > 0.0 else CREEP_ANGLE * time_scale(system, state, end)
         if part != WHOLE:
-            step = min(step, _pivot_step(system, before, self.epsilon))
+            step = min(step, _pivot_step(self.contact, before))
             return step, min(end, start + LOOK_BACK / 2 * step)
-        fast, slow = relaxation_times(system, self.epsilon)
+        fast, slow = self.contact.relaxation_times
         slow_until = began + RELAXATIONS * slow
         if slow > SLOW * fast and slow < STEPS_OF_RELAXATION * step and start < slow_until < end:
             return slow / STEPS_OF_RELAXATION, slow_until
@@ -222,7 +236,7 @@ class _Turns:
 
     def _creep_model(self, axes: Axes, state: FloatArray, part: Part) -> Any:
         """Build the system in which ``part`` of the contact creeps without an end to the creep, in ``axes``."""
-        system, add = self.system, self.friction.add
+        system, add = self.contact.system, self.friction.add
         viscous = 1.0
         if part == WHOLE:
             viscous = VISCOUS_RANGE
@@ -232,18 +246,19 @@ class _Turns:
         return build(
             system,
             axes.start(state),
-            regularisation=viscous * self.epsilon,
+            regularisation=viscous * self.contact.epsilon,
             friction=add,
             axes_speed=axes.speed,
         )
 
-    def _end_of_creep(self, seen: System, run: Steps, part: Part) -> float | None:
+    def _end_of_creep(self, run: Steps, part: Part) -> float | None:
         """Return the time at which in ``run`` something else than ``part`` creeps first, None if nothing does."""
+        seen = self.contact.in_master_axes
 
         def goes_on(time: float) -> bool:
-            return self.friction.creeping(seen, creep_at(run, time).tolist(), self.epsilon) == part
+            return self.friction.creeping(seen, creep_at(run, time).tolist()) == part
 
-        places = _suspects(seen, run, self.epsilon) if part == WHOLE else run.times[-1:]
+        places = _suspects(seen, run) if part == WHOLE else run.times[-1:]
         first: float | None = next((time for time in places.tolist() if not goes_on(time)), None)
         if first is None or first == run.times[0]:
             return first
@@ -268,20 +283,18 @@ INSIDE = np.linspace(0.0, 1.0, 17)[1:]
 """Places in a step at which creep that is near to its end is looked at."""
 
 
-def _tops(system: System, run: Steps, epsilon: float, above: float) -> NDArray[np.intp]:
+def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
     """Return the numbers of the steps of ``run`` at which the creep is largest, and more than ``above``·ε.
 
     The first and the last one may be among them: what is largest may lie shortly after or before it.
     """
-    ratio = np.pad(
-        creep_ratios(system, run.states, epsilon)[:, WHOLE], 1, mode="constant", constant_values=-np.inf
-    )
+    ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 
 
-def _suspects(system: System, run: Steps, epsilon: float) -> FloatArray:
+def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
     """Return times in ``run`` at which the creep may have ended: the last, and those about its maxima near ε."""
-    steps = _tops(system, run, epsilon, 0.99)
+    steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * INSIDE
     return np.append(inside.ravel(), run.times[-1])
@@ -292,7 +305,7 @@ class _Slip:
 
     def __init__(self, motion: _Turns) -> None:
         self.motion, self.settled = motion, None
-        fast, slow = relaxation_times(motion.system, motion.epsilon)
+        fast, slow = motion.contact.relaxation_times
         self._settling = RELAXATIONS * (slow if slow <= SLOW * fast else fast)
         self._since, self._part, self._steps = math.inf, None, 0
 
@@ -301,7 +314,7 @@ class _Slip:
 
     def __call__(self, t: float, state: list[float]) -> bool:
         self._steps += 1
-        now = self.motion.friction.creeping(self.motion.system, state, self.motion.epsilon)
+        now = self.motion.friction.creeping(self.motion.contact, state)
         if now != self._part:
             self._since, self._part = (math.inf if now is None else t), now
         if t - self._since >= self._settling:
@@ -313,30 +326,31 @@ class _Slip:
 class _Creep:
     """Watches whether ``part`` goes on creeping, and at much the same speed of the pivoting disc if it is a point."""
 
-    def __init__(self, motion: _Turns, seen: System, state: FloatArray, part: Part) -> None:
-        self.motion, self.seen, self.part = motion, seen, part
-        self._speed, self._steps = self._mean_slip(state), 0
+    def __init__(self, motion: _Turns, state: FloatArray, part: Part) -> None:
+        self.creeping, self.seen, self.part = motion.friction.creeping, motion.contact.in_master_axes, part
+        self._speed, self._steps = self._slip_ratio(state), 0
 
     def __call__(self, t: float, state: list[float]) -> bool:
         self._steps += 1
-        if self.motion.friction.creeping(self.seen, state, self.motion.epsilon) != self.part:
+        if self.creeping(self.seen, state) != self.part:
             return False
         if self._steps == LOOK_BACK:
             return False
-        return self.part == WHOLE or 0.5 < self._mean_slip(np.array(state)) / self._speed < 2.0
+        return self.part == WHOLE or 0.5 < self._slip_ratio(np.array(state)) / self._speed < 2.0
 
-    def _mean_slip(self, state: FloatArray) -> float:
-        return float(creep_ratios(self.seen, state[None, :], self.motion.epsilon)[0, WHOLE])
+    def _slip_ratio(self, state: FloatArray) -> float:
+        return float(self.seen.slip_ratios(state[None, :])[0, WHOLE])
 
 
-def _pivot_step(system: System, steps: Steps, epsilon: float) -> float:
+def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
     """Return the step for a disc on points that pivots about one of them, from the last of ``steps``.
 
     Its centre goes about the point at the distance R with its spin over the master disc. Either turns, the ground
     with the speed of the master, and the slip P changes in a time P/|dP/dt|.
     """
-    ratio = creep_ratios(system, steps.states[-1:], epsilon)[0, WHOLE]
-    rate = creep_ratio_rates(system, steps.states[-1], steps.accelerations[-1], epsilon)[WHOLE]
+    system, epsilon = contact.system, contact.epsilon
+    ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]
+    rate = contact.slip_ratio_rates(steps.states[-1], steps.accelerations[-1])[WHOLE]
     jerk = epsilon * rate**2 / ratio
     if isinstance(system, DiscOnDisc):
         spin, growth = abs(steps.states[-1, 5] - system.disc_speed), abs(steps.accelerations[-1, 2])
@@ -345,6 +359,10 @@ def _pivot_step(system: System, steps: Steps, epsilon: float) -> float:
     return math.sqrt(0.12 * epsilon / jerk)
 
 
-def _lever(system: System) -> float:
-    """Return the length by which a residual moment counts as a force: R, or 1 if that is less."""
-    return min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0
+def _newton_tolerance(system: System) -> float:
+    """Return the residual at which Newton's iteration ends while ``system`` creeps.
+
+    A moment counts as a force at R, or at 1 if that is less.
+    """
+    lever = min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0
+    return CREEP_NEWTON_TOLERANCE * system.friction_force * lever

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from exudyn_models.paper.creep import creep_ratios
+from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.models.build import build
 from exudyn_models.solver.linear_matrices import state_matrix
 from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
@@ -36,7 +36,8 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
 
     """
     start = checked_state(system, state)
-    if system.friction_force > 0.0 and creep_ratios(system, start[None, :], REGULARISATION).min() < 1.0:
+    contact = RegularisedContact(system, REGULARISATION)
+    if system.friction_force > 0.0 and contact.slip_ratios(start[None, :]).min() < 1.0:
         raise ValueError(
             f"state = {start.tolist()}: the contact, or a point of it, is at rest, where friction has no derivative"
         )

@@ -9,18 +9,17 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, load_ratios
+from exudyn_models.paper.creep import WHOLE, RegularisedContact
 from exudyn_models.paper.dense_output import states_at
-from exudyn_models.paper.scales import settling_time
 from exudyn_models.solver.solver_run import Steps
-from reference_model.systems import FloatArray, System
+from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 NOTHING = -1
 """In place of the part of the contact that creeps."""
 
 
-def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, ...]:
+def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, ...]:
     """Return the phases from the first to the last step, without gaps.
 
     Under the regularised law what sticks creeps, with less than ε as long as Coulomb friction can hold it. While the
@@ -33,43 +32,24 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
     like that. Sticking *ends* where the load reaches what friction can hold, and a pivot where the slip speed of the
     point reaches its δ. All these times have errors of first order in ε.
     """
-    ratios, creeping = _creeping_parts(system, steps, regularisation)
-    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
-    settling = settling_time(system, regularisation)
-    released = 0
-    for first, beyond in _runs(creeping):
-        if creeping[first] == NOTHING:
-            continue
-        settled = steps.times[min(beyond, len(creeping) - 1)] - steps.times[first] > settling
-        if creeping[first] == WHOLE:
-            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
-            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
-        else:
-            kept = settled
-        if kept:
-            if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
-                creeping[released:first] = (
-                    WHOLE  # slip that comes back before it has got anywhere is no release
-                )
-            released = beyond
-        else:
-            creeping[first:beyond] = NOTHING
+    ratios, creeping = _creeping_parts(contact, steps)
+    load = contact.load_ratios(steps.states, steps.accelerations)
+    _leave_what_is_held(contact, steps.times, ratios, load, creeping)
     last = float(steps.times[-1])
-    runs_before = {beyond: first for first, beyond in _runs(creeping)[:-1]}
-    changes = list(runs_before)
-    times = [float(steps.times[0])]
-    for i in changes:
+    changes, times = [0], [float(steps.times[0])]
+    for first, i in _runs(creeping)[:-1]:
         before, after = creeping[i - 1], creeping[i]
         if before == WHOLE:
-            time = _release(steps.times, load - 1.0, runs_before[i], i)
+            time = _release(steps.times, load - 1.0, first, i)
         elif after == NOTHING:
             time = _crossing(steps.times, ratios[:, before] - 1.0, i - 1)
         else:
-            time = _time_of_rest(system, steps, ratios[:, after], after, i - 1, regularisation)
+            time = _time_of_rest(contact, steps, ratios[:, after], after, i - 1)
+        changes.append(i)
         times.append(min(max(time, times[-1]), last))
     found: list[Phase] = []
     part_before = None
-    for i, start, end in zip([0, *changes], times, [*times[1:], last], strict=True):
+    for i, start, end in zip(changes, times, [*times[1:], last], strict=True):
         if start == end < last:
             continue
         if found and (start == end or creeping[i] == part_before):
@@ -80,18 +60,44 @@ def phases(system: System, steps: Steps, regularisation: float) -> tuple[Phase, 
     return tuple(found)
 
 
+def _leave_what_is_held(
+    contact: RegularisedContact,
+    times: FloatArray,
+    ratios: FloatArray,
+    load: FloatArray,
+    creeping: NDArray[np.int_],
+) -> None:
+    """Change ``creeping`` at all steps so that only what friction holds creeps there, from stick to its release."""
+    released = 0
+    for first, beyond in _runs(creeping):
+        if creeping[first] == NOTHING:
+            continue
+        settled = times[min(beyond, len(creeping) - 1)] - times[first] > contact.settling_time
+        if creeping[first] == WHOLE:
+            hesitates = released > 0 and ratios[released:first, WHOLE].max(initial=0.0) < 2.0
+            kept = _is_held(load[first:beyond], ratios[first:beyond, WHOLE]) and (settled or not hesitates)
+        else:
+            kept = settled
+        if not kept:
+            creeping[first:beyond] = NOTHING
+            continue
+        if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
+            creeping[released:first] = WHOLE  # slip that comes back before it got anywhere is no release
+        released = beyond
+
+
 NEIGHBOURS = 100
 """Steps at both ends of a run with nothing new that are kept: the time of rest lies a few of them after its start."""
 
 
-def essential(system: System, steps: Steps, regularisation: float) -> NDArray[np.bool_]:
-    """Return which of ``steps`` are to be kept so that ``phases`` finds the same without the others, shape (n,).
+def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
+    """Return which of ``steps`` are to be kept so that the phases are the same without the others, shape (n,).
 
     Of each run in which the same part creeps, or nothing: its ends, where its slip is largest, where the load is
     last one that friction holds, and where it is held most clearly.
     """
-    ratios, creeping = _creeping_parts(system, steps, regularisation)
-    load = load_ratios(system, steps.states, steps.accelerations, regularisation)
+    ratios, creeping = _creeping_parts(contact, steps)
+    load = contact.load_ratios(steps.states, steps.accelerations)
     whole = ratios[:, WHOLE]
     grip = np.where(whole > 0.0, whole + np.abs(load - whole), np.inf)
     kept = np.zeros(len(creeping), dtype=bool)
@@ -104,11 +110,9 @@ def essential(system: System, steps: Steps, regularisation: float) -> NDArray[np
     return kept
 
 
-def _creeping_parts(
-    system: System, steps: Steps, regularisation: float
-) -> tuple[FloatArray, NDArray[np.int_]]:
-    """Return the creep ratios at all steps and what creeps there, a column of them or ``NOTHING``."""
-    ratios = creep_ratios(system, steps.states, regularisation)
+def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArray, NDArray[np.int_]]:
+    """Return the slip ratios at all steps and what creeps there, a column of them or ``NOTHING``."""
+    ratios = contact.slip_ratios(steps.states)
     below = ratios < 1.0
     return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
 
@@ -125,14 +129,14 @@ def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
 
 
 def _time_of_rest(
-    system: System, steps: Steps, ratio: FloatArray, part: int, left: int, regularisation: float
+    contact: RegularisedContact, steps: Steps, ratio: FloatArray, part: int, left: int
 ) -> float:
     """Return the time at which the slip of ``part`` would be zero if it went on falling as at step ``left``.
 
-    ``ratio`` is its creep ratio. Without such a fall the contact rests since the next step.
+    ``ratio`` is its slip ratio. Without such a fall the contact rests since the next step.
     """
     start, end = steps.times[left], steps.times[left + 1]
-    rates = creep_ratio_rates(system, steps.states[left], steps.accelerations[left], regularisation)
+    rates = contact.slip_ratio_rates(steps.states[left], steps.accelerations[left])
     falls = rates[part] < 0.0 and ratio[left] > ratio[left + 1]
     return float(start - ratio[left] / rates[part]) if falls else float(end)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.dense_output import states_at
-from exudyn_models.paper.phase_detection import essential, phases
+from exudyn_models.paper.phase_detection import detected_phases, essential_steps
 from exudyn_models.paper.turning_axes import Axes
 from exudyn_models.solver.solver_run import Steps
-from reference_model.systems import FloatArray, System
+from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 MOST_KEPT = 50_000
@@ -16,24 +17,21 @@ MOST_KEPT = 50_000
 
 
 class Recording:
-    """Takes the runs of a motion of ``system`` one after the other, and keeps what is asked for.
+    """Takes the runs of a motion one after the other, and keeps what is asked for.
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        The parameters.
+    contact : RegularisedContact
+        Of the system that moves.
     times : array of shape (n,)
         Those that were asked for, the first of them the start.
-    regularisation : float
-        ε.
 
     """
 
-    def __init__(self, system: System, times: FloatArray, regularisation: float) -> None:
-        self.times, self.states = times, np.empty((len(times), system.state_size))
+    def __init__(self, contact: RegularisedContact, times: FloatArray) -> None:
+        self.times, self.states = times, np.empty((len(times), contact.system.state_size))
         self.steps = self.evaluations = 0
-        self._system, self._regularisation = system, regularisation
-        self._recorded = 0
+        self._contact, self._recorded = contact, 0
         self._kept: list[Steps] = []
 
     @property
@@ -52,11 +50,11 @@ class Recording:
         self._kept.append(axes.fixed_steps(run))
         if sum(len(kept.times) for kept in self._kept) > MOST_KEPT:
             whole = _joined(self._kept)
-            self._kept = [whole.only(essential(self._system, whole, self._regularisation))]
+            self._kept = [whole.only(essential_steps(self._contact, whole))]
 
     def phases(self) -> tuple[Phase, ...]:
         """Return the phases from the first to the last step."""
-        return phases(self._system, _joined(self._kept), self._regularisation)
+        return detected_phases(self._contact, _joined(self._kept))
 
 
 def _joined(runs: list[Steps]) -> Steps:

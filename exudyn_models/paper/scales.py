@@ -1,13 +1,51 @@
-"""How fast, how far and how hard a system moves: what steps and tolerances are measured by."""
+"""How fast, how far and how hard a system moves: what the steps and tolerances of a run are measured by.
+
+All numbers are in the units in which ``system`` and ``state`` are given, SI or those of ``nondimensional``.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_models.parts.radial_support import Law, potential, secant_stiffness
+from exudyn_models.forces.radial_springs import Law, elastic_energy, secant_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Sizes of a run, which follow from the system, its start and its span.
+
+    Parameters
+    ----------
+    time : float
+        In which the motion changes, see ``time_scale``.
+    motion : float
+        By which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
+    angle_rounding : float
+        Rounding error in rad of the angle that a disc may have after the span; 0 for a pin.
+    force : float
+        By which the residual of Newton's iteration is measured: the forces on the body in N, or the moments in N m
+        where these are smaller; > 0.
+
+    """
+
+    time: float
+    motion: float
+    angle_rounding: float
+    force: float
+
+    @classmethod
+    def of(cls, system: System, state: FloatArray, span: float) -> Scales:
+        """Return those of the motion of ``system`` from ``state`` (shape (4,) or (6,)) over ``span`` (s)."""
+        return cls(
+            time_scale(system, state, span),
+            _size_of_motion(system, state),
+            _angle_rounding(system, state, span),
+            _size_of_forces(system, state),
+        )
 
 
 def time_scale(system: System, state: FloatArray, span: float) -> float:
@@ -35,13 +73,13 @@ def hardened_stiffness(system: System, state: FloatArray) -> float:
 def support_energy(system: System, state: FloatArray) -> float:
     """Return the energy in J of the centre's motion and of its support, from the place where that is relaxed."""
     position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
-    return system.mass * abs(velocity) ** 2 / 2.0 + potential(
+    return system.mass * abs(velocity) ** 2 / 2.0 + elastic_energy(
         abs(position - system.offset) ** 2, _law_of(system)
     )
 
 
-def motion_scale(system: System, state: FloatArray) -> float:
-    """Return the number by which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
+def _size_of_motion(system: System, state: FloatArray) -> float:
+    """Return 1, or the largest of distances in m and speeds in m/s where it is above that.
 
     A disc adds its spin and those of shaft and master, but not its angle, whose origin is arbitrary.
     """
@@ -52,16 +90,14 @@ def motion_scale(system: System, state: FloatArray) -> float:
     return float(max(sizes))
 
 
-def angle_rounding(system: System, state: FloatArray, span: float) -> float:
-    """Return the rounding error in rad of the angle that a disc may have after ``span`` (s); 0 for a pin."""
+def _angle_rounding(system: System, state: FloatArray, span: float) -> float:
     if not isinstance(system, DiscOnDisc):
         return 0.0
     spin = max(abs(state[5]), abs(system.disc_speed), abs(system.shaft_speed))
     return float(np.spacing(abs(state[2]) + spin * span))
 
 
-def force_scale(system: System, state: FloatArray) -> float:
-    """Return the size in N of the forces on the body, or in N m that of the moments where it is smaller; > 0."""
+def _size_of_forces(system: System, state: FloatArray) -> float:
     position, velocity = state.reshape(2, -1)
     deflection = math.hypot(*position[:2]) + abs(system.offset)
     spring = secant_stiffness(deflection**2, _law_of(system)) * deflection
@@ -82,29 +118,3 @@ def _law_of(system: System) -> Law:
         system.stop_stiffness,
         system.damping,
     )
-
-
-RELAXATIONS = 40.0
-"""What comes to rest settles to its creep like exp(−t/relaxation time); after 40 times that nothing is left of it."""
-
-
-def settling_time(system: System, epsilon: float) -> float:
-    """Return the time in s after which slip below ε has settled to its creep but for slow relaxations."""
-    return RELAXATIONS * relaxation_times(system, epsilon)[0]
-
-
-def relaxation_times(system: System, epsilon: float) -> tuple[float, float]:
-    """Return the times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
-
-    The viscous part of the law resists slip of a pin with μN/ε per m/s; that of a disc and of its rim on a continuous
-    ring with half of that or more, and on one of n points that rests alone with the n-th part. The inertia of the
-    rim, J/R², may be far larger than the mass. Without friction both are infinite.
-    """
-    if system.friction_force == 0.0:
-        return math.inf, math.inf
-    inertias, share = [system.mass], 1
-    if isinstance(system, DiscOnDisc):
-        inertias.append(system.polar_inertia / system.contact_radius**2)
-        share = system.contact_points or 2
-    times = sorted(share * inertia * epsilon / system.friction_force for inertia in inertias)
-    return times[0], times[-1]

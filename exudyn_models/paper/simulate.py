@@ -9,9 +9,16 @@ from typing import Literal
 
 from numpy.typing import ArrayLike
 
-from exudyn_models.paper.alternating_solvers import RING_FRICTION, Friction, nothing_creeps, solve_in_turns
+from exudyn_models.paper.alternating_solvers import (
+    RING_FRICTION,
+    Friction,
+    SlipSolver,
+    nothing_creeps,
+    solve_in_turns,
+)
+from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.nondimensional import Units
-from exudyn_models.paper.scales import angle_rounding, force_scale, motion_scale, time_scale
+from exudyn_models.paper.scales import Scales
 from exudyn_models.parts.ring_friction import add_ring_friction, checked_regularisation
 from exudyn_models.solver.solver_run import FIXED_STEP
 from reference_model.systems import (
@@ -47,6 +54,9 @@ NEWTON_TOLERANCE = 1e-9
 """Residual at which Newton's iteration ends, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
+
+METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit": "Exudyn generalised-α"}
+"""What each solver is called in a result."""
 
 
 def simulate(
@@ -97,23 +107,12 @@ def simulate(
     state = checked_state(system, initial_state)
     grid = checked_times(times)
     tolerance = checked_tolerance(tolerance)
-    if solver not in ("explicit", "implicit"):
+    if solver not in METHODS:
         raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
-    problem = _Problem.of(system, state, grid, regularisation, tolerance)
-    scale = time_scale(problem.system, problem.state, problem.span)
-    if solver == "explicit":
-        method, integrator = "Exudyn DOPRI5, generalised-α while sticking", "DOPRI5"
-        step = LARGEST_STEP * tolerance**0.2 * scale
-        local = max(_step_tolerance(system) * tolerance, SMALLEST_STEP_TOLERANCE)
-        local *= motion_scale(problem.system, problem.state)
-        # The same for large angles.
-        local = max(local, 2.0 * angle_rounding(problem.system, problem.state, problem.span))
-    else:
-        method, integrator = "Exudyn generalised-α", "GeneralizedAlpha"
-        step = 100.0 * math.sqrt(tolerance) * scale
-        local = NEWTON_TOLERANCE * force_scale(problem.system, problem.state)
-    return problem.solved(
-        method, tolerance, integrator=integrator, step=step, local_tolerance=local, friction=friction
+    epsilon = None if regularisation is None else checked_regularisation(regularisation)
+    run = Run.of(system, state, grid, tolerance, epsilon)
+    return run.trajectory(
+        METHODS[solver], run.explicit() if solver == "explicit" else run.implicit(), friction
     )
 
 
@@ -140,30 +139,45 @@ def simulate_fixed_step(
         raise ValueError(f"step = {step:g} s: it must be > 0")
     if integrator not in FIXED_STEP:
         raise ValueError(f"integrator = {integrator!r}: it must be one of {', '.join(FIXED_STEP)}")
-    problem = _Problem.of(system, state, grid, epsilon, math.nan)
-    return problem.solved(
-        f"Exudyn {integrator}, step {step:.3g} s",
-        math.nan,
-        integrator=integrator,
-        step=step / problem.units.time,
-        local_tolerance=NEWTON_TOLERANCE * force_scale(problem.system, problem.state),
-        friction=Friction(add_ring_friction, nothing_creeps),
-    )
+    run = Run.of(system, state, grid, math.nan, epsilon)
+    slip = SlipSolver(integrator, step / run.units.time, NEWTON_TOLERANCE * run.scales.force)
+    friction = Friction(add_ring_friction, nothing_creeps)
+    return run.trajectory(f"Exudyn {integrator}, step {step:.3g} s", slip, friction)
 
 
 @dataclass(frozen=True)
-class _Problem:
+class Run:
     """A motion to compute, from the time 0 on and in units in which it is of order one.
 
-    Exudyn takes no negative times, large ones cost digits, and its tolerances are absolute.
+    Exudyn takes no negative times, large ones cost digits, and its tolerances are absolute. What was given has been
+    checked; all that follows from it is found once.
+
+    Parameters
+    ----------
+    given : tuple
+        System, initial state and times as they were given.
+    tolerance : float
+        The accuracy to aim at; nan for fixed steps.
+    units : Units
+        Of the motion.
+    contact : RegularisedContact
+        Of the system in these units, with ε.
+    state, times : array
+        In these units.
+    scales : Scales
+        Of the run in these units.
+    began : float
+        When the work on it began, by ``time.perf_counter``.
+
     """
 
+    given: tuple[System, FloatArray, FloatArray]
+    tolerance: float
     units: Units
-    given: tuple[System, FloatArray, FloatArray]  # system, initial state and times as they were given
-    system: System
+    contact: RegularisedContact
     state: FloatArray
     times: FloatArray
-    epsilon: float
+    scales: Scales
     began: float
 
     @classmethod
@@ -172,51 +186,45 @@ class _Problem:
         system: System,
         state: FloatArray,
         times: FloatArray,
-        regularisation: float | None,
         tolerance: float,
-    ) -> _Problem:
-        """Return the problem for ε in m/s; that which goes with ``tolerance`` if it is None."""
+        regularisation: float | None,
+    ) -> Run:
+        """Return the run for ε in m/s; that which goes with ``tolerance`` if it is None."""
         began = time.perf_counter()
         units = Units.of(system, state)
-        return cls(
-            units,
-            (system, state, times),
-            units.of_system(system),
-            state / units.of_states(len(state)),
-            (times - times[0]) / units.time,
+        epsilon = (
             REGULARISATION_PER_TOLERANCE * tolerance
             if regularisation is None
-            else checked_regularisation(regularisation) / units.speed,
+            else regularisation / units.speed
+        )
+        own_system, own_state = units.of_system(system), state / units.of_states(len(state))
+        own_times = (times - times[0]) / units.time
+        return cls(
+            (system, state, times),
+            tolerance,
+            units,
+            RegularisedContact(own_system, epsilon),
+            own_state,
+            own_times,
+            Scales.of(own_system, own_state, float(own_times[-1])),
             began,
         )
 
-    @property
-    def span(self) -> float:
-        """From the first time to the last."""
-        return float(self.times[-1])
+    def explicit(self) -> SlipSolver:
+        """Return DOPRI5 with a step and an error that follow the tolerance."""
+        local = max(_step_tolerance(self.contact.system) * self.tolerance, SMALLEST_STEP_TOLERANCE)
+        local *= self.scales.motion
+        local = max(local, 2.0 * self.scales.angle_rounding)  # the same for large angles
+        return SlipSolver("DOPRI5", LARGEST_STEP * self.tolerance**0.2 * self.scales.time, local)
 
-    def solved(
-        self,
-        method: str,
-        tolerance: float,
-        *,
-        integrator: str,
-        step: float,
-        local_tolerance: float,
-        friction: Friction,
-    ) -> Trajectory:
-        """Return the motion in SI units; ``step`` and ``local_tolerance`` are in those of the problem."""
-        found = solve_in_turns(
-            self.system,
-            self.state,
-            self.times,
-            self.epsilon,
-            integrator=integrator,
-            step=step,
-            tolerance=local_tolerance,
-            friction=friction,
-            seconds=self.units.time,
-        )
+    def implicit(self) -> SlipSolver:
+        """Return generalised-α with a step that follows the tolerance."""
+        step = 100.0 * math.sqrt(self.tolerance) * self.scales.time
+        return SlipSolver("GeneralizedAlpha", step, NEWTON_TOLERANCE * self.scales.force)
+
+    def trajectory(self, method: str, solver: SlipSolver, friction: Friction) -> Trajectory:
+        """Return the motion in SI units, by a ``method`` of that name."""
+        found = solve_in_turns(self.contact, self.state, self.times, solver, friction, self.units.time)
         system, state, times = self.given
         unit = self.units.of_states(len(state))
         states = found.states * unit
@@ -227,11 +235,11 @@ class _Problem:
         ]
         solution = Solution(
             method=method,
-            tolerance=tolerance,
+            tolerance=self.tolerance,
             evaluations=found.evaluations,
             steps=found.steps,
             wall_time=time.perf_counter() - self.began,
-            regularisation=self.epsilon * self.units.speed,
+            regularisation=self.contact.epsilon * self.units.speed,
         )
         return Trajectory(system, times, states, phases_of(begun, float(times[-1])), solution)
 

@@ -1,1 +1,1 @@
-"""What goes into other people's models: friction of a ring, its sensors, radial support, energy."""
+"""What goes into other people's models: friction with its sensors, Exudyn's own contact, a radial support, energy."""

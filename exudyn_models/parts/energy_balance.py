@@ -15,6 +15,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, finite_number
 
@@ -93,37 +94,13 @@ def add_energy_balance(
         without potential energy. Exudyn tells that of a model that can be assembled: of any other the run tells it.
 
     """
-    unit = finite_number("unit", unit)
-    if unit <= 0.0:
-        raise ValueError(f"unit = {unit:g} J: it must be > 0")
+    unit = _checked_unit(unit)
     for name in gains:
         if name in losses:
             raise ValueError(f"{name!r} is among gains and losses: it must be one of them")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
-    powers = [*gains.values(), *losses.values()]
-    bodies: list[int] = []
-
-    def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
-        return [power(mbs, t) / unit for power in powers]
-
-    def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
-        if not bodies:  # an object tells only once the model is assembled
-            bodies.extend(_bodies(mbs))
-        return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
-
-    internal = {"storeInternal": True, "writeToFile": False}
-    node = mbs.AddNode(
-        items.NodeGenericODE1(
-            referenceCoordinates=[0.0] * len(powers),
-            initialCoordinates=[0.0] * len(powers),
-            numberOfODE1Coordinates=len(powers),
-        )
-    )
-    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
-    works_sensor = mbs.AddSensor(
-        items.SensorNode(nodeNumber=node, outputVariableType=exu.OutputVariableType.Coordinates, **internal)
-    )
-    energy_sensor = mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **internal))
+    works_sensor = _add_works(mbs, [*gains.values(), *losses.values()], unit)
+    energy_sensor = _add_energy(mbs, stored)
 
     def read() -> EnergyBalance:
         times, *works = mbs.GetSensorStoredData(works_sensor).T
@@ -136,6 +113,43 @@ def add_energy_balance(
         )
 
     return read
+
+
+def _checked_unit(unit: float) -> float:
+    number = finite_number("unit", unit)
+    if number <= 0.0:
+        raise ValueError(f"unit = {number:g} J: it must be > 0")
+    return number
+
+
+def _add_works(mbs: Any, powers: Sequence[Power], unit: float) -> Any:
+    """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` of all of them."""
+
+    def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
+        return [power(mbs, t) / unit for power in powers]
+
+    node = mbs.AddNode(
+        items.NodeGenericODE1(
+            referenceCoordinates=[0.0] * len(powers),
+            initialCoordinates=[0.0] * len(powers),
+            numberOfODE1Coordinates=len(powers),
+        )
+    )
+    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
+    variable = exu.OutputVariableType.Coordinates
+    return mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
+
+
+def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
+    """Add a sensor of the kinetic energy of all bodies and of what is ``stored``; return its ``SensorIndex``."""
+    bodies: list[int] = []
+
+    def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
+        if not bodies:  # an object tells only once the model is assembled
+            bodies.extend(_bodies(mbs))
+        return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
+
+    return mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **IN_MEMORY))
 
 
 def spring_energy(connector: Any) -> Energy:

@@ -11,10 +11,17 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import functions_of_pair
-from exudyn_models.forces.friction_laws import friction_of_slip, mean_slip_speed
-from exudyn_models.forces.load_and_coefficient import NumberOrFunction, Strength
-from exudyn_models.forces.slip_kinematics import SIZES, Kinds, friction_on_nodes, radius_of_disc, slip_map
+from exudyn_models.forces.any_pair import friction_on_nodes
+from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.slip_kinematics import (
+    SIZES,
+    Kinds,
+    radius_of_disc,
+    slip_jacobian,
+)
+from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -42,7 +49,7 @@ class RingFriction:
     nodes: tuple[Any, Any]
     _kinds: Kinds = field(repr=False)
     _reference: FloatArray = field(repr=False)
-    _strength: Strength = field(repr=False)
+    _factors: LoadAndCoefficient = field(repr=False)
 
     def change(
         self,
@@ -58,12 +65,12 @@ class RingFriction:
             If a number is out of its range; both then stay as they were.
 
         """
-        strength = self._strength
-        strength.change(
-            strength.friction_coefficient if friction_coefficient is None else friction_coefficient,
-            strength.normal_load if normal_load is None else normal_load,
+        factors = self._factors
+        factors.change(
+            factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            factors.normal_load if normal_load is None else normal_load,
         )
-        functions = functions_of_pair(self._kinds, self._reference, strength)
+        functions = force_and_jacobian(self._kinds, self._reference, factors)
         for name, function in zip(("force", "jacobian"), functions, strict=True):
             self.mbs.SetObjectParameter(self.item, f"{name}UserFunction", function)
 
@@ -88,7 +95,7 @@ class RingFriction:
         """
         if quantity not in get_args(Quantity):
             raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
-        options = {"storeInternal": True, "writeToFile": False} | options
+        options = IN_MEMORY | options
         if quantity == "heat":
             return self._add_heat(options)
         return self.mbs.AddSensor(
@@ -105,7 +112,7 @@ class RingFriction:
             if quantity == "centre_slip":
                 return [math.hypot(slip[0], slip[1])]
             if quantity == "rim_slip":
-                return [self._strength.contact_radius * slip[2]]
+                return [self._factors.contact_radius * slip[2]]
             if asked:
                 raise ValueError(
                     f"normal_load or friction_coefficient depends on the sensor {quantity!r} of the same contact, "
@@ -127,12 +134,12 @@ class RingFriction:
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
         coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
-        contact = self._strength.contact or self._strength.contact_at(t)
+        contact = self._factors.contact or self._factors.contact_at(t)
         forces, radius, slip_speed = friction_on_nodes(self._kinds, coordinates, velocities, contact)
         power = -float(forces @ velocities)
         return (
-            power * self._strength.friction(t, radius, slip_speed)
-            if self._strength.depends_on_motion
+            power * self._factors.friction_force(t, radius, slip_speed)
+            if self._factors.depends_on_motion
             else power
         )
 
@@ -152,7 +159,7 @@ class RingFriction:
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, FloatArray]:
         """Return u_x, u_y (m/s) and S (rad/s), the disc's angle and radius, all in the master's axes, and these."""
         coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine) = slip_map(self._kinds, coordinates)
+        to_slip, axes, (cosine, sine) = slip_jacobian(self._kinds, coordinates)
         radius = float(radius_of_disc(self._kinds, coordinates, axes))
         return to_slip @ velocities, math.atan2(sine, cosine), radius, axes
 
@@ -169,8 +176,8 @@ class RingFriction:
 
     def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
-        arguments = (*slip.tolist(), angle, self._strength.contact_at(t))
+        arguments = (*slip.tolist(), angle, self._factors.contact_at(t))
         friction = np.array(friction_of_slip(*arguments))
-        if self._strength.depends_on_motion:
-            friction *= self._strength.friction(t, radius, mean_slip_speed(*arguments))
+        if self._factors.depends_on_motion:
+            friction *= self._factors.friction_force(t, radius, slip_potential_of_contact(*arguments))
         return friction

@@ -2,8 +2,8 @@
 
 At the deflection w, d = |w|, it pulls the disc back with C·d + C₃·d³ + C_s·max(0, d − gap), and damps with β·ẇ. On a
 body it turns with it: w and ẇ are those that an observer on the body sees, so that a motion of both as one rigid body
-does nothing, and the damper only takes energy. ẇ is the slip J(q)·q̇ of ``slip_map``; its transpose puts the whole
-reaction on the body, the moment −d×F included, as friction does.
+does nothing, and the damper only takes energy. The whole reaction is on the body, the moment −d×F included, as that
+of friction is.
 
 A support that is linear and on the ground is Exudyn's own ``CartesianSpringDamper``, which takes a tenth of the time
 of a Python function. Any other is an ``ObjectGenericODE2`` without mass.
@@ -11,7 +11,6 @@ of a Python function. Any other is an ``ObjectGenericODE2`` without mass.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, cast, get_args
@@ -20,33 +19,30 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import ForceFunction, JacobianFunction
-from exudyn_models.forces.jit import compiled, taking_lists
-from exudyn_models.forces.load_and_coefficient import checked_strength
+from exudyn_models.forces.load_and_coefficient import checked_not_negative
+from exudyn_models.forces.radial_springs import (
+    ON_GROUND,
+    ON_ROTOR,
+    Law,
+    Offset,
+    elastic_energy,
+    secant_stiffness,
+    support_functions,
+)
 from exudyn_models.forces.slip_kinematics import (
-    IMAGINARY_STEP,
     PLANAR,
     ROTATION_VECTOR,
     ROTOR,
-    SIZES,
     TAIT_BRYAN,
-    TRANSLATIONS,
     Kinds,
     place_of_disc,
-    slip_map,
+    slip_jacobian,
 )
-from exudyn_models.parts.ring_friction import checked_kind
+from exudyn_models.parts.connector import add_connector, checked_kind
+from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
-
-Law = tuple[float, float, float, float, float]
-"""C (N/m), C₃ (N/m³), gap (m), C_s (N/m) and β (N s/m)."""
-
-Offset = tuple[float, float]
-
-ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
-"""Of the coordinates of a planar base those that the model has not: a rotor is one without x and y."""
 
 Quantity = Literal["deflection", "force", "stored_energy", "power"]
 
@@ -112,7 +108,7 @@ class RadialSupport:
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
             return cast(list[float], np.atleast_1d(self._state(mbs, configuration)[place]).tolist())
 
-        options = {"storeInternal": True, "writeToFile": False} | options
+        options = IN_MEMORY | options
         return self.mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=values, **options))
 
     def _state(
@@ -125,11 +121,11 @@ class RadialSupport:
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
-        to_slip, axes, _ = slip_map(self._kinds, coordinates)
+        to_slip, axes, _ = slip_jacobian(self._kinds, coordinates)
         w = np.array(place_of_disc(self._kinds, coordinates, axes)) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
         force = axes[:, :2] @ (-secant_stiffness(square, self._law) * w - damping * rate)
-        return w, force, potential(square, self._law), damping * float(rate @ rate)
+        return w, force, elastic_energy(square, self._law), damping * float(rate @ rate)
 
 
 def add_radial_support(
@@ -179,40 +175,43 @@ def add_radial_support(
         If a number is out of its range or a node is of a kind that can't be used.
 
     """
-    law: Law = (
-        checked_strength("stiffness", stiffness, " N/m"),
-        checked_strength("hardening", hardening, " N/m³"),
-        checked_strength("stop_gap", stop_gap, " m"),
-        checked_strength("stop_stiffness", stop_stiffness, " N/m"),
-        checked_strength("damping", damping, " N s/m"),
-    )
+    law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
     place = _checked_offset(offset)
-    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, ROTATION_VECTOR, TAIT_BRYAN))
-    base = PLANAR if base_node is None else checked_kind("base_node", mbs, base_node)
-    if base_node is not None and int(base_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is the base_node too: a support takes two bodies")
+    kinds, hidden = _checked_nodes(mbs, base_node, disc_node)
     nodes = (disc_node,) if base_node is None else (base_node, disc_node)
-    hidden = ON_GROUND if base_node is None else ON_ROTOR if base == ROTOR else 0
-    kinds = (PLANAR if base == ROTOR else base), disc
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]
     reference = np.hstack([np.zeros(hidden), *own])
     if base_node is None and hardening == 0.0 and stop_stiffness == 0.0:
         item = _add_springs(mbs, disc_node, place, law)
     else:
-        if kinds[0] == PLANAR:
-            force = _force_on_flat_base(hidden, reference, place, law)
-        else:
-            force = _force_on_any_base(kinds, reference, place, law)
-        size = len(reference) - hidden
-        item = mbs.AddObject(
-            items.ObjectGenericODE2(
-                nodeNumbers=list(nodes),
-                massMatrix=np.zeros((size, size)),
-                forceUserFunction=force,
-                jacobianUserFunction=_jacobian(hidden, kinds, reference, place, law),
-            )
-        )
+        item = add_connector(mbs, nodes, *support_functions(hidden, kinds, reference, place, law))
     return RadialSupport(mbs, item, nodes, kinds, reference, place, law)
+
+
+def _checked_law(
+    stiffness: float, hardening: float, stop_gap: float, stop_stiffness: float, damping: float
+) -> Law:
+    return (
+        checked_not_negative("stiffness", stiffness, " N/m"),
+        checked_not_negative("hardening", hardening, " N/m³"),
+        checked_not_negative("stop_gap", stop_gap, " m"),
+        checked_not_negative("stop_stiffness", stop_stiffness, " N/m"),
+        checked_not_negative("damping", damping, " N s/m"),
+    )
+
+
+def _checked_nodes(mbs: Any, base_node: Any, disc_node: Any) -> tuple[Kinds, int]:
+    """Return the kinds of base and disc, and how many of the base's first coordinates the model has not.
+
+    The ground and a rotor count as planar bodies, of which three or two coordinates stay zero.
+    """
+    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, ROTATION_VECTOR, TAIT_BRYAN))
+    if base_node is None:
+        return (PLANAR, disc), ON_GROUND
+    base = checked_kind("base_node", mbs, base_node)
+    if int(base_node) == int(disc_node):
+        raise ValueError(f"disc_node {int(disc_node)} is the base_node too: a support takes two bodies")
+    return ((PLANAR, disc), ON_ROTOR) if base == ROTOR else ((base, disc), 0)
 
 
 def _checked_offset(offset: Sequence[float]) -> Offset:
@@ -237,171 +236,3 @@ def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law) -> Any:
             damping=[damping, damping, 0.0],
         )
     )
-
-
-def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    """Return the force where the base only turns about the z-axis; its first ``hidden`` coordinates are zero."""
-    xb, yb, angle, x, y, *tilts = reference.tolist()
-    parameters = [*law, *offset, x - xb, y - yb, angle]
-    size = len(reference) - hidden
-    evaluate = taking_lists(_ON_FLAT_BASES[hidden], len(parameters), size, size)
-    rest = (0.0,) * len(tilts)
-
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Sequence[float]:
-        forces: tuple[float, ...] = evaluate(parameters, q, q_t)
-        return forces + rest
-
-    return force
-
-
-def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        forces = support_on_nodes(kinds, reference + q, np.array(q_t), offset, law)
-        return cast(list[float], forces.tolist())
-
-    return force
-
-
-def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
-    """Return the Jacobian over all coordinates of base and disc but the first ``hidden``, which are zero."""
-
-    def jacobian(
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
-        zeros, factors = np.zeros(hidden), (position_factor, velocity_factor)
-        coordinates, velocities = reference + np.hstack((zeros, q)), np.hstack((zeros, q_t))
-        derivatives = support_derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
-        return -derivatives[hidden:, hidden:]  # Exudyn takes those of the left-hand side
-
-    return jacobian
-
-
-@compiled
-def secant_stiffness(square: float, law: Law) -> float:
-    """Return the force of springs and stop over the deflection d, in N/m, from d²."""
-    stiffness, hardening, gap, stop, _ = law
-    result = stiffness + hardening * square
-    if square > gap * gap:
-        result += stop * (1.0 - gap / math.sqrt(square))
-    return result
-
-
-@compiled
-def secant_slope(square: float, law: Law) -> float:
-    """Return twice the derivative of ``secant_stiffness`` by d², in N/m³."""
-    _, hardening, gap, stop, _ = law
-    result = 2.0 * hardening
-    if square > gap * gap:
-        result += stop * gap / (square * math.sqrt(square))
-    return result
-
-
-@compiled
-def potential(square: float, law: Law) -> float:
-    """Return the energy in J of springs and stop at the deflection d, from d²."""
-    stiffness, hardening, gap, stop, _ = law
-    beyond = max(0.0, math.sqrt(square) - gap)
-    return (stiffness * square + hardening * square * square / 2.0 + stop * beyond * beyond) / 2.0
-
-
-Parameters = Sequence[float]
-"""A ``Law``, an ``Offset``, and the reference values of the disc's place relative to the base and of its angle."""
-
-
-@compiled
-def force_on_ground(parameters: Parameters, q: Sequence[float], q_t: Sequence[float]) -> tuple[float, float]:
-    """Return the force on a disc (N) from its coordinates and their rates."""
-    fx, fy, _ = _in_the_plane(parameters, q[0], q[1], q_t[0], q_t[1], 0.0, 0.0)
-    return fx, fy
-
-
-@compiled
-def forces_on_rotor(
-    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
-) -> tuple[float, float, float]:
-    """Return the moment on a rotor (N m) and the force on a disc (N)."""
-    fx, fy, moment = _in_the_plane(parameters, q[1], q[2], q_t[1], q_t[2], q[0], q_t[0])
-    return moment, fx, fy
-
-
-@compiled
-def forces_on_planar_base(
-    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
-) -> tuple[float, float, float, float, float]:
-    """Return force and moment on a planar body, and the force on a disc."""
-    dx, dy, dvx, dvy = q[3] - q[0], q[4] - q[1], q_t[3] - q_t[0], q_t[4] - q_t[1]
-    fx, fy, moment = _in_the_plane(parameters, dx, dy, dvx, dvy, q[2], q_t[2])
-    return -fx, -fy, moment, fx, fy
-
-
-@compiled
-def _in_the_plane(
-    parameters: Parameters, x: float, y: float, vx: float, vy: float, angle: float, spin: float
-) -> tuple[float, float, float]:
-    """Return force on the disc (N) and moment on the base (N m), in global axes.
-
-    From place (m) and velocity (m/s) of the disc relative to the base, and the base's angle (rad) and spin (rad/s).
-    """
-    stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
-    x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)
-    wx, wy = x - cosine * offset_x + sine * offset_y, y - sine * offset_x - cosine * offset_y
-    secant = secant_stiffness(wx * wx + wy * wy, (stiffness, hardening, gap, stop, damping))
-    fx, fy = -secant * wx - damping * (vx + spin * y), -secant * wy - damping * (vy - spin * x)
-    return fx, fy, y * fx - x * fy
-
-
-_ON_FLAT_BASES = {ON_GROUND: force_on_ground, ON_ROTOR: forces_on_rotor, 0: forces_on_planar_base}
-
-
-@compiled
-def support_on_nodes(
-    kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, offset: Offset, law: Law
-) -> FloatArray:
-    """Return the generalised forces on both nodes, shape (n,)."""
-    to_slip, axes, _ = slip_map(kinds, coordinates)
-    x, y = place_of_disc(kinds, coordinates, axes)
-    wx, wy = x - offset[0], y - offset[1]
-    rate = to_slip @ velocities
-    secant = secant_stiffness(wx * wx + wy * wy, law)
-    fx, fy = -secant * wx - law[4] * rate[0], -secant * wy - law[4] * rate[1]
-    forces: FloatArray = fx * to_slip[0] + fy * to_slip[1]
-    return forces
-
-
-@compiled
-def support_derivatives_on_nodes(
-    kinds: Kinds,
-    coordinates: FloatArray,
-    velocities: FloatArray,
-    position_factor: float,
-    velocity_factor: float,
-    offset: Offset,
-    law: Law,
-) -> FloatArray:
-    """Return the derivatives of the generalised forces by coordinates and velocities, weighted and added, (n, n)."""
-    to_slip, axes, _ = slip_map(kinds, coordinates)
-    w = np.array(place_of_disc(kinds, coordinates, axes)) - np.array(offset)
-    rate = to_slip @ velocities
-    square, damping = w[0] * w[0] + w[1] * w[1], law[4]
-    secant, slope = secant_stiffness(square, law), secant_slope(square, law)
-    size = len(coordinates)
-    result = np.zeros((size, size))
-    for j in range(size):
-        stepped = coordinates.astype(np.complex128)
-        stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, _ = slip_map(kinds, stepped)
-        shifts = place_of_disc(kinds, stepped, stepped_axes)
-        map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
-        rate_change = map_change @ velocities + velocity_factor * to_slip[:, j]
-        shift = position_factor / IMAGINARY_STEP * np.array([shifts[0].imag, shifts[1].imag])
-        along = slope * (w[0] * shift[0] + w[1] * shift[1])
-        for i in range(2):
-            change = secant * shift[i] + along * w[i] + damping * rate_change[i]
-            result[:, j] -= change * to_slip[i] + (secant * w[i] + damping * rate[i]) * map_change[i]
-    return result

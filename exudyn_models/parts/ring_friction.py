@@ -1,27 +1,21 @@
 """Dry friction between two bodies on a ring or at points of it: one connector for pins, discs and drivetrains.
 
-The connector is an ``ObjectGenericODE2`` without mass over the nodes of *both* bodies, so that it puts the full
-reaction on the master: the force −F and the moment −d×F of a force F that acts at a distance d from the
-master's own reference point. Exudyn's marker connectors leave that moment out, which is no longer an exchange of
-momentum between two free bodies.
+It puts the full reaction on the master, as ``connector`` says. ``friction_laws`` has the law, and the handle that
+``add_ring_friction`` returns is in ``friction_sensors``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, Protocol
 
-import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import functions_of_pair
-from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
-from exudyn_models.forces.load_and_coefficient import NumberOrFunction, Strength
-from exudyn_models.forces.slip_kinematics import KINDS
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.parts.connector import add_connector, checked_kind
 from exudyn_models.parts.friction_sensors import RingFriction
 from reference_model.systems import finite_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 
 class AddFriction(Protocol):
@@ -112,6 +106,28 @@ def add_ring_friction(
         that tells it with its time and arguments.
 
     """
+    contact = _checked_geometry(
+        contact_radius, inner_radius, outer_radius, regularisation, contact_points, held
+    )
+    factors = LoadAndCoefficient(contact, friction_coefficient, normal_load)
+    kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
+    if int(master_node) == int(disc_node):
+        raise ValueError(f"disc_node {int(disc_node)} is the master_node too: friction takes two bodies")
+    nodes = master_node, disc_node
+    reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
+    item = add_connector(mbs, nodes, *force_and_jacobian(kinds, reference, factors))
+    return RingFriction(mbs, item, nodes, kinds, reference, factors)
+
+
+def _checked_geometry(
+    contact_radius: float | None,
+    inner_radius: float | None,
+    outer_radius: float | None,
+    regularisation: float,
+    contact_points: int | None,
+    held: int | None,
+) -> Contact:
+    """Return the contact, with 1 N in place of μN; raise ``ValueError`` if there is none like it."""
     if inner_radius is None and outer_radius is None:
         radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         inner = radius
@@ -122,25 +138,7 @@ def add_ring_friction(
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
-    unit = (radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner)
-    strength = Strength(unit, friction_coefficient, normal_load)
-    kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
-    if int(master_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is the master_node too: friction takes two bodies")
-    reference = np.hstack(
-        [mbs.GetNodeParameter(node, "referenceCoordinates") for node in (master_node, disc_node)]
-    )
-    force, jacobian = functions_of_pair(kinds, reference, strength)
-    size = len(reference)
-    item = mbs.AddObject(
-        items.ObjectGenericODE2(
-            nodeNumbers=[master_node, disc_node],
-            massMatrix=np.zeros((size, size)),
-            forceUserFunction=force,
-            jacobianUserFunction=jacobian,
-        )
-    )
-    return RingFriction(mbs, item, (master_node, disc_node), kinds, reference, strength)
+    return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner
 
 
 def checked_contact(
@@ -186,22 +184,3 @@ def checked_regularisation(value: float) -> float:
     if epsilon <= 0.0:
         raise ValueError(f"regularisation = {epsilon:g} m/s: it must be > 0")
     return epsilon
-
-
-def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
-    """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
-    try:
-        kind = mbs.GetNode(node)["nodeType"]
-    except exudyn.ExudynIndexError:
-        count = mbs.systemData.NumberOfNodes()
-        raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
-    except exudyn.ExudynTypeError:
-        raise ValueError(
-            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex, as AddNode returns it"
-        ) from None
-    if KINDS.get(kind) in allowed:
-        return KINDS[kind]
-    names = [f"Node{key}" for key, value in KINDS.items() if value in allowed]
-    raise ValueError(
-        f"{name} {int(node)} is a Node{kind}: it must be a {' or '.join(', '.join(names).rsplit(', ', 1))}"
-    )

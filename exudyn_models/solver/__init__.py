@@ -1,1 +1,1 @@
-"""Running an Exudyn model: its steps, its limits, and an end that is told."""
+"""Runs of an Exudyn model: one call of a solver and what it is checked for, step limits, linearisation."""

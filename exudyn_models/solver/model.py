@@ -1,9 +1,12 @@
-"""An assembled model, as a run takes it."""
+"""An assembled model, as a run takes it, and what its sensors keep."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
+
+IN_MEMORY: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
+"""Options of a sensor that keeps its values for ``mbs.GetSensorStoredData`` and writes no file."""
 
 
 @dataclass(frozen=True)

@@ -53,13 +53,8 @@ def solve_dynamic(
     solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
     if not mbs.systemIsConsistent:
         mbs.Assemble()
+    _check_constraints(mbs, solver)
     data = mbs.systemData
-    constraints = data.AEsize()
-    if solver not in IMPLICIT and constraints > 0:
-        raise ValueError(
-            f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs"
-        )
     start = reached = simulationSettings.timeIntegration.startTime
     finite = True
     check = StepCheck(mbs, solver.name, simulationSettings.timeIntegration)
@@ -87,3 +82,13 @@ def solve_dynamic(
         raise
     if not finite:
         raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
+
+
+def _check_constraints(mbs: Any, solver: Any) -> None:
+    """Raise ``ValueError`` if ``solver`` is explicit and an assembled model has algebraic constraints."""
+    constraints = mbs.systemData.AEsize()
+    if solver not in IMPLICIT and constraints > 0:
+        raise ValueError(
+            f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
+            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs"
+        )

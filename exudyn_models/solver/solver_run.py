@@ -154,70 +154,103 @@ def solve(
         too many steps.
 
     """
-    data = model.mbs.systemData
-    own = slice(model.first, model.first + model.size)
     if start == end:
-        initial = [
-            values(configuration=exu.ConfigurationType.Initial)[own]
-            for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
-        ]
-        return Steps(np.array([start]), np.hstack(initial)[None, :], np.zeros((1, model.size)), 0)
+        return _no_steps(model, start)
     count = StepCount(end) if count is None else count
     count.expect(start, (end - start) / step)
-    # A step below the resolution of time leaves it where it is.
-    smallest = 8.0 * float(np.spacing(max(abs(start), abs(end))))
+    look = _Look(model, start, end, watch, count)
     settings = _settings(start, end, integrator, step, tolerance, first_step)
+    settings.timeIntegration.minimumStepSize = look.smallest_step
     if quasi_static:
         settings.timeIntegration.generalizedAlpha.spectralRadius = 0.0
         settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = balanced
-    settings.timeIntegration.minimumStepSize = smallest
+    solver, first_acceleration = _run_solver(model, integrator, settings, look)
+    times, positions, velocities, accelerations = _recorded(model)
+    if not look.stopped:  # what fixed steps add up to may differ from it in the last digits
+        times[-1] = end
+    if quasi_static:
+        accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
+    if first_acceleration is not None:
+        accelerations[0] = first_acceleration
+    evaluations = _evaluations(solver, integrator in EXPLICIT)
+    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
+
+
+def _no_steps(model: Model, time: float) -> Steps:
+    """Return the initial values of ``model`` as a run that ends where it starts."""
+    data, own = model.mbs.systemData, slice(model.first, model.first + model.size)
+    initial = [
+        values(configuration=exu.ConfigurationType.Initial)[own]
+        for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
+    ]
+    return Steps(np.array([time]), np.hstack(initial)[None, :], np.zeros((1, model.size)), 0)
+
+
+def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
+    """Return the solver after its run, and the acceleration at the start that an explicit one does not record.
+
+    Raises ``SimulationError`` for what went wrong.
+    """
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
-    failure = too_many = ""
-    stopped = False
-    previous = start
-
-    def after_step(mbs: Any, t: float) -> bool:
-        nonlocal failure, too_many, stopped, previous
-        state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
-        if not math.isfinite(sum(state)):
-            failure = NOT_FINITE
-        elif start < t < end and t - previous <= smallest:
-            failure = f"the step fell to {(t - previous) * count.seconds:.1g} s"
-        previous = t
-        too_many = count.count(t)
-        stopped = bool(failure or too_many) or not (watch is None or watch(t, state))
-        return not stopped
-
+    first_acceleration = None
     with quiet():
         try:
             if explicit:
-                first_acceleration = _initial_acceleration(model, start)
-            with after_every_step(model.mbs, after_step):
+                first_acceleration = _initial_acceleration(model, settings.timeIntegration.startTime)
+            with after_every_step(model.mbs, look):
                 success = solver.SolveSystem(model.mbs, settings)
         except exu.ExudynError as error:
             raise_interrupt(error)
-            time = solver.it.currentTime * count.seconds
+            time = solver.it.currentTime * look.count.seconds
             raise SimulationError(advice(integrator, time, str(error))) from error
-    if too_many:
-        raise SimulationError(too_many)
-    if failure or not success:
-        time = solver.it.currentTime * count.seconds
-        raise SimulationError(advice(integrator, time, failure or "the solver gave up"))
-    recorded = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
-    times = recorded[0][:, 0]
-    if not stopped:  # what fixed steps add up to may differ from it in the last digits
-        times[-1] = end
-    positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in recorded)
-    if quasi_static:
-        accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
-    if explicit:
-        accelerations[0] = first_acceleration
-        steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
-        evaluations = steps * (solver.GetNumberOfStages() + 1)
-    else:
-        evaluations = solver.it.newtonStepsCount + solver.it.currentStepIndex
-    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
+    if look.too_many:
+        raise SimulationError(look.too_many)
+    if look.failure or not success:
+        time = solver.it.currentTime * look.count.seconds
+        raise SimulationError(advice(integrator, time, look.failure or "the solver gave up"))
+    return solver, first_acceleration
+
+
+class _Look:
+    """Looks at the state after every step of a run, and ends it where Exudyn would not or where ``watch`` does."""
+
+    def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
+        self._data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
+        self._start, self._end, self._watch, self.count = start, end, watch, count
+        self._previous = start
+        #: In s: a step below the resolution of time leaves it where it is.
+        self.smallest_step = 8.0 * float(np.spacing(max(abs(start), abs(end))))
+        self.failure = self.too_many = ""
+        self.stopped = False
+
+    def __call__(self, mbs: Any, t: float) -> bool:
+        data, own = self._data, self._own
+        state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
+        if not math.isfinite(sum(state)):
+            self.failure = NOT_FINITE
+        elif self._start < t < self._end and t - self._previous <= self.smallest_step:
+            self.failure = f"the step fell to {(t - self._previous) * self.count.seconds:.1g} s"
+        self._previous = t
+        self.too_many = self.count.count(t)
+        watch = self._watch
+        self.stopped = bool(self.failure or self.too_many) or not (watch is None or watch(t, state))
+        return not self.stopped
+
+
+def _recorded(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the times of all steps, shape (n,), and positions, velocities and accelerations there, shape (n, d)."""
+    stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
+    positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
+    return stored[0][:, 0], positions, velocities, accelerations
+
+
+def _evaluations(solver: Any, explicit: bool) -> int:
+    """Return how often a solver has evaluated the equations of motion."""
+    if not explicit:
+        return int(solver.it.newtonStepsCount + solver.it.currentStepIndex)
+    steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
+    return int(steps * (solver.GetNumberOfStages() + 1))
 
 
 def _settings(

@@ -15,8 +15,8 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.any_pair import stick_dampers_of
 from exudyn_models.forces.stick_dampers import StickDampers
+from exudyn_models.forces.user_functions import stick_dampers_of
 from exudyn_models.solver.linear_matrices import matrices_of_model
 from exudyn_models.solver.solver_run import raise_interrupt
 from reference_model.systems import FloatArray

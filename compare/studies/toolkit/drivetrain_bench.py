@@ -23,7 +23,7 @@ from reference_model.systems import FloatArray
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel, EnergyBalance
 
-SOURCE = "the passenger car of exudyn_models.drivetrain.model; torque and slip: assumed"
+SOURCE = "the passenger car of exudyn_models.drivetrain.parameters; torque and slip: assumed"
 
 RPM = math.pi / 30.0
 """rad/s in one turn a minute."""

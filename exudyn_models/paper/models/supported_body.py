@@ -9,7 +9,7 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.parts.radial_support import add_radial_support
-from exudyn_models.solver.model import Model
+from exudyn_models.solver.model import IN_MEMORY, Model
 from reference_model.systems import FloatArray, System
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -82,11 +82,7 @@ def assembled(container: Any, mbs: Any, node: Any, system: System) -> Model:
     """Assemble ``mbs`` so that the motion of ``node`` is recorded as that of ``system``."""
     variables = exu.OutputVariableType
     position, velocity, acceleration = (
-        mbs.AddSensor(
-            items.SensorNode(
-                nodeNumber=node, outputVariableType=variable, storeInternal=True, writeToFile=False
-            )
-        )
+        mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
         for variable in (variables.Coordinates, variables.Coordinates_t, variables.Coordinates_tt)
     )
     mbs.Assemble()

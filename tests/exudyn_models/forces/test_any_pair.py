@@ -6,10 +6,11 @@ import pytest
 from free_bodies import planar_body, rotor
 
 from exudyn_models import add_ring_friction
+from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any
 from exudyn_models.forces.friction_laws import CONTACT_SIZE, CONTINUOUS, NONE_HELD
 from exudyn_models.forces.jit import taking_lists
 from exudyn_models.forces.planar_pairs import LAWS
-from exudyn_models.forces.slip_kinematics import SIZES, force_on_any, jacobian_on_any
+from exudyn_models.forces.slip_kinematics import SIZES
 
 CONTACTS = {
     "pin": (0.0, 1, 0.5, 1e-4, NONE_HELD, 0.0),

@@ -13,7 +13,11 @@ from exudyn_models.forces.friction_laws import (
     ring_friction,
     ring_friction_derivatives,
 )
-from exudyn_models.forces.slip_potential import mean_slip_curvatures, mean_slip_slopes, mean_slip_speeds
+from exudyn_models.forces.slip_potential import (
+    ring_potential_curvatures,
+    ring_potential_slopes,
+    ring_potentials,
+)
 from reference_model.contact.contact_law import PointsOnRing, Ring
 
 RADIUS, FRICTION, EPSILON = 0.12, 0.5, 1e-4
@@ -36,7 +40,7 @@ def exact_slopes(speed, rim):
 
 def relative_error(speed, rim):
     with mpmath.workdps(100):  # the exact form loses twice as many digits as the ratio has
-        pairs = zip(mean_slip_slopes(speed, rim), exact_slopes(speed, rim), strict=True)
+        pairs = zip(ring_potential_slopes(speed, rim), exact_slopes(speed, rim), strict=True)
         return max(float(abs(found - exact) / exact) for found, exact in pairs)
 
 
@@ -66,7 +70,7 @@ def test_law_of_the_ring_has_nine_digits_where_a_point_of_it_is_at_rest(distance
     ],
 )
 def test_law_of_the_ring_at_extreme_ratios(speed, rim, expected):
-    assert mean_slip_slopes(speed, rim) == pytest.approx(expected, rel=1e-14, abs=0.0)
+    assert ring_potential_slopes(speed, rim) == pytest.approx(expected, rel=1e-14, abs=0.0)
 
 
 def test_curvatures_of_the_mean_slip_are_derivatives_of_its_slopes():
@@ -78,14 +82,14 @@ def test_curvatures_of_the_mean_slip_are_derivatives_of_its_slopes():
                 for order in ((1, 0), (0, 1))
             ]
             exact.append(mpmath.diff(lambda w, u=speed: exact_slopes(u, w)[1], rim))
-        assert mean_slip_curvatures(speed, rim) == pytest.approx([float(v) for v in exact], rel=1e-11)
+        assert ring_potential_curvatures(speed, rim) == pytest.approx([float(v) for v in exact], rel=1e-11)
 
 
 def test_curvature_stays_finite_where_it_is_infinite_and_grows_up_to_there():
-    at = [mean_slip_curvatures(1.0, 1.0 - d)[2] for d in (1e-3, 1e-6, 1e-9, 1e-12, 0.0)]
+    at = [ring_potential_curvatures(1.0, 1.0 - d)[2] for d in (1e-3, 1e-6, 1e-9, 1e-12, 0.0)]
     # (1/π)·ln(1/d) and a constant, bounded at a distance of 1e-15.
     np.testing.assert_allclose(np.diff(at), math.log(1e3) / math.pi, rtol=0.02)
-    assert mean_slip_curvatures(1.0, 1.0)[0] > 0.0
+    assert ring_potential_curvatures(1.0, 1.0)[0] > 0.0
 
 
 @pytest.mark.parametrize("points", [None, 3, 6, 24])
@@ -114,7 +118,7 @@ def test_creep_as_a_whole_is_viscous_up_to_the_limit_of_coulomb_friction(points)
     for _ in range(100):
         slip = rng.normal(size=3) * [1.0, 1.0, 1.0 / RADIUS]
         if points is None:
-            mean = mean_slip_speeds(np.array([math.hypot(*slip[:2])]), RADIUS * slip[2:])[0]
+            mean = ring_potentials(np.array([math.hypot(*slip[:2])]), RADIUS * slip[2:])[0]
         else:
             mean = np.abs(slips_of(points, slip)).mean()
         slip *= EPSILON / mean

@@ -10,7 +10,7 @@ from free_bodies import coordinates, planar_body, rotor, run_explicitly
 
 from exudyn_models import add_ring_friction
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
-from exudyn_models.forces.load_and_coefficient import Strength
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 
 items: Any = exudyn.itemInterface
 
@@ -144,8 +144,8 @@ class Ramp:
 @pytest.mark.parametrize("of_load", [False, True])
 def test_a_function_is_given_what_it_names(function, expected, of_load):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
-    strength = Strength(contact, *((0.5, function) if of_load else (function, 0.5)))
-    found = strength.friction(2.0, 3.0, 5.0)
+    factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
+    found = factors.friction_force(2.0, 3.0, 5.0)
     assert found == 0.5 * expected
     assert type(found) is float
 

@@ -9,14 +9,14 @@ from compare.claims.paper_parameters import FIG5, FIG11
 from compare.studies.pin.sticking_domain.claims import pin_at, safest_angle, stuck
 from exudyn_models import simulate
 from exudyn_models.forces.friction_laws import point_regularisation
-from exudyn_models.paper.creep import WHOLE, creep_ratio_rates, creep_ratios, creeping
-from exudyn_models.paper.phase_detection import phases
-from exudyn_models.paper.scales import settling_time
+from exudyn_models.paper.creep import WHOLE, RegularisedContact
+from exudyn_models.paper.phase_detection import detected_phases
 from exudyn_models.solver.solver_run import Steps
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
 EPSILON = 1e-6
 PIN = replace(FIG5, disc_speed=0.0, offset=0.0)
+CONTACT = RegularisedContact(PIN, EPSILON)
 RING = replace(FIG11, polar_inertia=0.5)
 SYSTEMS = [
     replace(PIN, disc_speed=1.5),
@@ -33,9 +33,9 @@ def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
         state, acceleration = rng.normal(size=system.state_size), rng.normal(size=system.state_size // 2)
         change = np.concatenate((state[len(acceleration) :], acceleration))
         later, before = (state + sign * 1e-6 * change for sign in (1.0, -1.0))
-        ratios = creep_ratios(system, np.array([later, before]), EPSILON)
+        ratios = RegularisedContact(system, EPSILON).slip_ratios(np.array([later, before]))
         expected = (ratios[0] - ratios[1]) / 2e-6
-        found = creep_ratio_rates(system, state, acceleration, EPSILON)
+        found = RegularisedContact(system, EPSILON).slip_ratio_rates(state, acceleration)
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
 
 
@@ -45,10 +45,10 @@ def test_a_contact_at_rest_creeps_as_a_whole_and_one_that_slips_does_not(system)
     at_rest = [x, y, -omega * y, omega * x]
     if isinstance(system, DiscOnDisc):
         at_rest = [x, y, 0.4, -omega * y, omega * x, omega]
-    assert creeping(system, at_rest, EPSILON) == WHOLE
+    assert RegularisedContact(system, EPSILON).creeping(at_rest) == WHOLE
     fast = np.array(at_rest)
     fast[system.state_size // 2] += 1.01 * EPSILON
-    assert creeping(system, fast.tolist(), EPSILON) is None
+    assert RegularisedContact(system, EPSILON).creeping(fast.tolist()) is None
 
 
 def test_a_point_about_which_the_disc_turns_creeps_alone():
@@ -57,9 +57,9 @@ def test_a_point_about_which_the_disc_turns_creeps_alone():
         arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
         spin = 0.7
         v = -1j * spin * arm + 0.99 * point_regularisation(EPSILON, 6)
-        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) == 1 + i
+        assert RegularisedContact(disc, EPSILON).creeping([0.3, -0.2, 0.4, v.real, v.imag, spin]) == 1 + i
         v += 0.02 * point_regularisation(EPSILON, 6)
-        assert creeping(disc, [0.3, -0.2, 0.4, v.real, v.imag, spin], EPSILON) is None
+        assert RegularisedContact(disc, EPSILON).creeping([0.3, -0.2, 0.4, v.real, v.imag, spin]) is None
 
 
 def motion_of_slip(speeds, durations):
@@ -74,20 +74,20 @@ def motion_of_slip(speeds, durations):
 
 
 def test_slip_that_hesitates_at_the_bend_of_the_law_is_one_release():
-    short = 0.1 * settling_time(PIN, EPSILON)
+    short = 0.1 * CONTACT.settling_time
     speeds = [1e5, 3.0, 0.5, 0.5, 1.001, 0.999, 1.001, 0.998, 1.002, 3.0, 1e5]
     steps = motion_of_slip(speeds, [1.0, short, short, 1.0, *[short] * 5, 1.0])
-    found = phases(PIN, steps, EPSILON)
+    found = detected_phases(CONTACT, steps)
     assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
     assert found[1].end == pytest.approx(2.0 + 2.0 * short, abs=0.01)
     assert all(before.end == after.start for before, after in pairwise(found))
 
 
 def test_creep_that_settles_again_before_the_slip_has_got_anywhere_is_one_stick_phase():
-    short, long = 0.1 * settling_time(PIN, EPSILON), 3.0 * settling_time(PIN, EPSILON)
+    short, long = 0.1 * CONTACT.settling_time, 3.0 * CONTACT.settling_time
     speeds = [1e5, 3.0, 0.5, 0.9, 1.1, 1.1, 0.9, 0.9, 1.1, 3.0, 1e5]
     steps = motion_of_slip(speeds, [1.0, short, long, short, short, short, long, long, short, 1.0])
-    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip", "stick", "slip"]
+    assert [phase.kind for phase in detected_phases(CONTACT, steps)] == ["slip", "stick", "slip"]
 
 
 def test_slip_that_only_passes_through_zero_is_no_sticking():
@@ -96,13 +96,13 @@ def test_slip_that_only_passes_through_zero_is_no_sticking():
     steps = motion_of_slip([1e5, 0.9, 0.1, 0.1, 0.9, 1e5], [1.0, relaxation, relaxation, relaxation, 1.0])
     growth = np.array([-3.0, -2.9, -2.1, 1.9, 1.1, 1.0])
     steps.accelerations[:, 0] = growth * PIN.friction_force / PIN.mass
-    assert [phase.kind for phase in phases(PIN, steps, EPSILON)] == ["slip"]
+    assert [phase.kind for phase in detected_phases(CONTACT, steps)] == ["slip"]
 
 
 def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_of_the_bend():
     steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
     steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero after 4e-4 s more
-    found = phases(PIN, steps, EPSILON)
+    found = detected_phases(CONTACT, steps)
     assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
     assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
     # The load is the creep's share of ε, and up to m·a/μN = 1e-4 of inertia more.

@@ -11,10 +11,10 @@ from scipy.integrate import solve_ivp
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
+from exudyn_models import add_native_friction, simulate_with_native_contact
 from exudyn_models.forces.friction_laws import point_regularisation
-from exudyn_models.paper import native_contact
 from exudyn_models.paper.models import build as models
-from exudyn_models.paper.native_contact import add_native_friction, simulate_with_native_contact
+from exudyn_models.parts import native_contact
 from reference_model.systems import DiscOnDisc
 
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 import reference_model
 from exudyn_models import add_ring_friction, simulate, simulate_fixed_step
 from exudyn_models.paper.alternating_solvers import Friction
-from exudyn_models.paper.creep import creeping
+from exudyn_models.paper.creep import RegularisedContact
 from reference_model import SimulationError
 from reference_model.systems import PinOnDisc
 
@@ -240,7 +240,7 @@ def friction_with(change):
         mbs.SetObjectParameter(connector.item, "forceUserFunction", change(force))
         return connector
 
-    return Friction(add, creeping)
+    return Friction(add, RegularisedContact.creeping)
 
 
 @pytest.mark.parametrize("solver", ["explicit", "implicit"])

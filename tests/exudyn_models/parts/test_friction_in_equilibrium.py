@@ -74,15 +74,15 @@ FUNCTIONS = {"friction_coefficient": coefficient, "normal_load": lambda radius: 
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("strength", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
+@pytest.mark.parametrize("factors", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
 @pytest.mark.parametrize(
     ("contact", "spin"),
     [({"contact_radius": 0.0}, 0.0), ({"contact_radius": 0.12}, SPEED)],
     ids=["pin", "ring that turns with the master"],
 )
-def test_static_solver_finds_the_self_centred_equilibrium(kind, strength, contact, spin):
+def test_static_solver_finds_the_self_centred_equilibrium(kind, factors, contact, spin):
     # All of a ring that turns with the master slips alike, as a pin does. A static run keeps the initial velocities.
-    mbs, disc, _ = supported_disc(kind, [0.08, 0.03], contact | strength, spin, held=True)
+    mbs, disc, _ = supported_disc(kind, [0.08, 0.03], contact | factors, spin, held=True)
     mbs.Assemble()
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
@@ -95,8 +95,8 @@ def test_static_solver_finds_the_self_centred_equilibrium(kind, strength, contac
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("strength", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
-def test_eigenvalues_are_those_of_the_linearised_pin(kind, strength):
+@pytest.mark.parametrize("factors", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
+def test_eigenvalues_are_those_of_the_linearised_pin(kind, factors):
     # m r̈ = −βṙ − C(r − X0) − μ(v)N(ρ)·e, e = u/v, u = ṙ − ω×r: d(F e) = F(1 − e⊗e)/v·du + e(F_v e·du + F_ρ e_ρ·dr).
     turn = SPEED * np.array([[0.0, -1.0], [1.0, 0.0]])
     slip = -turn @ PLACE
@@ -104,7 +104,7 @@ def test_eigenvalues_are_those_of_the_linearised_pin(kind, strength):
     direction, outward = slip / speed, PLACE / RADIUS
     by_slip = FRICTION * (np.eye(2) - np.outer(direction, direction)) / speed
     by_place = -by_slip @ turn
-    if strength is FUNCTIONS:
+    if factors is FUNCTIONS:
         steep = FRICTION / coefficient(speed) * (0.2 - coefficient(speed)) / 0.3  # F_v = N·dμ/dv
         fall = -FRICTION * 2.0 * RADIUS / LENGTH**2 * falling(RADIUS)  # F_ρ = μ·dN/dρ
         along = np.outer(direction, direction)
@@ -116,7 +116,7 @@ def test_eigenvalues_are_those_of_the_linearised_pin(kind, strength):
     matrix[2:, 2:] = -(DAMPING * np.eye(2) + by_slip) / MASS
     expected = np.linalg.eigvals(matrix)
 
-    mbs, *_ = supported_disc(kind, PLACE, strength | {"contact_radius": 0.0})
+    mbs, *_ = supported_disc(kind, PLACE, factors | {"contact_radius": 0.0})
     mbs.Assemble()
     found, _ = mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
     # The others belong to the springs alone and to the master.

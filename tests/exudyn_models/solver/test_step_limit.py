@@ -22,8 +22,8 @@ from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
     friction_of_slip,
-    mean_slip_speed,
     point_regularisation,
+    slip_potential_of_contact,
 )
 from exudyn_models.forces.stick_dampers import slip_dampers
 from exudyn_models.solver.step_limit import INTERVALS
@@ -337,16 +337,18 @@ def test_a_damper_of_the_limit_takes_no_less_power_than_friction_and_as_much_in_
     rng = np.random.default_rng(1)
     for ratio in 10.0 ** rng.uniform(-2.0, 2.0, 1000):
         slip = np.array([*rng.normal(size=2), ratio * rng.normal()])
-        assert mean_slip_speed(*slip, angle, contact) ** 2 <= slip @ damper @ slip * (1.0 + 1e-12)
+        assert slip_potential_of_contact(*slip, angle, contact) ** 2 <= slip @ damper @ slip * (1.0 + 1e-12)
     for slip in np.eye(3):
-        assert mean_slip_speed(*slip, angle, contact) ** 2 == pytest.approx(slip @ damper @ slip, rel=1e-8)
+        assert slip_potential_of_contact(*slip, angle, contact) ** 2 == pytest.approx(
+            slip @ damper @ slip, rel=1e-8
+        )
 
 
 @pytest.mark.parametrize(("points", "spin"), [(CONTINUOUS, 1.0), (24, 0.9)])
 def test_a_disc_that_creeps_about_its_own_circle_chatters_little_at_half_of_the_limit(points, spin):
     """m = J/R² = μN/ε = 1, so that the limit of RK44 is its interval; a constant load holds the creep up."""
     contact, creep = (1.0, points, 1.0, 1.0, NONE_HELD, 1.0), np.array([1.0, 0.0, spin])
-    creep *= 0.5 / mean_slip_speed(*creep, 0.0, contact)
+    creep *= 0.5 / slip_potential_of_contact(*creep, 0.0, contact)
     load = np.array(friction_of_slip(*creep, 0.0, contact))
     chatter = {}
     for share in (0.5, 1.02):

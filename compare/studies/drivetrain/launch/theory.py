@@ -18,7 +18,7 @@ from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
-    from exudyn_models.drivetrain.model import Torque
+    from exudyn_models.drivetrain.parameters import Torque
 
 
 @dataclass(frozen=True)

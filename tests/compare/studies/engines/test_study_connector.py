@@ -9,7 +9,7 @@ from studies_under_test import findings_of, sentences, verdicts
 import exudyn_models
 from compare.claims.claim import Verdict
 from compare.studies.engines.connector import claims as study
-from exudyn_models.forces import any_pair as pair_functions
+from exudyn_models.forces import user_functions
 from exudyn_models.forces.jit import taking_lists
 
 RING, POINTS = (f"{study.MOMENTA}: {contact}" for contact in ("ring", "six points"))
@@ -40,7 +40,7 @@ def test_a_reaction_without_the_arm_of_the_force_is_found_out(monkeypatch):
         return *on_master, -moment, fx, fy, moment
 
     monkeypatch.setattr(
-        pair_functions, "taking_lists", lambda law, *sizes: partial(without_arm, taking_lists(law, *sizes))
+        user_functions, "taking_lists", lambda law, *sizes: partial(without_arm, taking_lists(law, *sizes))
     )
     assert sentences(findings_of(study, "exudyn", {}), Verdict.DIFFERS) == {RING, POINTS}
 

@@ -1,0 +1,220 @@
+"""Springs that may harden, a stop and a damper between a base and a disc, as the functions that Exudyn calls.
+
+The force at the deflection w is −K·w − β·ẇ with the secant stiffness K = C + C₃·d² + C_s·(1 − gap/d), d = |w|,
+the last term beyond the gap only. w and ẇ are those that an observer on the base sees: ẇ is the slip J(q)·q̇ of
+``slip_kinematics``, and Jᵀ puts the whole reaction on the base. Where the base only turns about the z-axis the forces
+are written out, at a part of the cost.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, cast
+
+import numpy as np
+
+from exudyn_models.forces.jit import compiled, taking_lists
+from exudyn_models.forces.slip_kinematics import (
+    IMAGINARY_STEP,
+    PLANAR,
+    SIZES,
+    TRANSLATIONS,
+    Kinds,
+    place_of_disc,
+    slip_jacobian,
+)
+from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
+from reference_model.systems import FloatArray
+
+Law = tuple[float, float, float, float, float]
+"""C (N/m), C₃ (N/m³), gap (m), C_s (N/m) and β (N s/m)."""
+
+Offset = tuple[float, float]
+"""Place in m at which the springs are relaxed, in the axes of the base and from its node."""
+
+ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
+"""Of the coordinates of a planar base those that the model has not: a rotor is one without x and y."""
+
+
+def support_functions(
+    hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law
+) -> tuple[ForceFunction, JacobianFunction]:
+    """Return force and Jacobian of a support on the nodes of base and disc.
+
+    ``reference`` are the reference coordinates of both, shape (n,); the model has not the first ``hidden`` of them,
+    which are zero: ``ON_GROUND``, ``ON_ROTOR`` or none.
+    """
+    if kinds[0] == PLANAR:
+        force = _force_on_flat_base(hidden, reference, offset, law)
+    else:
+        force = _force_on_any_base(kinds, reference, offset, law)
+    return force, _jacobian(hidden, kinds, reference, offset, law)
+
+
+def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
+    """Return the force where the base only turns about the z-axis; its first ``hidden`` coordinates are zero."""
+    xb, yb, angle, x, y, *tilts = reference.tolist()
+    parameters = [*law, *offset, x - xb, y - yb, angle]
+    size = len(reference) - hidden
+    evaluate = taking_lists(_ON_FLAT_BASES[hidden], len(parameters), size, size)
+    rest = (0.0,) * len(tilts)
+
+    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Sequence[float]:
+        forces: tuple[float, ...] = evaluate(parameters, q, q_t)
+        return forces + rest
+
+    return force
+
+
+def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
+    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        forces = support_on_nodes(kinds, reference + q, np.array(q_t), offset, law)
+        return cast(list[float], forces.tolist())
+
+    return force
+
+
+def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
+    """Return the Jacobian over all coordinates of base and disc but the first ``hidden``, which are zero."""
+
+    def jacobian(
+        mbs: Any,
+        t: float,
+        item: int,
+        q: Sequence[float],
+        q_t: Sequence[float],
+        position_factor: float,
+        velocity_factor: float,
+    ) -> FloatArray:
+        zeros, factors = np.zeros(hidden), (position_factor, velocity_factor)
+        coordinates, velocities = reference + np.hstack((zeros, q)), np.hstack((zeros, q_t))
+        derivatives = support_derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
+        return -derivatives[hidden:, hidden:]  # Exudyn takes those of the left-hand side
+
+    return jacobian
+
+
+@compiled
+def secant_stiffness(square: float, law: Law) -> float:
+    """Return the force of springs and stop over the deflection d, in N/m, from d²."""
+    stiffness, hardening, gap, stop, _ = law
+    result = stiffness + hardening * square
+    if square > gap * gap:
+        result += stop * (1.0 - gap / math.sqrt(square))
+    return result
+
+
+@compiled
+def secant_slope(square: float, law: Law) -> float:
+    """Return twice the derivative of ``secant_stiffness`` by d², in N/m³."""
+    _, hardening, gap, stop, _ = law
+    result = 2.0 * hardening
+    if square > gap * gap:
+        result += stop * gap / (square * math.sqrt(square))
+    return result
+
+
+@compiled
+def elastic_energy(square: float, law: Law) -> float:
+    """Return the energy in J of springs and stop at the deflection d, from d²."""
+    stiffness, hardening, gap, stop, _ = law
+    beyond = max(0.0, math.sqrt(square) - gap)
+    return (stiffness * square + hardening * square * square / 2.0 + stop * beyond * beyond) / 2.0
+
+
+Parameters = Sequence[float]
+"""A ``Law``, an ``Offset``, and the reference values of the disc's place relative to the base and of its angle."""
+
+
+@compiled
+def force_on_ground(parameters: Parameters, q: Sequence[float], q_t: Sequence[float]) -> tuple[float, float]:
+    """Return the force on a disc (N) from its coordinates and their rates."""
+    fx, fy, _ = _in_the_plane(parameters, q[0], q[1], q_t[0], q_t[1], 0.0, 0.0)
+    return fx, fy
+
+
+@compiled
+def forces_on_rotor(
+    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
+) -> tuple[float, float, float]:
+    """Return the moment on a rotor (N m) and the force on a disc (N)."""
+    fx, fy, moment = _in_the_plane(parameters, q[1], q[2], q_t[1], q_t[2], q[0], q_t[0])
+    return moment, fx, fy
+
+
+@compiled
+def forces_on_planar_base(
+    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
+) -> tuple[float, float, float, float, float]:
+    """Return force and moment on a planar body, and the force on a disc."""
+    dx, dy, dvx, dvy = q[3] - q[0], q[4] - q[1], q_t[3] - q_t[0], q_t[4] - q_t[1]
+    fx, fy, moment = _in_the_plane(parameters, dx, dy, dvx, dvy, q[2], q_t[2])
+    return -fx, -fy, moment, fx, fy
+
+
+@compiled
+def _in_the_plane(
+    parameters: Parameters, x: float, y: float, vx: float, vy: float, angle: float, spin: float
+) -> tuple[float, float, float]:
+    """Return force on the disc (N) and moment on the base (N m), in global axes.
+
+    From place (m) and velocity (m/s) of the disc relative to the base, and the base's angle (rad) and spin (rad/s).
+    """
+    stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
+    x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)
+    wx, wy = x - cosine * offset_x + sine * offset_y, y - sine * offset_x - cosine * offset_y
+    secant = secant_stiffness(wx * wx + wy * wy, (stiffness, hardening, gap, stop, damping))
+    fx, fy = -secant * wx - damping * (vx + spin * y), -secant * wy - damping * (vy - spin * x)
+    return fx, fy, y * fx - x * fy
+
+
+_ON_FLAT_BASES = {ON_GROUND: force_on_ground, ON_ROTOR: forces_on_rotor, 0: forces_on_planar_base}
+
+
+@compiled
+def support_on_nodes(
+    kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, offset: Offset, law: Law
+) -> FloatArray:
+    """Return the generalised forces on both nodes, shape (n,)."""
+    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
+    x, y = place_of_disc(kinds, coordinates, axes)
+    wx, wy = x - offset[0], y - offset[1]
+    rate = to_slip @ velocities
+    secant = secant_stiffness(wx * wx + wy * wy, law)
+    fx, fy = -secant * wx - law[4] * rate[0], -secant * wy - law[4] * rate[1]
+    forces: FloatArray = fx * to_slip[0] + fy * to_slip[1]
+    return forces
+
+
+@compiled
+def support_derivatives_on_nodes(
+    kinds: Kinds,
+    coordinates: FloatArray,
+    velocities: FloatArray,
+    position_factor: float,
+    velocity_factor: float,
+    offset: Offset,
+    law: Law,
+) -> FloatArray:
+    """Return the derivatives of the generalised forces by coordinates and velocities, weighted and added, (n, n)."""
+    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
+    w = np.array(place_of_disc(kinds, coordinates, axes)) - np.array(offset)
+    rate = to_slip @ velocities
+    square, damping = w[0] * w[0] + w[1] * w[1], law[4]
+    secant, slope = secant_stiffness(square, law), secant_slope(square, law)
+    size = len(coordinates)
+    result = np.zeros((size, size))
+    for j in range(size):
+        stepped = coordinates.astype(np.complex128)
+        stepped[j] += 1j * IMAGINARY_STEP
+        stepped_map, stepped_axes, _ = slip_jacobian(kinds, stepped)
+        shifts = place_of_disc(kinds, stepped, stepped_axes)
+        map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
+        rate_change = map_change @ velocities + velocity_factor * to_slip[:, j]
+        shift = position_factor / IMAGINARY_STEP * np.array([shifts[0].imag, shifts[1].imag])
+        along = slope * (w[0] * shift[0] + w[1] * shift[1])
+        for i in range(2):
+            change = secant * shift[i] + along * w[i] + damping * rate_change[i]
+            result[:, j] -= change * to_slip[i] + (secant * w[i] + damping * rate[i]) * map_change[i]
+    return result

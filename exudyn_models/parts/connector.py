@@ -1,0 +1,51 @@
+"""A connector without mass over the nodes of *both* bodies, so that it puts the full reaction on either of them.
+
+It is an ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes: a force F on the
+disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker connectors leave that
+moment out, which is no longer an exchange of momentum between two free bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import exudyn.itemInterface
+import numpy as np
+
+from exudyn_models.forces.slip_kinematics import KINDS
+from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+
+def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction) -> Any:
+    """Add a connector over ``nodes``; return its ``ObjectIndex``."""
+    size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
+    return mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=list(nodes),
+            massMatrix=np.zeros((size, size)),
+            forceUserFunction=force,
+            jacobianUserFunction=jacobian,
+        )
+    )
+
+
+def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
+    """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
+    try:
+        kind = mbs.GetNode(node)["nodeType"]
+    except exudyn.ExudynIndexError:
+        count = mbs.systemData.NumberOfNodes()
+        raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
+    except exudyn.ExudynTypeError:
+        raise ValueError(
+            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex, as AddNode returns it"
+        ) from None
+    if KINDS.get(kind) in allowed:
+        return KINDS[kind]
+    names = [f"Node{key}" for key, value in KINDS.items() if value in allowed]
+    raise ValueError(
+        f"{name} {int(node)} is a Node{kind}: it must be a {' or '.join(', '.join(names).rsplit(', ', 1))}"
+    )

@@ -1,0 +1,165 @@
+"""Exudyn's own sphere–triangle contact with friction in place of the user function: an independent witness.
+
+Spheres on the disc press on one triangle that turns with the master disc. Bodies of the plane keep their height, so
+that the penetration, and with it the normal force, is constant. Exudyn's friction is −μN·v/max(|v|, ε) for the slip v
+of the touching points, with the force and moment on both bodies that follow from it: the law of ``add_ring_friction``
+for points, in code that is not ours.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+
+from exudyn_models.forces.friction_laws import CONTINUOUS
+from exudyn_models.forces.load_and_coefficient import checked_not_negative
+from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
+from exudyn_models.parts.connector import checked_kind
+from exudyn_models.parts.ring_friction import checked_contact
+from reference_model.systems import finite_number
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+NORMAL_FORCE = 1.0
+"""N of all points together, in N. The discs feel the product μN only, so that μ is what makes it the one asked for.
+
+Rounding tilts the normal by some 1e-15, by which N pushes sideways: it stays small where friction is large, as in the
+model of a creeping disc.
+"""
+
+
+def add_native_friction(
+    mbs: Any,
+    master_node: Any,
+    disc_node: Any,
+    *,
+    contact_radius: float,
+    friction_coefficient: float,
+    normal_load: float,
+    regularisation: float,
+    contact_points: int | None = None,
+    reach: float,
+) -> list[Any]:
+    """Add friction as ``add_ring_friction`` does, by one built-in contact a point; return their ``ObjectIndex``.
+
+    Sizes perpendicular to the plane are free. They are those of the triangle, because the normal is tilted by
+    rounding like size over penetration. What is left of rounding is a slip of 1e-15 times spin times ``reach``.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Not yet assembled, with both nodes and their bodies.
+    master_node, disc_node : NodeIndex
+        A rotor's or a planar body's, and a planar body's.
+    contact_radius : float
+        R in m, >= 0; the contact is a pin if it is 0.
+    friction_coefficient : float
+        μ >= 0. Only its product with N counts.
+    normal_load : float
+        N in N of all points together, >= 0.
+    regularisation : float
+        ε in m/s, > 0.
+    contact_points : int
+        n >= 1. There is no built-in contact of a whole circle.
+    reach : float
+        In m, > 0. A point further away than that from the master's node may leave the triangle.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or a node is of a kind that can't be used.
+
+    """
+    radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+    coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
+    friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
+    if points == CONTINUOUS:
+        raise ValueError(
+            f"contact_points = {contact_points}: Exudyn's built-in contact has single points only; it must be a "
+            "whole number, for instance 6"
+        )
+    reach = finite_number("reach", reach)
+    if reach <= 0.0:
+        raise ValueError(f"reach = {reach:g} m: it must be > 0")
+    checked_kind("master_node", mbs, master_node, (ROTOR, PLANAR))
+    checked_kind("disc_node", mbs, disc_node, (PLANAR,))
+    size = 2.0 * reach  # from the triangle's middle to a corner; the circle that fits in has half of that
+    master_marker = _marker(mbs, master_node, 0j)
+    contacts = []
+    for i in range(points):
+        arm = cmath.rect(radius, math.tau * i / points)
+        data = _slip_data(mbs, size / 2.0, _initial_slip_speed(mbs, master_node, disc_node, arm))
+        markers = [_marker(mbs, disc_node, arm), master_marker]
+        contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, points))
+    return contacts
+
+
+def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
+    """Add the data node of a contact; return its ``NodeIndex``.
+
+    Within a step Exudyn keeps to one branch of the law, in the first step that of the slip speed (m/s) given here.
+    """
+    return mbs.AddNode(
+        items.NodeGenericData(
+            initialCoordinates=[-penetration, slip_speed, 0.0, 0.0], numberOfDataCoordinates=4
+        )
+    )
+
+
+def _add_sphere(
+    mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, points: int
+) -> Any:
+    """Add the contact of one of ``points`` spheres with the triangle, which it enters by half of its radius ``size``.
+
+    ``friction_force`` is that of all points together, in N. Return the ``ObjectIndex``.
+    """
+    penetration = size / 2.0
+    height = penetration - size
+    vectors: Any = exu.Vector3DList  # as of items
+    return mbs.AddObject(
+        items.ObjectContactSphereTriangle(
+            markerNumbers=markers,
+            nodeNumber=data,
+            sphereRadius=size,
+            trianglePoints=vectors([[*_plane(cmath.rect(size, math.tau * i / 3)), height] for i in range(3)]),
+            includeEdges=0,
+            dynamicFriction=friction_force / NORMAL_FORCE,
+            frictionProportionalZone=epsilon,
+            contactStiffness=NORMAL_FORCE / points / penetration,
+        )
+    )
+
+
+def _plane(vector: complex) -> tuple[float, float]:
+    return vector.real, vector.imag
+
+
+def _marker(mbs: Any, node: Any, arm: complex) -> Any:
+    """Add a marker at ``arm`` (m) of the body to which ``node`` belongs; return its ``MarkerIndex``."""
+    numbers = range(mbs.systemData.NumberOfObjects())
+    body = next(i for i in numbers if int(mbs.GetObject(i).get("nodeNumber", -1)) == int(node))
+    return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[*_plane(arm), 0.0]))
+
+
+def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex) -> float:
+    """Return the speed in m/s with which the point at ``arm`` of the disc slips over the master at the start."""
+    master, _, master_velocity, master_spin = _initial_motion(mbs, master_node)
+    disc, angle, disc_velocity, disc_spin = _initial_motion(mbs, disc_node)
+    arm *= cmath.exp(1j * angle)
+    velocity = disc_velocity + 1j * disc_spin * arm
+    return abs(velocity - master_velocity - 1j * master_spin * (disc + arm - master))
+
+
+def _initial_motion(mbs: Any, node: Any) -> tuple[complex, float, complex, float]:
+    """Return position (m), angle (rad), velocity (m/s) and spin (rad/s) of the node of a disc or a rotor."""
+    reference, initial, rates = (
+        mbs.GetNodeParameter(node, name).tolist()
+        for name in ("referenceCoordinates", "initialCoordinates", "initialVelocities")
+    )
+    *place, angle = (a + b for a, b in zip(reference, initial, strict=True))
+    *velocity, spin = rates
+    return (complex(*place), angle, complex(*velocity), spin)
