@@ -31,8 +31,8 @@ from compare.studies.disc.fig09.theory import (
     spin_of_large_whirl,
     theory,
 )
-from compare.studies.pin.sticking_domain.claims import first_release, safest_angle, stuck
 from compare.studies.toolkit.steady_motion import mode_growth, sharpness, steady_motion
+from compare.studies.toolkit.sticking import first_release, safest_angle, stuck
 from reference_model import Orbit, simulate, whirl_orbit
 from reference_model.formulas.disc import held_pin
 from reference_model.formulas.pin import release_time, sticking_radius
