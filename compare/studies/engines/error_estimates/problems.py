@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.random import Generator
 
-from compare.studies.disc.free_ring.theory import Slowing
 from compare.studies.engines.error_estimates.calibration import Problem
+from compare.studies.toolkit.free_bodies import Slowing
 from reference_model import simulate
 from reference_model.formulas.pin import (
     first_order_whirl_response,
