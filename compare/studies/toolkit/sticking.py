@@ -15,6 +15,13 @@ def safest_angle(pin: PinOnDisc) -> float:
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 
+def farthest(pin: PinOnDisc) -> float:
+    """Return the radius in m within which there are places where friction can hold a pin, by (7)."""
+    return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
+        complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
+    )
+
+
 def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
     """Return the state of a pin that turns with the disc, at ``radius`` in m and ``angle`` in rad."""
     x, y = radius * math.cos(angle), radius * math.sin(angle)
