@@ -33,6 +33,9 @@ class WrongPartTests(FamilyTests):
             cls.faults[fault](patch)
             return study.measure(replace(engine_named("exudyn"), name=fault), few)
 
+    def test_of_nothing_nothing_is_drawn(self):
+        assert self.study.draw({}) == {}
+
 
 @functools.cache
 def _claims_of_fault(cls, fault, claim):
