@@ -10,7 +10,9 @@ import numpy as np
 
 from compare.claims.study import Data
 from compare.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
-from compare.studies.disc.fig08.theory import RING, last_load, place_and_spin, with_load
+from compare.studies.disc.fig08.parameters import RING
+from compare.studies.disc.fig08.theory import place_and_spin
+from compare.studies.toolkit.self_centred import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
 
 if TYPE_CHECKING:

@@ -17,7 +17,6 @@ from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
-from compare.studies.disc.fig08.theory import equilibrium_of, with_load
 from compare.studies.disc.fig09.pictures import draw
 from compare.studies.disc.fig09.theory import (
     CENTRED,
@@ -31,8 +30,9 @@ from compare.studies.disc.fig09.theory import (
     spin_of_large_whirl,
     theory,
 )
-from compare.studies.pin.sticking_domain.claims import first_release, safest_angle, stuck
+from compare.studies.toolkit.self_centred import equilibrium_of, with_load
 from compare.studies.toolkit.steady_motion import mode_growth, sharpness, steady_motion
+from compare.studies.toolkit.sticking import first_release, safest_angle, stuck
 from reference_model import Orbit, simulate, whirl_orbit
 from reference_model.formulas.disc import held_pin
 from reference_model.formulas.pin import release_time, sticking_radius

@@ -17,7 +17,7 @@ from compare.claims.error_estimates import ROUNDING, extrapolated_order
 from compare.claims.paper_parameters import FIG9
 from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings
-from compare.studies.disc.fig08.theory import equilibrium_of, last_load, with_load
+from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing, contact_of
 from reference_model.formulas.disc import held_pin, pin_of, whirl_at

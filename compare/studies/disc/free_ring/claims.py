@@ -25,14 +25,8 @@ from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.disc.free_ring.pictures import draw
-from compare.studies.disc.free_ring.theory import (
-    NEAR,
-    Slowing,
-    approach_constant,
-    deviation,
-    nearness,
-    theory,
-)
+from compare.studies.disc.free_ring.theory import approach_constant, deviation, nearness, theory
+from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import DiscOnDisc, FloatArray

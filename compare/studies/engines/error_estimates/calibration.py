@@ -12,14 +12,9 @@ from numpy.typing import NDArray
 
 from compare.claims.error_estimates import refined
 from compare.engines import Engine
+from compare.studies.engines.error_estimates.parameters import KNOWN
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
-
-KNOWN = 4.0 * np.finfo(float).eps
-"""To this fraction of its largest number an exact motion is known: a sine, a root and a product are rounded as much.
-
-A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,17 +64,6 @@ class Calibration:
     motion: NDArray[np.int_]
     errors: FloatArray
     estimates: FloatArray
-
-    @classmethod
-    def of(cls, parts: Iterable[Calibration]) -> Calibration:
-        """Return several calibrations as one."""
-        parts = tuple(parts)
-        before = np.cumsum([0, *(part.motions for part in parts)])
-        return cls(
-            np.concatenate([part.motion + first for part, first in zip(parts, before[:-1], strict=True)]),
-            np.concatenate([part.errors for part in parts]),
-            np.concatenate([part.estimates for part in parts]),
-        )
 
     @property
     def motions(self) -> int:

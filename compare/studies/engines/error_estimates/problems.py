@@ -1,7 +1,4 @@
-"""Random motions that are known: in closed form, or by the reference at a far tighter tolerance.
-
-Sizes, rates and ratios are drawn from log-uniform distributions, signs and directions from all that there are.
-"""
+"""Random motions that are known: in closed form, or by the reference at a far tighter tolerance."""
 
 from __future__ import annotations
 
@@ -14,8 +11,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.random import Generator
 
-from compare.studies.disc.free_ring.theory import Slowing
 from compare.studies.engines.error_estimates.calibration import Problem
+from compare.studies.engines.error_estimates.parameters import EXACT, SAMPLES, SMALL_OFFSET, THROWS
+from compare.studies.toolkit.free_bodies import Slowing
+from compare.studies.toolkit.random_systems import (
+    any_disc,
+    any_pin,
+    any_start,
+    between,
+    sign,
+    state_of,
+    vector,
+)
+from compare.studies.toolkit.sticking import farthest
 from reference_model import simulate
 from reference_model.formulas.pin import (
     first_order_whirl_response,
@@ -23,89 +31,12 @@ from reference_model.formulas.pin import (
     whirl_frequency,
     whirl_radius,
 )
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
-
-TIGHT = 1e-13
-"""Tolerance of the reference where there is no closed form."""
-
-SMALL_OFFSET = 1e-7
-"""X0/ρ_c of the response. What is of second order in it is as small beside it; errors are ~ tolerance/X0."""
-
-SAMPLES = 16
-"""Of a turn of the whirl, for its mean: exact for the two harmonics that there are."""
-
-THROWS = ((0.7, 20.0), (0.8, 60.0), (1.3, 50.0), (1.5, 15.0))
-"""J/(mR²) of the thrown rings and atan(W/U) in degrees at the start.
-
-Not 1, where the end is in the integrals like exp(−A/t): they are good to 1e-11 there, and to 1e-13 elsewhere.
-"""
-
-
-def between(random: Generator, low: float, high: float) -> float:
-    """Draw from a log-uniform distribution."""
-    return float(np.exp(random.uniform(math.log(low), math.log(high))))
-
-
-def _sign(random: Generator) -> float:
-    return float(random.choice((-1.0, 1.0)))
-
-
-def _vector(random: Generator, size: float) -> complex:
-    """Draw a vector of any direction and up to three times smaller or larger than ``size``."""
-    return cmath.rect(size * between(random, 1 / 3, 3.0), random.uniform(-math.pi, math.pi))
-
-
-def _state(place: complex, velocity: complex, *, angle: float = 0.0, spin: float | None = None) -> FloatArray:
-    if spin is None:
-        return np.array([place.real, place.imag, velocity.real, velocity.imag])
-    return np.array([place.real, place.imag, angle, velocity.real, velocity.imag, spin])
 
 
 def _at_end(trajectory: Trajectory) -> FloatArray:
     return trajectory.at_end
-
-
-def any_pin(random: Generator) -> PinOnDisc:
-    """Draw a pin with all that it may have; the disc turns faster than the pin oscillates."""
-    mass, frequency, size = between(random, 0.1, 10.0), between(random, 0.3, 3.0), between(random, 0.03, 1.0)
-    stiffness = mass * frequency**2
-    return PinOnDisc(
-        mass=mass,
-        stiffness=stiffness,
-        damping=mass * frequency * between(random, 0.01, 1.0),
-        friction_force=stiffness * size * between(random, 0.1, 1.0),
-        disc_speed=_sign(random) * frequency * between(random, 1.2, 4.0),
-        offset=_sign(random) * size * between(random, 0.1, 1.0),
-    )
-
-
-def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
-    """Draw a disc with all that it may have, on so many points or a continuous ring."""
-    pin = any_pin(random)
-    radius = abs(pin.offset) * between(random, 0.5, 5.0)
-    inertia = pin.mass * radius**2 * between(random, 0.3, 3.0)
-    return DiscOnDisc(
-        mass=pin.mass,
-        stiffness=pin.stiffness,
-        damping=pin.damping,
-        friction_force=pin.friction_force,
-        disc_speed=pin.disc_speed,
-        offset=pin.offset,
-        polar_inertia=inertia,
-        contact_radius=radius,
-        shaft_damping=inertia * pin.natural_frequency * between(random, 0.03, 1.0),
-        shaft_speed=pin.disc_speed * random.uniform(-1.0, 2.0),
-        contact_points=points,
-    )
-
-
-def any_start(random: Generator, system: System) -> FloatArray:
-    """Draw a state as large as the offset; shape (4,) or (6,)."""
-    size = abs(system.offset)
-    place, velocity = _vector(random, size), _vector(random, size * system.natural_frequency)
-    spin = system.disc_speed * random.uniform(-1.0, 2.0) if isinstance(system, DiscOnDisc) else None
-    return _state(place, velocity, spin=spin)
 
 
 def _duration(random: Generator, system: System) -> float:
@@ -127,38 +58,34 @@ def _damped(system: System, start: complex, velocity: complex, t: float) -> tupl
 def oscillator(random: Generator) -> Problem:
     """Let a pin without friction oscillate about the offset, damped."""
     pin = replace(any_pin(random), friction_force=0.0)
-    place = _vector(random, abs(pin.offset))
-    velocity = _vector(random, abs(pin.offset) * pin.natural_frequency)
+    place = vector(random, abs(pin.offset))
+    velocity = vector(random, abs(pin.offset) * pin.natural_frequency)
     t = _duration(random, pin)
-    exact = _state(*_damped(pin, place, velocity, t))
-    return Problem(pin, _state(place, velocity), np.array([0.0, t]), _at_end, exact)
+    exact = state_of(*_damped(pin, place, velocity, t))
+    return Problem(pin, state_of(place, velocity), np.array([0.0, t]), _at_end, exact)
 
 
 def shaft(random: Generator) -> Problem:
     """Let a disc without friction follow the shaft, with the lag of first order."""
     disc = replace(any_disc(random, None), friction_force=0.0)
-    place = _vector(random, abs(disc.offset))
-    velocity = _vector(random, abs(disc.offset) * disc.natural_frequency)
+    place = vector(random, abs(disc.offset))
+    velocity = vector(random, abs(disc.offset) * disc.natural_frequency)
     lag, t = disc.polar_inertia / disc.shaft_damping, _duration(random, disc)
     spin = disc.disc_speed * random.uniform(-1.0, 2.0)
     away = spin - disc.shaft_speed
-    exact = _state(
+    exact = state_of(
         *_damped(disc, place, velocity, t),
         angle=disc.shaft_speed * t - away * lag * math.expm1(-t / lag),
         spin=disc.shaft_speed + away * math.exp(-t / lag),
     )
-    return Problem(disc, _state(place, velocity, spin=spin), np.array([0.0, t]), _at_end, exact)
+    return Problem(disc, state_of(place, velocity, spin=spin), np.array([0.0, t]), _at_end, exact)
 
 
 def stick(random: Generator) -> Problem:
     """Let a pin turn with the disc until (7) lets it go: a state on the way, and when it is let go."""
     while True:
         pin = any_pin(random)
-        # Within this radius there are places where friction can hold it (7).
-        reach = (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
-            complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
-        )
-        place = cmath.rect(reach * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
+        place = cmath.rect(farthest(pin) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
         delay = release_time(pin, abs(place), cmath.phase(place))
         if 0.05 < delay * abs(pin.disc_speed) < math.inf:
             break
@@ -166,10 +93,10 @@ def stick(random: Generator) -> Problem:
     turning = 1j * pin.disc_speed
     return Problem(
         pin,
-        _state(place, turning * place),
+        state_of(place, turning * place),
         np.array([0.0, 0.5 * delay, 1.3 * delay]),
         _on_the_way_and_release,
-        np.append(_state(turned, 1j * turned) / abs(place), delay * pin.disc_speed),
+        np.append(state_of(turned, 1j * turned) / abs(place), delay * pin.disc_speed),
     )
 
 
@@ -190,7 +117,7 @@ def whirl(random: Generator) -> Problem:
     turning, t = 1j * whirl_frequency(pin), _duration(random, pin)
     place = cmath.rect(whirl_radius(pin), random.uniform(-math.pi, math.pi))
     end = place * cmath.exp(turning * t)
-    start, exact = _state(place, turning * place), _state(end, turning * end)
+    start, exact = state_of(place, turning * place), state_of(end, turning * end)
     return Problem(pin, start, np.array([0.0, t]), _at_end, exact)
 
 
@@ -204,7 +131,7 @@ def response(random: Generator) -> Problem:
     turn = math.tau / pin.natural_frequency
     return Problem(
         pin,
-        _state(place, velocity),
+        state_of(place, velocity),
         turn * np.arange(SAMPLES + 1) / SAMPLES,
         _mean_over_offset,
         np.array([found.mean.real, found.mean.imag]) / pin.offset,
@@ -232,13 +159,13 @@ def free_ring(random: Generator) -> Problem:
         shaft_damping=0.0,
         shaft_speed=0.0,
     )
-    angle, sense = math.radians(degrees), _sign(random)
+    angle, sense = math.radians(degrees), sign(random)
     heading = cmath.rect(1.0, random.uniform(-math.pi, math.pi))
     rest, way = time * speed / deceleration, speed**2 / deceleration
     end = slid * way * heading
     return Problem(
         disc,
-        _state(0j, speed * math.cos(angle) * heading, spin=sense * speed * math.sin(angle) / radius),
+        state_of(0j, speed * math.cos(angle) * heading, spin=sense * speed * math.sin(angle) / radius),
         np.array([0.0, 1.1 * rest]),
         _place_and_time_of_rest,
         np.array([end.real, end.imag, sense * turned * way / radius, rest]),
@@ -259,7 +186,7 @@ def _place_and_time_of_rest(trajectory: Trajectory) -> FloatArray:
 def _generic(random: Generator, system: System) -> Problem:
     """Take any motion; the reference says at a far tighter tolerance where it leads."""
     start, times = any_start(random, system), np.array([0.0, _duration(random, system)])
-    return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=TIGHT).at_end)
+    return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=EXACT).at_end)
 
 
 def pin(random: Generator) -> Problem:

@@ -19,6 +19,7 @@ from compare.claims.parameters import at_each, parameters_of
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.studies.toolkit.sticking import first_release, safest_angle, stuck
 from reference_model.formulas.pin import (
     release_time,
     resonant_disc_speed,
@@ -26,7 +27,6 @@ from reference_model.formulas.pin import (
     turn_until_release,
 )
 from reference_model.systems import FloatArray, PinOnDisc
-from reference_model.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,17 +73,6 @@ SHRINKS = "For large ω the sticking domain shrinks like 1/ω²"
 def pin_at(speed: float) -> PinOnDisc:
     """Return the pin of this study at another disc speed in rad/s."""
     return replace(PIN, disc_speed=speed)
-
-
-def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle in rad at which the least force holds a stuck pin: by (7) that of (C − mω²) − iβω."""
-    return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
-
-
-def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
-    """Return the state of a pin that turns with the disc, at ``radius`` in m and ``angle`` in rad."""
-    x, y = radius * math.cos(angle), radius * math.sin(angle)
-    return np.array([x, y, -pin.disc_speed * y, pin.disc_speed * x])
 
 
 def measure(
@@ -154,14 +143,6 @@ def inside_claims(engine: Engine, speeds: Sequence[float]) -> tuple[Claim, Claim
             note=f"Whether each of these motions has no slip phase, {where}.",
         ),
     )
-
-
-def first_release(run: Trajectory) -> float:
-    """Return when the first stick phase ends in s; inf if it does not, NaN if the motion starts slipping."""
-    first = run.phases[0]
-    if first.kind != "stick":
-        return math.nan
-    return first.end if len(run.phases) > 1 else math.inf
 
 
 def releases(engine: Engine, speeds: Sequence[float]) -> tuple[FloatArray, FloatArray, Claim]:

@@ -1,4 +1,4 @@
-"""The study of the laws of contact agrees for every sound engine and law, and fails for each broken one."""
+"""The study of the laws of contact: what its claims see, of engines and of laws that are broken on purpose."""
 
 import math
 from dataclasses import replace
@@ -6,19 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from studies_under_test import sentences, verdicts
+from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import EVERY_KIND, Engine, engines
-from compare.studies.disc.contact_laws import claims as study
-from compare.studies.disc.contact_laws import theory as laws
+from compare.engines import EVERY_KIND, Engine
+from compare.studies.disc.contact_laws import theory
+from compare.studies.disc.contact_laws.claims import STUDY
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Shares
 from reference_model.contact.elliptic import mean_directions
 from reference_model.trajectory import Phase, Solution, Trajectory
-
-FEW = {"ratios": (0.3, 0.8, 1.25)}
-ALL = set(study.SENTENCES.values())
 
 
 def many_points(disc):
@@ -64,55 +61,6 @@ def disc_engine(name, *, number=many_points, radius=1.0, moment=1.0, force=lambd
     return Engine(name, simulate, kinds)
 
 
-@pytest.mark.parametrize(
-    "engine", [*engines(["reference", "exudyn"]), disc_engine("intact")], ids=lambda engine: engine.name
-)
-def test_every_statement_holds_in_a_sound_engine(engine):
-    findings = study.measure(engine, **FEW)
-    assert verdicts(findings) == dict.fromkeys(ALL, Verdict.AGREES)
-    assert findings.not_simulated == ""
-
-
-@pytest.mark.parametrize(
-    ("fault", "seen"),
-    [
-        ({"number": lambda disc: 6}, {"ring"}),
-        ({"number": lambda disc: 12}, {"ring", "points6"}),
-        ({"number": lambda disc: 400}, {"points6"}),
-        ({"radius": 1.0001}, {"ring", "points6"}),
-        ({"moment": -1.0}, {"ring", "points6"}),
-        ({"moment": 1.0001}, {"ring", "points6"}),
-        ({"force": lambda f: f[::-1]}, {"ring", "points6"}),
-        ({"force": lambda f: 1.0001 * f}, {"ring", "points6"}),
-    ],
-)
-def test_a_broken_engine_is_found_out(fault, seen):
-    findings = study.measure(disc_engine("broken", **fault), **FEW)
-    assert sentences(findings, Verdict.DIFFERS) == {study.SENTENCES[name] for name in seen}
-
-
-def test_what_an_engine_does_not_simulate_is_left_out_and_said():
-    points_only = study.measure(disc_engine("discrete", kinds=("pin", "points")), **FEW)
-    assert set(verdicts(points_only)) == {study.SENTENCES["points6"]}
-    assert points_only.not_simulated == "discrete does not simulate a disc on a continuous ring"
-    pin_only = study.measure(disc_engine("plain", kinds=("pin",)), **FEW)
-    assert pin_only.claims == ()
-    assert pin_only.not_simulated
-
-
-@pytest.fixture(scope="module")
-def theory():
-    return laws.theory()
-
-
-def test_the_theory_holds(theory):
-    assert set(verdicts(theory).values()) == {Verdict.AGREES}
-    assert len(verdicts(theory)) == len(theory.claims)
-
-
-# ---------------------------------------------------------------- laws broken on purpose
-
-
 def naive_directions(slip, rim):
     """The modulus 4UW/(U + W)² in double precision, which cancels at extreme ratios."""
     from scipy.special import ellipe, ellipk
@@ -121,6 +69,70 @@ def naive_directions(slip, rim):
     even = (slip + rim) * ellipe(m)
     odd = (slip - rim) * ellipk(m) if slip != rim else 0.0
     return float(even + odd) / (math.pi * slip), float(even - odd) / (math.pi * rim)
+
+
+class TestContactLaws(StudyTests):
+    study = STUDY
+    sound = ("reference", "exudyn")
+    few = {name: {"ratios": (0.3, 0.8, 1.25)} for name in ("on_ring", "on_six_points")}
+    faults = {
+        "six points": disc_engine("broken", number=lambda disc: 6),
+        "twelve points": disc_engine("broken", number=lambda disc: 12),
+        "400 points": disc_engine("broken", number=lambda disc: 400),
+        "radius 0.01 % off": disc_engine("broken", radius=1.0001),
+        "moment of the wrong sign": disc_engine("broken", moment=-1.0),
+        "moment 0.01 % off": disc_engine("broken", moment=1.0001),
+        "x and y of the force exchanged": disc_engine("broken", force=lambda f: f[::-1]),
+        "force 0.01 % off": disc_engine("broken", force=lambda f: 1.0001 * f),
+    }
+    columns = ("on_ring", "on_six_points")
+    table = {
+        "six points": (SEES, BLIND),
+        "twelve points": (SEES, SEES),
+        "400 points": (BLIND, SEES),
+        "radius 0.01 % off": (SEES, SEES),
+        "moment of the wrong sign": (SEES, SEES),
+        "moment 0.01 % off": (SEES, SEES),
+        "x and y of the force exchanged": (SEES, SEES),
+        "force 0.01 % off": (SEES, SEES),
+    }
+
+    def test_every_claim_holds_in_an_engine_that_shares_nothing(self):
+        findings = STUDY.measure(disc_engine("intact"), self.few)
+        assert [claim.verdict for claim in findings.claims] == [Verdict.AGREES] * 2
+        assert findings.not_simulated == ""
+
+    def test_what_an_engine_does_not_simulate_is_left_out_and_said(self):
+        points_only = STUDY.measure(disc_engine("discrete", kinds=("pin", "points")), self.few)
+        assert [claim.identity for claim in points_only.claims] == ["contact-laws/on-six-points"]
+        assert points_only.not_simulated == "discrete does not simulate a disc on a continuous ring"
+        pin_only = STUDY.measure(disc_engine("plain", kinds=("pin",)), self.few)
+        assert pin_only.claims == ()
+        assert pin_only.not_simulated
+
+    def test_figures_are_drawn_without_the_ring_and_of_nothing(self):
+        engine = replace(engine_named("exudyn"), kinds=("pin", "points"))
+        for data in ({"discrete": STUDY.measure(engine, self.few).data}, {}):
+            assert set(STUDY.draw(data)) == set(STUDY.figures)
+
+
+# ---------------------------------------------------------------- laws broken on purpose
+
+
+@pytest.fixture
+def fresh():
+    """Forget what was found of the laws before, and afterwards what was found of broken ones."""
+    searches = theory.greatest_errors_of_expansion, theory.greatest_errors_of_points
+    for search in searches:
+        search.cache_clear()
+    yield
+    for search in searches:
+        search.cache_clear()
+
+
+def verdicts_of(*functions, **few):
+    """Return the verdicts of theory's claims, by the functions that make them."""
+    return [claim.verdict for claim in STUDY.measure_theory(few, only=functions).claims]
 
 
 @pytest.mark.parametrize(
@@ -133,20 +145,19 @@ def naive_directions(slip, rim):
 )
 def test_a_wrong_closed_form_is_found_out(broken, monkeypatch):
     monkeypatch.setattr("reference_model.contact.contact_law.mean_directions", broken)
-    assert laws.closed_form().verdict is Verdict.DIFFERS
+    assert verdicts_of("closed_form") == [Verdict.DIFFERS]
 
 
-def test_a_wrong_expansion_is_found_out(monkeypatch):
+def test_a_wrong_expansion_is_found_out(monkeypatch, fresh):
     def two_terms(self, slip_speed, relative_spin):
         _, c, s = self._polar(slip_speed, relative_spin)
         return Shares(c * (1.0 - 0.5 * s**2), self.radius * s * (1.0 - 0.5 * c**2))
 
     monkeypatch.setattr("reference_model.contact.contact_law.ThreeTermRing.shares", two_terms)
-    _, claims = laws.expansion()
-    assert {claim.verdict for claim in claims} == {Verdict.DIFFERS}
+    assert verdicts_of("error_of_expansion", "place_of_expansion_error") == [Verdict.DIFFERS] * 2
 
 
-def test_points_in_the_wrong_places_are_found_out(monkeypatch):
+def test_points_in_the_wrong_places_are_found_out(monkeypatch, fresh):
     def uneven(self, angle):
         return [
             self.radius * np.exp(1j * (angle + 2.0 * np.pi * i / (self.points + 1)))
@@ -154,38 +165,27 @@ def test_points_in_the_wrong_places_are_found_out(monkeypatch):
         ]
 
     monkeypatch.setattr("reference_model.contact.contact_law.PointsOnRing.arms", uneven)
-    monkeypatch.setattr(laws, "NUMBERS", (6,))
-    _, (size, place) = laws.greatest_errors_of_points()
-    assert Verdict.DIFFERS in (size.verdict, place.verdict)
+    functions = ("error_of_points", "place_of_points_error")
+    assert Verdict.DIFFERS in verdicts_of(*functions, **{key: {"numbers": (6,)} for key in functions})
 
 
 def test_an_annulus_that_is_not_split_at_its_kink_is_found_out(monkeypatch):
     monkeypatch.setattr(Annulus, "_resting_radius", lambda self, slip, spin: self.outer_radius)
-    assert Verdict.AGREES not in {claim.verdict for claim in laws.convergence()}
+    found = verdicts_of("annulus_converges", "slopes_converge")
+    assert len(found) == 2
+    assert Verdict.AGREES not in found
 
 
 def test_an_annulus_with_all_its_load_outside_is_found_out(monkeypatch):
     monkeypatch.setattr(Annulus, "_pressure_at", lambda self, radius: radius)
-    assert laws.in_place().verdict is Verdict.DIFFERS
+    assert verdicts_of("in_place") == [Verdict.DIFFERS]
     monkeypatch.setattr(Annulus, "_resting_radius", lambda self, slip, spin: self.inner_radius)
     monkeypatch.setattr(Annulus, "_loads", lambda self, centre: [(self.outer_radius, 1.0)])
-    assert laws.thin().verdict is Verdict.DIFFERS
+    assert verdicts_of("thin_annulus") == [Verdict.DIFFERS]
 
 
 def test_the_top_of_a_parabola_is_found():
-    place, size, error = laws.top(lambda ratio: 2.0 - (ratio - 0.9) ** 2, 1e-12)
+    place, size, error = theory.top(lambda ratio: 2.0 - (ratio - 0.9) ** 2, 1e-12)
     assert place == pytest.approx(0.9, abs=error)
     assert size == pytest.approx(2.0)
     assert error == pytest.approx(2e-6, rel=0.01)
-
-
-def test_figures_are_drawn_whatever_is_there(theory):
-    points_only = replace(engines(["exudyn"])[0], kinds=("pin", "points"))
-    data = {
-        "exudyn": study.measure(engines(["exudyn"])[0], **FEW).data,
-        "theory": theory.data,
-        "discrete": study.measure(points_only, **FEW).data,
-    }
-    assert set(study.draw(data)) == set(study.STUDY.figures)
-    for part in ({}, {"theory": data["theory"]}, {"exudyn": data["exudyn"]}, {"discrete": data["discrete"]}):
-        assert set(study.draw(part)) == set(study.STUDY.figures)

@@ -12,7 +12,8 @@ from studies_under_test import sentences, verdicts
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine, engines
 from compare.studies.disc.free_ring import claims as study
-from compare.studies.disc.free_ring.theory import EXISTS, PUBLISHED, Slowing, approach_constant, deviation
+from compare.studies.disc.free_ring.theory import EXISTS, PUBLISHED, approach_constant, deviation
+from compare.studies.toolkit.free_bodies import Slowing
 from reference_model import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.contact.elliptic import mean_directions

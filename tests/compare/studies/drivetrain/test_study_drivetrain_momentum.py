@@ -1,70 +1,40 @@
 """The study of an isolated drivetrain agrees, and finds out a moment from outside and a shaft without its arm."""
 
-import functools
 from itertools import combinations
 from typing import Any
 
 import exudyn.itemInterface
 import numpy as np
-import pytest
-from studies_under_test import findings_of, verdicts
+from study_harness import BLIND, SEES
+from wrong_parts import WrongPartTests
 
 import exudyn_models
-from compare.claims.claim import Verdict
-from compare.studies.drivetrain.momentum import claims as study
+from compare.studies.drivetrain.momentum.claims import STUDY
+from compare.studies.drivetrain.momentum.parameters import DRAWN, DRIVETRAINS, KINDS
 
 items: Any = exudyn.itemInterface
 
-EXPLICIT, IMPLICIT = (study.SENTENCE.format(name) for name in study.SOLVERS)
-FEW = (("planar", "planar", "planar"), study.DRAWN)
+FEW = (("planar", "planar", "planar"), DRAWN)
 
 
-@functools.cache
-def some():
-    return findings_of(study, "exudyn", {"drivetrains": (*FEW, ("rotor", "Tait-Bryan", "planar"))})
+def moment_from_outside(moment):
+    """Let a moment in N m act on the disc, where it is planar."""
+
+    def put(patch):
+        add = exudyn_models.add_radial_support
+
+        def with_moment(mbs, base, disc, **parameters):
+            marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=2))
+            mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=moment))
+            return add(mbs, base, disc, **parameters)
+
+        patch.setattr(exudyn_models, "add_radial_support", with_moment)
+
+    return put
 
 
-def test_every_kind_of_each_body_meets_every_kind_of_the_others():
-    for first, second in combinations(range(3), 2):
-        kinds = {(drivetrain[first], drivetrain[second]) for drivetrain in study.DRIVETRAINS}
-        discs = len(study.KINDS) - 1  # no rotor
-        assert len(kinds) == len(study.KINDS) * (discs if 1 in (first, second) else len(study.KINDS))
-
-
-def test_every_statement_holds():
-    assert verdicts(some()) == dict.fromkeys([EXPLICIT, IMPLICIT], Verdict.AGREES)
-    assert set(study.draw({"exudyn": some().data})) == set(study.STUDY.figures)
-    assert study.draw({}) == {}
-
-
-def test_the_bodies_do_exchange_angular_momentum():
-    change = np.abs(np.diff(some().data["each"][[0, -1]], axis=0))
-    # Friction has a moment of some 0.1 N times 0.1 m, over 10 s.
-    assert change[0, 0] > 0.05
-    assert change[0, 2] > 0.05
-
-
-@pytest.mark.parametrize(
-    ("moment", "expected"),
-    [
-        (1e-9, {EXPLICIT: Verdict.DIFFERS, IMPLICIT: Verdict.AGREES}),
-        (1e-7, {EXPLICIT: Verdict.DIFFERS, IMPLICIT: Verdict.DIFFERS}),
-    ],
-)
-def test_a_moment_from_outside_is_found_out(monkeypatch, moment, expected):
-    add = exudyn_models.add_radial_support
-
-    def with_moment(mbs, base, disc, **parameters):
-        marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=2))
-        mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=moment))
-        return add(mbs, base, disc, **parameters)
-
-    monkeypatch.setattr(exudyn_models, "add_radial_support", with_moment)
-    assert verdicts(findings_of(study, "exudyn", {"drivetrains": FEW[:1]})) == expected
-
-
-def test_a_shaft_of_exudyns_own_springs_between_two_bodies_is_found_out(monkeypatch):
-    """Its force acts on either body at that body's own centre, and not along the line between them."""
+def shaft_of_exudyns_own_springs(patch):
+    """Let the shaft's force act on either body at that body's own centre, and not along the line between them."""
 
     def springs(mbs, base, disc, *, stiffness, damping, offset):
         mbs.AddObject(
@@ -78,7 +48,38 @@ def test_a_shaft_of_exudyns_own_springs_between_two_bodies_is_found_out(monkeypa
             )
         )
 
-    monkeypatch.setattr(exudyn_models, "add_radial_support", springs)
-    found = findings_of(study, "exudyn", {"drivetrains": FEW})
-    assert verdicts(found) == dict.fromkeys([EXPLICIT, IMPLICIT], Verdict.DIFFERS)
-    assert all(np.all(claim.difference > 1e-5) for claim in found.claims)
+    patch.setattr(exudyn_models, "add_radial_support", springs)
+
+
+class TestDrivetrainMomentum(WrongPartTests):
+    study = STUDY
+    few = {"momentum": {"drivetrains": (*FEW, ("rotor", "Tait-Bryan", "planar"))}}
+    few_of_faults = {"momentum": {"drivetrains": FEW}}
+    faults = {
+        "a moment of 1e-9 N m": moment_from_outside(1e-9),
+        "a moment of 1e-7 N m": moment_from_outside(1e-7),
+        "a shaft of Exudyn's own springs": shaft_of_exudyns_own_springs,
+    }
+    columns = ("momentum/explicit", "momentum/implicit")
+    table = {
+        "a moment of 1e-9 N m": (SEES, BLIND),
+        "a moment of 1e-7 N m": (SEES, SEES),
+        "a shaft of Exudyn's own springs": (SEES, SEES),
+    }
+
+    def test_every_drivetrain_finds_out_a_shaft_without_its_arm(self):
+        for column in self.columns:
+            (claim,) = self.claims_of_fault("a shaft of Exudyn's own springs", column)
+            assert np.all(claim.difference > 1e-5)
+
+    def test_every_kind_of_each_body_meets_every_kind_of_the_others(self):
+        for first, second in combinations(range(3), 2):
+            kinds = {(drivetrain[first], drivetrain[second]) for drivetrain in DRIVETRAINS}
+            discs = len(KINDS) - 1  # no rotor
+            assert len(kinds) == len(KINDS) * (discs if 1 in (first, second) else len(KINDS))
+
+    def test_the_bodies_do_exchange_angular_momentum(self):
+        change = np.abs(np.diff(self.found("exudyn").data["each"][[0, -1]], axis=0))
+        # Friction has a moment of some 0.1 N times 0.1 m, over 10 s.
+        assert change[0, 0] > 0.05
+        assert change[0, 2] > 0.05

@@ -3,95 +3,93 @@
 import functools
 
 import numpy as np
-import pytest
-from studies_under_test import findings_of, sentences, verdicts
+from study_harness import BLIND, LEFT_OUT, SEES
+from wrong_parts import WrongPartTests
 
-from compare.claims.claim import Verdict
-from compare.studies.drivetrain.reduced import claims as study
+from compare.studies.drivetrain.reduced import claims
+from compare.studies.drivetrain.reduced.parameters import CASES, CYCLE, ENDLESS
 from exudyn_models.drivetrain import model as drivetrain
 
-SENTENCES = {name: study.SENTENCE.format(name) for name in study.CASES}
-FIG8, CYCLE, OFFSET, FACING, HARDENING, STOP = study.CASES
+FIG8, OF_FIG11, OFFSET, FACING, HARDENING, STOP = CASES
 
 
-def measured(*names, inertias=()):
-    cases = {name: study.CASES[name] for name in names}
-    return findings_of(study, "exudyn", {"cases": cases, "inertias": np.array(inertias)})
+def part_off(part, name, factor):
+    """Let a parameter of a part be off by ``factor``."""
+
+    def put(patch):
+        add = getattr(drivetrain, part)
+
+        def off(*nodes, **parameters):
+            return add(*nodes, **parameters | {name: factor * parameters[name]})
+
+        patch.setattr(drivetrain, part, off)
+
+    return put
 
 
-@functools.cache
-def everything():
-    return findings_of(study, "exudyn", {})
-
-
-def test_every_statement_holds():
-    assert verdicts(everything()) == dict.fromkeys([*SENTENCES.values(), study.ORDER], Verdict.AGREES)
-
-
-def test_the_figure_is_drawn_of_what_there_is():
-    (figure,) = study.draw({"exudyn": everything().data}).values()
-    figure.canvas.draw()
-    assert set(study.draw({"exudyn": everything().data})) == set(study.STUDY.figures)
-    assert study.draw({}) == {}
-
-
-def test_the_cases_have_what_their_names_say():
-    data = everything().data
-
-    def radii(name):
-        return np.hypot(*data[f"{name}: states"][:, :2].T)
-
-    assert np.ptp(radii(CYCLE)) > 0.01  # modulated
-    assert radii(STOP).max() > study.CASES[STOP].disc.stop_gap
-    for name in (OFFSET, FACING, HARDENING, STOP):
-        assert np.abs(data[f"{name}: states"][-1] - data[f"{CYCLE}: states"][-1]).max() > 1e-3, name
-
-
-@pytest.mark.parametrize(
-    ("part", "name", "factor", "cases"),
-    [
-        ("add_ring_friction", "normal_load", 1.0 + 1e-6, {CYCLE, FACING}),
-        ("add_ring_friction", "outer_radius", 1.0 + 1e-6, {FACING}),
-        ("add_radial_support", "stiffness", 1.0 + 1e-6, {CYCLE, OFFSET}),
-        ("add_radial_support", "damping", 1.0 + 1e-6, {CYCLE}),
-        ("add_radial_support", "hardening", 1.0 + 1e-5, {HARDENING}),
-        ("add_radial_support", "stop_stiffness", 1.0 + 1e-5, {STOP}),
-        ("add_radial_support", "stop_gap", 1.0 + 1e-6, {STOP}),
-    ],
-)
-def test_a_part_that_is_off_by_a_millionth_is_found_out(monkeypatch, part, name, factor, cases):
-    add = getattr(drivetrain, part)
-
-    def off(*nodes, **parameters):
-        return add(*nodes, **parameters | {name: factor * parameters[name]})
-
-    monkeypatch.setattr(drivetrain, part, off)
-    found = sentences(measured(*cases), Verdict.DIFFERS)
-    assert found == {SENTENCES[case] for case in cases}
-
-
-def test_a_shaft_on_the_wrong_axis_is_found_out(monkeypatch):
+def shaft_on_the_wrong_axis(patch):
     add = drivetrain.add_radial_support
-    monkeypatch.setattr(
+    patch.setattr(
         drivetrain,
         "add_radial_support",
         lambda *nodes, **parameters: add(*nodes, **parameters | {"offset": (0.0, parameters["offset"][0])}),
     )
-    found = verdicts(measured(CYCLE, OFFSET))
-    assert found == {SENTENCES[CYCLE]: Verdict.AGREES, SENTENCES[OFFSET]: Verdict.DIFFERS}
 
 
-@pytest.mark.parametrize(
-    "change", [lambda inertia: 0.0, lambda inertia: 1e-4, lambda inertia: 100.0 * inertia**-2.0]
-)
-def test_an_influence_of_the_inertia_of_another_order_is_found_out(monkeypatch, change):
-    motion = study.drivetrain_motion
-    data = functools.cache(lambda tolerance: motion(study.CYCLE, tolerance))
+def influence_of_the_inertia(change):
+    """Let engine and vehicle of finite inertia change the state by ``change(inertia)``."""
 
-    def of_another_order(case, tolerance, inertia=study.ENDLESS):
-        times, states = data(tolerance)
-        return times, states + (change(inertia) if inertia < study.ENDLESS else 0.0)
+    def put(patch):
+        motion = claims.drivetrain_motion
+        data = functools.cache(lambda tolerance: motion(CYCLE, tolerance))
 
-    monkeypatch.setattr(study, "drivetrain_motion", of_another_order)
-    findings = findings_of(study, "exudyn", {"cases": {}, "inertias": study.INERTIAS})
-    assert verdicts(findings) == {study.ORDER: Verdict.DIFFERS}
+        def of_another_order(case, tolerance, inertia=ENDLESS):
+            times, states = data(tolerance)
+            return times, states + (change(inertia) if inertia < ENDLESS else 0.0)
+
+        patch.setattr(claims, "drivetrain_motion", of_another_order)
+
+    return put
+
+
+class TestDrivetrainReduced(WrongPartTests):
+    study = claims.STUDY
+    faults = {
+        "load": part_off("add_ring_friction", "normal_load", 1.0 + 1e-6),
+        "outer radius": part_off("add_ring_friction", "outer_radius", 1.0 + 1e-6),
+        "stiffness": part_off("add_radial_support", "stiffness", 1.0 + 1e-6),
+        "damping": part_off("add_radial_support", "damping", 1.0 + 1e-6),
+        "hardening": part_off("add_radial_support", "hardening", 1.0 + 1e-5),
+        "stop's stiffness": part_off("add_radial_support", "stop_stiffness", 1.0 + 1e-5),
+        "stop's gap": part_off("add_radial_support", "stop_gap", 1.0 + 1e-6),
+        "shaft on the wrong axis": shaft_on_the_wrong_axis,
+        "no influence of the inertia": influence_of_the_inertia(lambda inertia: 0.0),
+        "the same influence of every inertia": influence_of_the_inertia(lambda inertia: 1e-4),
+        "influence like 1/inertia²": influence_of_the_inertia(lambda inertia: 100.0 * inertia**-2.0),
+    }
+    columns = (*(f"moves/{name}" for name in (OF_FIG11, OFFSET, FACING, HARDENING, STOP)), "order")
+    table = {
+        # Off by a millionth or a hundred-thousandth: cycle, offset, facing, hardening, stop; order.
+        "load": (SEES, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "outer radius": (LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "stiffness": (SEES, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "damping": (SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "hardening": (LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT),
+        "stop's stiffness": (LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT),
+        "stop's gap": (LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT),
+        "shaft on the wrong axis": (BLIND, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "no influence of the inertia": (LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+        "the same influence of every inertia": (LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+        "influence like 1/inertia²": (LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+    }
+
+    def test_the_cases_have_what_their_names_say(self):
+        data = self.found("exudyn").data
+
+        def radii(name):
+            return np.hypot(*data[f"{name}: states"][:, :2].T)
+
+        assert np.ptp(radii(OF_FIG11)) > 0.01  # modulated
+        assert radii(STOP).max() > CASES[STOP].disc.stop_gap
+        for name in (OFFSET, FACING, HARDENING, STOP):
+            assert np.abs(data[f"{name}: states"][-1] - data[f"{OF_FIG11}: states"][-1]).max() > 1e-3, name

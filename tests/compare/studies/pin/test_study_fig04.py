@@ -1,109 +1,77 @@
-"""The study of Fig. 4 agrees for every sound engine, and each of its claims fails for broken ones."""
+"""The study of Fig. 4: what its claims see, and that its theory is what bounds (18)."""
 
-import functools
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from broken_engines import broken_engines
 from studies_under_test import altered, verdicts
+from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import engines
-from compare.studies.pin.fig04 import claims as study
+from compare.claims.paper_parameters import FIG4
+from compare.studies.pin.fig04 import claims, parameters, theory
+from compare.studies.pin.fig04.claims import STUDY
 from reference_model.formulas.pin import first_order_whirl_response, first_order_whirl_shift, whirl_shift
 
-FEW = {"speeds": (1.5,), "claim_speeds": (1.5,)}
-THREE = {"speeds": study.CLAIM_SPEEDS, "claim_speeds": study.CLAIM_SPEEDS}
-CLAIMS = (study.EQ18, study.RESPONSE, study.ORDER, study.LIMIT)
+NO_WHIRL = "no whirl near the guess"
+"""What the search says that finds none; the runner shows the engine as one that failed, with this sentence."""
 
-SEES, BLIND = Verdict.DIFFERS, Verdict.AGREES
+AT_THREE = {"shift": {"speeds": parameters.CLAIM_SPEEDS}}
 
-
-FAULTS = {
-    "square": (broken_engines()["square"], FEW),
-    "half the damping": (broken_engines()["half the damping"], THREE),
-    "damping 1 % off": (altered(damping=1.01), FEW),
-    "offset on the wrong side": (altered(offset=-1.0), FEW),
-    "mass 1 % off": (altered(mass=1.01), FEW),
-    "friction 1 % off": (altered(friction_force=1.01), FEW),
-}
-
-TABLE = {
-    #                            EQ18  RESPONSE ORDER LIMIT
-    "square": (SEES, SEES, SEES, SEES),
-    "half the damping": (SEES, SEES, SEES, SEES),
-    "offset on the wrong side": (SEES, SEES, SEES, SEES),
-    # (18) leaves out more of the shift than a per cent of these changes in it; the other three are exact.
-    "damping 1 % off": (BLIND, SEES, SEES, SEES),
-    "mass 1 % off": (BLIND, SEES, SEES, SEES),
-    # Friction gives the whirl its radius, and neither (18) nor the exact first order has that in it.
-    "friction 1 % off": (BLIND, BLIND, BLIND, BLIND),
-}
+AT_ONE = replace(STUDY, declared=[replace(one, each={"1.5": one.each["1.5"]}) for one in STUDY.declared])
+"""The study with one speed of three."""
 
 
-@functools.cache
-def measured(name):
-    engine, part = FAULTS[name]
-    return study.measure(engine, **part)
+class TestFig04(StudyTests):
+    study = AT_ONE
+    sound = ("reference", "exudyn", "intact")
+    few = {"shift": {"speeds": (1.5,)}}
+    faults = broken_engines() | {
+        "damping 1 % off": altered(damping=1.01),
+        "offset on the wrong side": altered(offset=-1.0),
+        "mass 1 % off": altered(mass=1.01),
+        "friction 1 % off": altered(friction_force=1.01),
+    }
+    columns = ("shift", "response", "order", "limit")
+    table = {
+        "wrong sign": (NO_WHIRL, LEFT_OUT, LEFT_OUT, LEFT_OUT),
+        "square": (SEES, SEES, SEES, SEES),
+        "offset on the wrong side": (SEES, SEES, SEES, SEES),
+        # (18) leaves out more of the shift than a per cent of these changes in it; the other three are exact.
+        "damping 1 % off": (BLIND, SEES, SEES, SEES),
+        "mass 1 % off": (BLIND, SEES, SEES, SEES),
+        # Friction gives the whirl its radius, and neither (18) nor the exact first order has that in it.
+        "friction 1 % off": (BLIND, BLIND, BLIND, BLIND),
+    }
 
 
 @pytest.fixture(scope="module")
-def sound():
-    names = {"reference": THREE, "exudyn": FEW}
-    return {name: study.measure(engines([name])[0], **part) for name, part in names.items()}
+def reference():
+    return STUDY.measure(engine_named("reference"), AT_THREE)
 
 
-@pytest.mark.parametrize("name", ["reference", "exudyn"])
-def test_every_statement_holds_in_both_engines(sound, name):
-    speeds = (THREE if name == "reference" else FEW)["claim_speeds"]
-    expected = {f"{claim}, ω = {speed:g}" for claim in CLAIMS for speed in speeds}
-    assert verdicts(sound[name]) == dict.fromkeys(expected, Verdict.AGREES)
+def test_every_claim_holds_in_the_reference_at_all_speeds(reference):
+    assert verdicts(reference) == dict.fromkeys(STUDY.sentences(), Verdict.AGREES)
 
 
-def test_every_statement_holds_in_the_engine_that_faults_are_put_into():
-    assert set(verdicts(study.measure(broken_engines()["intact"], **FEW)).values()) == {Verdict.AGREES}
-
-
-@pytest.mark.parametrize(
-    ("fault", "claim", "expected"),
-    [
-        (fault, claim, expected)
-        for fault, row in TABLE.items()
-        for claim, expected in zip(CLAIMS, row, strict=True)
-    ],
-)
-def test_each_claim_sees_the_faults_that_concern_it(fault, claim, expected):
-    found = [verdict for sentence, verdict in verdicts(measured(fault)).items() if sentence.startswith(claim)]
-    assert found == [expected] * len(FAULTS[fault][1]["speeds"])
-
-
-def test_every_claim_is_in_the_table():
-    sentences = [
-        sentence for sentence in verdicts(measured("friction 1 % off")) if not sentence.startswith(CLAIMS)
-    ]
-    assert sentences == []
-
-
-def test_the_wrong_sign_leaves_no_whirl_to_find():
-    """The runner shows the engine as one that failed, and why."""
-    with pytest.raises(RuntimeError, match="no whirl near the guess"):
-        study.measure(broken_engines()["wrong sign"], **FEW)
+def test_half_the_damping_is_seen_at_all_speeds():
+    found = STUDY.measure(engine_named("half the damping"), AT_THREE)
+    assert verdicts(found) == dict.fromkeys(STUDY.sentences(), Verdict.DIFFERS)
 
 
 @pytest.mark.parametrize("formula", [whirl_shift, first_order_whirl_shift])
 def test_neither_formula_has_the_friction_force_in_it(formula):
     """Why an engine's friction may be 1 % off unseen."""
-    stronger = replace(study.FIG4, friction_force=2.0 * study.FIG4.friction_force)
-    assert formula(stronger) == pytest.approx(formula(study.FIG4), rel=1e-14)
+    stronger = replace(FIG4, friction_force=2.0 * FIG4.friction_force)
+    assert formula(stronger) == pytest.approx(formula(FIG4), rel=1e-14)
 
 
 @pytest.mark.parametrize(
-    ("factor", "seen"),
-    [(1.108, {study.EQ18, study.LIMIT}), (1.01, {study.EQ18, study.LIMIT}), (1.0001, {study.LIMIT})],
+    ("factor", "seen"), [(1.108, {"shift", "limit"}), (1.01, {"shift", "limit"}), (1.0001, {"limit"})]
 )
 def test_a_wrong_equation_18_is_refuted_by_a_right_engine(monkeypatch, factor, seen):
-    monkeypatch.setattr(study, "whirl_shift", lambda pin: tuple(factor * np.array(whirl_shift(pin))))
+    monkeypatch.setattr(claims, "whirl_shift", lambda pin: tuple(factor * np.array(whirl_shift(pin))))
     assert those_that_differ() == seen
 
 
@@ -112,39 +80,29 @@ def test_a_wrong_first_order_response_is_refuted_by_a_right_engine(monkeypatch):
         right = first_order_whirl_response(pin)
         return right._replace(second_harmonic=1.001 * right.second_harmonic)
 
-    monkeypatch.setattr(study, "first_order_whirl_response", wrong)
-    assert those_that_differ() == {study.RESPONSE}
+    monkeypatch.setattr(claims, "first_order_whirl_response", wrong)
+    assert those_that_differ() == {"response"}
 
 
 def those_that_differ():
-    found = verdicts(study.measure(engines(["reference"])[0], **FEW))
-    return {sentence.partition(", ω")[0] for sentence, verdict in found.items() if verdict is Verdict.DIFFERS}
+    found = AT_ONE.measure(engine_named("reference"), TestFig04.few)
+    return {claim.identity.split("/")[1] for claim in found.claims if claim.verdict is Verdict.DIFFERS}
 
 
 def test_no_simulation_enters_what_equation_18_may_be_off_by(monkeypatch):
     def refuse(*arguments, **options):
         raise AssertionError("simulated")
 
-    monkeypatch.setattr(study, "whirl_orbit", refuse)
-    for speed in study.CLAIM_SPEEDS:
-        pin = replace(study.FIG4, disc_speed=speed)
-        assert study.error_of_eq18(pin) < 0.05 * np.hypot(*whirl_shift(pin))
+    monkeypatch.setattr("reference_model.motion.stepper.Stepper.__init__", refuse)
+    for speed in parameters.CLAIM_SPEEDS:
+        pin = parameters.pin_at(speed)
+        assert theory.error_of_eq18(pin) < 0.05 * np.hypot(*whirl_shift(pin))
 
 
-def test_figures_are_drawn_whatever_is_there(sound):
-    data = {name: findings.data for name, findings in sound.items()} | {"theory": study.theory().data}
-    for names in (("reference", "exudyn", "theory"), ("exudyn", "theory"), ("reference",), ("theory",)):
-        figures = study.draw({name: data[name] for name in names})
-        assert set(figures) == set(study.STUDY.figures)
-        for figure in figures.values():
-            figure.canvas.draw()
-
-
-def test_means_over_speed_are_those_of_the_theory_within_the_third_order(sound):
+def test_means_over_speed_are_those_of_the_theory_within_the_third_order(reference):
     """What Fig. 4 shows: marks on the curve of the first order."""
-    data = sound["reference"].data
-    for speed, mean in zip(data["speeds"], data["means"], strict=True):
-        exact = first_order_whirl_shift(replace(study.FIG4, disc_speed=float(speed)))
+    for speed, mean in zip(reference.data["speeds"], reference.data["means"], strict=True):
+        exact = first_order_whirl_shift(parameters.pin_at(speed))
         # (X0·w/ρ)², w = ω/(ω − k) the factor by which the offset grows, ρ = 1.2 m: the next order, relatively.
-        growth = study.FIG4.offset * speed / (speed - study.FIG4.natural_frequency) / 1.2
+        growth = FIG4.offset * speed / (speed - FIG4.natural_frequency) / 1.2
         assert mean == pytest.approx(exact, abs=float(np.hypot(*exact)) * growth**2)

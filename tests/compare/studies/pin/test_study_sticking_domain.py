@@ -7,6 +7,7 @@ from studies_under_test import findings_of, for_every_sound_engine, sentences, v
 
 from compare.claims.claim import Verdict
 from compare.studies.pin.sticking_domain import claims as study
+from compare.studies.toolkit.sticking import safest_angle
 from reference_model.formulas.pin import squared_holding_force
 
 FEW = {"speeds": (1.4,), "searched": (0.9, 1.0, 1.1)}
@@ -41,7 +42,7 @@ def test_the_theory_holds():
 @pytest.mark.parametrize("speed", study.SPEEDS)
 def test_starts_are_where_the_least_force_holds_the_pin(speed):
     pin = study.pin_at(speed)
-    angle = study.safest_angle(pin)
+    angle = safest_angle(pin)
     around = squared_holding_force(pin, 0.01, angle + np.linspace(-np.pi, np.pi, 101))
     assert np.min(around) == pytest.approx(squared_holding_force(pin, 0.01, angle))
 

@@ -1,0 +1,80 @@
+"""Random pins, discs and starts.
+
+Sizes, rates and ratios are drawn from log-uniform distributions, signs and directions from all that there are.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+from numpy.random import Generator
+
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+
+
+def between(random: Generator, low: float, high: float) -> float:
+    """Draw from a log-uniform distribution."""
+    return float(np.exp(random.uniform(math.log(low), math.log(high))))
+
+
+def sign(random: Generator) -> float:
+    """Draw −1 or 1."""
+    return float(random.choice((-1.0, 1.0)))
+
+
+def vector(random: Generator, size: float) -> complex:
+    """Draw a vector of any direction and up to three times smaller or larger than ``size``."""
+    return cmath.rect(size * between(random, 1 / 3, 3.0), random.uniform(-math.pi, math.pi))
+
+
+def state_of(
+    place: complex, velocity: complex, *, angle: float = 0.0, spin: float | None = None
+) -> FloatArray:
+    """Return the state of a pin, shape (4,), or with a ``spin`` that of a disc, shape (6,)."""
+    if spin is None:
+        return np.array([place.real, place.imag, velocity.real, velocity.imag])
+    return np.array([place.real, place.imag, angle, velocity.real, velocity.imag, spin])
+
+
+def any_pin(random: Generator) -> PinOnDisc:
+    """Draw a pin with all that it may have; the disc turns faster than the pin oscillates."""
+    mass, frequency, size = between(random, 0.1, 10.0), between(random, 0.3, 3.0), between(random, 0.03, 1.0)
+    stiffness = mass * frequency**2
+    return PinOnDisc(
+        mass=mass,
+        stiffness=stiffness,
+        damping=mass * frequency * between(random, 0.01, 1.0),
+        friction_force=stiffness * size * between(random, 0.1, 1.0),
+        disc_speed=sign(random) * frequency * between(random, 1.2, 4.0),
+        offset=sign(random) * size * between(random, 0.1, 1.0),
+    )
+
+
+def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
+    """Draw a disc with all that it may have, on so many points or a continuous ring."""
+    pin = any_pin(random)
+    radius = abs(pin.offset) * between(random, 0.5, 5.0)
+    inertia = pin.mass * radius**2 * between(random, 0.3, 3.0)
+    return DiscOnDisc(
+        mass=pin.mass,
+        stiffness=pin.stiffness,
+        damping=pin.damping,
+        friction_force=pin.friction_force,
+        disc_speed=pin.disc_speed,
+        offset=pin.offset,
+        polar_inertia=inertia,
+        contact_radius=radius,
+        shaft_damping=inertia * pin.natural_frequency * between(random, 0.03, 1.0),
+        shaft_speed=pin.disc_speed * random.uniform(-1.0, 2.0),
+        contact_points=points,
+    )
+
+
+def any_start(random: Generator, system: System) -> FloatArray:
+    """Draw a state as large as the offset; shape (4,) or (6,)."""
+    size = abs(system.offset)
+    place, velocity = vector(random, size), vector(random, size * system.natural_frequency)
+    spin = system.disc_speed * random.uniform(-1.0, 2.0) if isinstance(system, DiscOnDisc) else None
+    return state_of(place, velocity, spin=spin)

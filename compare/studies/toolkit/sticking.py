@@ -1,0 +1,36 @@
+"""Starts of a pin that sticks to the disc, and when the disc lets it go."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.trajectory import Trajectory
+
+
+def safest_angle(pin: PinOnDisc) -> float:
+    """Return the angle in rad at which the least force holds a stuck pin: by (7) that of (C − mω²) − iβω."""
+    return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
+
+
+def farthest(pin: PinOnDisc) -> float:
+    """Return the radius in m within which there are places where friction can hold a pin, by (7)."""
+    return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
+        complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
+    )
+
+
+def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
+    """Return the state of a pin that turns with the disc, at ``radius`` in m and ``angle`` in rad."""
+    x, y = radius * math.cos(angle), radius * math.sin(angle)
+    return np.array([x, y, -pin.disc_speed * y, pin.disc_speed * x])
+
+
+def first_release(run: Trajectory) -> float:
+    """Return when the first stick phase ends in s; inf if it does not, NaN if the motion starts slipping."""
+    first = run.phases[0]
+    if first.kind != "stick":
+        return math.nan
+    return first.end if len(run.phases) > 1 else math.inf
