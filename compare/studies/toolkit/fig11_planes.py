@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from compare.claims.paper_parameters import FIG11
 from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTermRing
-from reference_model.steady.bifurcation_curves import Boundary, Kind, Plane, boundaries
+from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),
@@ -12,10 +12,10 @@ LAWS: dict[str, IsotropicContact] = {
 }
 
 PLANES = {
-    "load": Plane(FIG11, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),
-    "dampers": Plane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
-    "speeds": Plane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
-    "inertia": Plane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+    "load": ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),
+    "dampers": ParameterPlane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    "speeds": ParameterPlane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    "inertia": ParameterPlane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
 }
 
 KINDS: tuple[Kind, ...] = ("onset", "Hopf", "fold")
