@@ -283,10 +283,10 @@ def _account(study: Study, claim: Claim) -> str:
         "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, as the engine's own change says) "
         f"+ {error_text(element.model)} (model)",
         "resolution": f"{error_text(claim.budget.resolution)}{unit}: a larger budget shows nothing",
-        "element": f"{element.index + 1} of {element.count}, the nearest to its budget or the farthest beyond"
-        if element.count > 1
+        "element": f"{element.name}: of {element.count} the nearest to its budget or the farthest beyond"
+        if element.name
         else "",
-        "largest": f"{error_text(element.largest_difference)}{unit}, element {element.largest_index + 1}"
+        "largest": f"{error_text(element.largest_difference)}{unit}, {element.largest_name}"
         if element.largest_index != element.index
         else "",
     }

@@ -78,6 +78,7 @@ def _verdict(claim: Claim, cell: Cell) -> dict[str, Any]:
         "follows_from": cell.implied_by,
         "decided_by": {
             "element": element.index,
+            "element_name": element.name,
             "difference": as_json(element.difference),
             "allowed": as_json(element.total),
             "largest_difference": as_json(element.largest_difference),

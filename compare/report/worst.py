@@ -15,16 +15,21 @@ SPACE = "\N{NO-BREAK SPACE}"
 
 @dataclass(frozen=True)
 class Worst:
-    """The numbers of one element, ``index`` (from 0) of ``count``, and which difference is the largest."""
+    """The numbers of one element, ``index`` (from 0) of ``count``, and which difference is the largest.
+
+    ``name`` and ``largest_name`` say in words which elements they are, "" where there is only one.
+    """
 
     index: int
     count: int
+    name: str
     predicted: float
     measured: float
     difference: float
     numerical: float
     model: float
     largest_index: int
+    largest_name: str
     largest_difference: float
 
     @property
@@ -40,14 +45,23 @@ def worst(claim: Claim) -> Worst:
     return Worst(
         i,
         claim.predicted.size,
+        _name(claim, i),
         float(claim.predicted.flat[i]),
         float(claim.measured.flat[i]),
         float(claim.difference.flat[i]),
         float(numerical.flat[i]),
         claim.budget.model,
         claim.largest,
+        _name(claim, claim.largest),
         float(claim.difference.flat[claim.largest]),
     )
+
+
+def _name(claim: Claim, index: int) -> str:
+    """Return which element it is in words, by its number where nothing names it."""
+    if claim.predicted.size == 1:
+        return ""
+    return claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:

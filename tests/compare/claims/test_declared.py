@@ -1,0 +1,201 @@
+"""Claims as declarations: what is known of them without measuring, and what a measurement makes of them."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.claim import THEORY, Verdict
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.paper_parameters import FIG5
+from compare.claims.prose import Prose
+from compare.claims.study import Study
+from compare.engines import Engine, UnsupportedSystemError
+from compare.report.worst import worst
+from reference_model import simulate
+
+LOADS = (0.02, 0.05)
+ENGINE = Engine("exact", simulate)
+
+
+def study_of(*names):
+    """Return a study with the claims of these names, declared in this order."""
+    study = Study("rest", "Rest", "It rests.", system=FIG5, source="Fig. 5")
+
+    def rests(engine, loads=LOADS):
+        off = np.array([[0.0, 1e-4], [3e-3, 0.0]])
+        return Measured(
+            predicted=np.ones((2, 2)),
+            value=np.ones((2, 2)) + off,
+            error=1e-3,
+            at={"μN in N": loads},
+            components=("x", "spin"),
+            data={"loads": loads},
+        )
+
+    def whirls(engine, speed):
+        if engine.name == "lame":
+            raise UnsupportedSystemError("lame does not whirl")
+        return None if engine.contact_only else Measured(predicted=speed, value=speed)
+
+    def sticks(engine):
+        return answers_of(*asked(lambda tolerance: [True, tolerance > 1e-12], 1e-9))
+
+    def adds_up(terms=3):
+        return Measured(predicted=1.0, value=1.0, error=1.0 / terms, resolution=1.0)
+
+    declared = {
+        "rests": (rests, {"resolution": 1e-2, "swept": ("friction_force",), "note": "Declared."}),
+        "whirls": (whirls, {"resolution": 1.0, "each": {"slow disc": 1.0, "fast disc": 3.0}}),
+        "sticks": (sticks, {"implied_by": rests}),
+        "adds_up": (adds_up, {"kind": "formula"}),
+    }
+    for name in names:
+        function, options = declared[name]
+        sentence = "A {} whirls" if name == "whirls" else f"It {name}"
+        study.claim(sentence, **options)(function)
+    return study
+
+
+ALL = ("rests", "whirls", "sticks", "adds_up")
+
+
+def test_sentences_are_known_without_measuring():
+    sentences = study_of(*ALL).sentences()
+    assert list(sentences) == ["It rests", "A slow disc whirls", "A fast disc whirls", "It sticks"]
+    assert sentences["It sticks"].implied_by == "It rests"
+    assert study_of("rests").has_theory is False
+    assert study_of(*ALL).has_theory is True
+
+
+def test_an_inserted_claim_shifts_no_identity():
+    few, all_of_them = study_of("rests", "sticks"), study_of(*ALL)
+    known = {claim.identity for claim in few.measure(ENGINE).claims}
+    assert known == {"rest/rests", "rest/sticks"}
+    found = {claim.identity for claim in all_of_them.measure(ENGINE).claims}
+    assert found - known == {"rest/whirls/slow-disc", "rest/whirls/fast-disc"}
+
+
+def test_two_claims_of_one_name_are_refused():
+    with pytest.raises(ValueError, match="two claims rest/rests"):
+        study_of("rests", "rests")
+
+
+def test_an_element_says_what_it_is():
+    (claim,) = study_of("rests").measure(ENGINE).claims
+    assert claim.verdict is Verdict.DIFFERS
+    assert worst(claim).name == "μN = 0.05 N, x"
+    assert worst(replace_axes(claim)).name == "no. 3 of 4"
+    assert claim.parameters.keys() >= {"mass", "offset"}
+    assert "friction_force" not in claim.parameters
+    assert claim.source == "Fig. 5"
+
+
+def replace_axes(claim):
+    values = {name: getattr(claim, name) for name in ("equation", "kind", "engine", "predicted", "measured")}
+    return type(claim)(
+        claim.sentence, **values, budget=claim.budget, parameters=claim.parameters, source=claim.source
+    )
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        {"at": {"t in s": (1.0, 2.0, 3.0)}},
+        {"components": ("x",)},
+        {"at": {"a": (1, 2), "b": (1, 2), "c": ()}},
+    ],
+)
+def test_names_that_do_not_fit_are_refused(names):
+    with pytest.raises(ValueError, match=r"numbers of shape \(2, 2\) have names for"):
+        _ = Measured(predicted=np.ones((2, 2)), value=np.ones((2, 2)), **names).axes
+
+
+def test_what_an_engine_never_promised_is_missing_and_said():
+    found = study_of(*ALL).measure(replace(ENGINE, name="lame"))
+    assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
+    assert found.not_simulated == "lame does not whirl"
+
+
+def test_a_function_may_claim_nothing_of_an_engine():
+    found = study_of(*ALL).measure(replace(ENGINE, contact_only=True))
+    assert not found.not_simulated
+    assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
+
+
+def test_less_than_all_can_be_measured():
+    found = study_of(*ALL).measure(ENGINE, {"rests": {"loads": (1.0, 2.0)}}, only=("rests",))
+    assert [claim.sentence for claim in found.claims] == ["It rests"]
+    assert found.data["loads"].tolist() == [1.0, 2.0]
+
+
+def test_answers_are_counted():
+    (claim,) = study_of("rests", "sticks").measure(ENGINE, only=("sticks",)).claims
+    assert (float(claim.predicted), float(claim.measured)) == (2.0, 2.0)
+    assert claim.answers
+
+
+def test_the_theory_has_no_engine():
+    (claim,) = study_of(*ALL).measure_theory({"adds_up": {"terms": 4}}).claims
+    assert claim.engine == THEORY
+    assert claim.basis == "algebra"
+    assert float(claim.budget.total) == 0.25
+
+
+def test_without_a_resolution_nothing_is_claimed():
+    study = study_of()
+    study.claim("It is")(unresolved)
+    with pytest.raises(ValueError, match="neither declaration nor measurement has a resolution"):
+        study.measure(ENGINE)
+
+
+def unresolved(engine):
+    return Measured(predicted=1.0, value=1.0)
+
+
+def test_a_study_goes_to_another_process():
+    study = study_of()
+    study.claim("It is", resolution=1.0)(unresolved)
+    again = pickle.loads(pickle.dumps(study))
+    assert [claim.identity for claim in again.measure(ENGINE).claims] == ["rest/unresolved"]
+
+
+PROSE = """# A title
+
+*The friction pin*
+
+What the paper
+says of {range}.
+
+More of it.
+
+## Finding
+
+{share, 3 digits} % of them.
+
+## Figures
+
+### branches
+
+A caption.
+"""
+
+
+def test_prose_is_read(tmp_path):
+    (tmp_path / "study.md").write_text(PROSE, encoding="utf-8")
+    prose = Prose.of(tmp_path / "claims.py", {"range": "0 to 1 N"})
+    assert (prose.title, prose.section) == ("A title", "The friction pin")
+    assert prose.paper == "What the paper says of 0 to 1 N.\n\nMore of it."
+    assert prose.finding == "{share, 3 digits} % of them."
+    assert prose.figures == {"branches": "A caption."}
+    assert Prose.of(tmp_path / "claims" / "rest.py", {"range": ""}).title == "A title"
+
+
+def test_prose_without_title_or_word_is_refused(tmp_path):
+    (tmp_path / "study.md").write_text(PROSE, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"has no \{loads\}"):
+        Prose.of(tmp_path / "claims.py", {"loads": "0"})
+    (tmp_path / "study.md").write_text(PROSE.replace("*", ""), encoding="utf-8")
+    with pytest.raises(ValueError, match="must begin with a title"):
+        Prose.of(tmp_path / "claims.py", {})
