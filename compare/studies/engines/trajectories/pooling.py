@@ -10,9 +10,9 @@ import numpy as np
 
 from compare.claims.measured import Measured
 from compare.claims.parameters import at_each, parameters_of
-from compare.engines import Engine
+from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.trajectories.drawn import Drawn
-from compare.studies.engines.trajectories.parameters import ONE_OF_EACH_KIND, UNTIL, Motion
+from compare.studies.engines.trajectories.parameters import MOTIONS, ONE_OF_EACH_KIND, UNTIL, Motion
 
 Motions = Iterable[Motion]
 """Those of which one claim is made."""
@@ -28,6 +28,9 @@ def together(measure: Measure) -> MeasureAll:
     def measure_all(engine: Engine, motions: Motions) -> Measured | None:
         if engine.contact_only and (isinstance(motions, Drawn) or not set(motions) <= set(ONE_OF_EACH_KIND)):
             return None
+        if not all(engine.simulates(motion.system) for motion in motions):
+            # All that is missing in one sentence, not one for each claim.
+            raise UnsupportedSystemError(engine.lacking(motion.system for motion in MOTIONS.values()))
         parts = [part for motion in motions if (part := measure(engine, motion)) is not None]
         return pooled(parts) if parts else None
 
