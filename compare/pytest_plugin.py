@@ -1,6 +1,6 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
-Each study is a file, and each sentence that it claims a test, known from ``claims.json`` without measuring. The
+Each study is a file, and each sentence that it claims a test, known without measuring. The
 first test of a study that runs measures all of it, in a process of its own that a time limit ends. A test fails
 where the claim differs or the engine has no answer. What the engine never promised is "not attempted", and what
 its errors leave open "inconclusive": neither is a pass.
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from compare.run.workers import Failure
 
 STUDIES = Path(__file__).with_name("studies")
+
+STUDY_MODULES = "compare.studies"
 
 INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
 
@@ -88,10 +90,15 @@ def _engines(config: pytest.Config) -> list[str]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuse an engine that is not known, and a limit that is none."""
+    """Refuse a study or an engine that is not known, and a limit that is none."""
+    known = config.known_args_namespace
+    for argument in known.file_or_dir if known.pyargs else ():
+        if argument.startswith(f"{STUDY_MODULES}."):
+            raise pytest.UsageError(_instead_of(argument))
     if not _engines(config):
         return
     from compare.engines import known_name
+    from compare.studies import studies
 
     limit = config.getoption("friction_discs_limit")
     if not 0.0 < limit < float("inf"):
@@ -99,9 +106,20 @@ def pytest_configure(config: pytest.Config) -> None:
     try:
         for name in _engines(config):
             known_name(name)
+        studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
     config.stash[_BENCH] = Bench(limit)
+
+
+def _instead_of(module: str) -> str:
+    """Return what to ask for in place of a study's module, as "compare.studies.trajectories"."""
+    from compare.studies import STUDIES as ALL
+
+    parts = module.partition("::")[0].removeprefix(f"{STUDY_MODULES}.").replace("_", "-").split(".")
+    named = {"-".join(parts[i:j]) for i in range(len(parts)) for j in range(i + 1, len(parts) + 1)}
+    name = next((study.name for study in ALL if study.name in named), "NAME")
+    return f"{module}: a study is asked for by its name, with --pyargs compare --study {name}"
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
@@ -130,7 +148,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile 
 
     quick = parent.config.getoption("friction_discs_level") == "quick"
     wanted = parent.config.getoption("friction_discs_studies")
-    module = ".".join(("compare.studies", *file_path.parent.relative_to(STUDIES).parts))
+    module = ".".join((STUDY_MODULES, *file_path.parent.relative_to(STUDIES).parts))
     study = getattr(import_module(module), "STUDY", None)
     if study not in ALL or (quick and not study.quick) or (wanted and study.name not in wanted):
         return None

@@ -15,7 +15,7 @@ from compare.claims.claim import Verdict
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.claims import measure
-from compare.studies.engines.trajectories.motions import MOTIONS
+from compare.studies.engines.trajectories.parameters import MOTIONS
 from reference_model.systems import DiscOnDisc, PinOnDisc, System
 from reference_model.trajectory import Trajectory
 

@@ -10,7 +10,7 @@ from numpy.random import Generator
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.claims import measure
-from compare.studies.engines.trajectories.motions import EXACT, Motion
+from compare.studies.engines.trajectories.parameters import EXACT, Motion
 from compare.studies.toolkit.random_systems import any_disc, any_pin, any_start
 from reference_model import simulate
 from reference_model.systems import System

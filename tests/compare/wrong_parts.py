@@ -40,8 +40,10 @@ class WrongPartTests(FamilyTests):
 @functools.cache
 def _claims_of_fault(cls, fault, claim):
     function, _, case = claim.partition("/")
-    (declared,) = (one for one in cls.study.declared if one.function.__name__ == function)
-    if case:
-        declared = replace(declared, each={case: declared.each[case]})
+    declared = [
+        replace(one, each={case: one.each[case]}) if case else one
+        for one in cls.study.declared
+        if one.function.__name__ == function and (not case or case in one.each)
+    ]
     few = cls.few if cls.few_of_faults is None else cls.few_of_faults
-    return cls.measured_with(fault, replace(cls.study, declared=[declared]), few).claims
+    return cls.measured_with(fault, replace(cls.study, declared=declared), few).claims

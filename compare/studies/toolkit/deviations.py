@@ -118,10 +118,10 @@ class Rates(NamedTuple):
             **more,
         )
 
-    def decaying(self, but: int = 0) -> Measured:
+    def decaying(self, but: int = 0, **more: Any) -> Measured:
         """Return whether each deviation decays, but for the ``but`` slowest of each motion."""
         real = np.sort(self.measured.real, axis=1)[:, : self.measured.shape[1] - but]
-        return answers_of(-real, self.error[:, np.newaxis])
+        return answers_of(-real, self.error[:, np.newaxis], **more)
 
 
 def measured_rates(

@@ -16,6 +16,7 @@ from compare.studies.toolkit.self_centred import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -32,23 +33,7 @@ def draw_spin(data: Mapping[str, Data]) -> Figure:
     figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
     own = f"{RING.offset:g}"
     if "theory" in data:
-        found = data["theory"]
-        spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
-        spin.plot(
-            found[f"corrected load {own}"],
-            found[f"corrected {own}"][:, 2],
-            **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
-        )
-        printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "label": "(26), as printed"}
-        spin.plot(found["printed load"], found["printed"][:, 2], **printed)
-        loads = found["distance load"]
-        distance.plot(
-            loads[1:],
-            found["distance corrected"][1:, 2],
-            **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
-        )
-        distance.plot(loads[1:], found["distance printed"][1:, 2], **printed)
-        plane.plot(*found[f"ring {own}"][:, :2].T, **curve("theory", "semicircle (4)"))
+        _draw_theory(spin, distance, plane, data["theory"])
     for engine in engines_in(data):
         found = data[engine]
         if "six points" in found:
@@ -88,6 +73,26 @@ def draw_spin(data: Mapping[str, Data]) -> Figure:
     distance.legend(loc="upper left", fontsize=9.0, ncols=2)
     plane.legend(loc="lower center", fontsize=9.0)
     return figure
+
+
+def _draw_theory(spin: Axes, distance: Axes, plane: Axes, found: Data) -> None:
+    own = f"{RING.offset:g}"
+    spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
+    spin.plot(
+        found[f"corrected load {own}"],
+        found[f"corrected {own}"][:, 2],
+        **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
+    )
+    printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "label": "(26), as printed"}
+    spin.plot(found["printed load"], found["printed"][:, 2], **printed)
+    loads = found["distance load"]
+    distance.plot(
+        loads[1:],
+        found["distance corrected"][1:, 2],
+        **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
+    )
+    distance.plot(loads[1:], found["distance printed"][1:, 2], **printed)
+    plane.plot(*found[f"ring {own}"][:, :2].T, **curve("theory", "semicircle (4)"))
 
 
 def draw_offsets(theory: Data) -> Figure:

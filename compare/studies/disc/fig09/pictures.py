@@ -9,7 +9,8 @@ import numpy as np
 
 from compare.claims.study import Data
 from compare.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
-from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING, radius_of_pin, spin_of_large_whirl
+from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
+from compare.studies.disc.fig09.theory import radius_of_pin, spin_of_large_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,54 +12,57 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from compare.claims.claim import Claim, ErrorBudget
-from compare.claims.error_estimates import ROUNDING, extrapolated_order
-from compare.claims.paper_parameters import FIG9
-from compare.claims.parameters import at_each, parameters_of
-from compare.claims.study import Data, Findings
+from compare.claims.error_estimates import ROUNDING
+from compare.claims.study import Data
+from compare.studies.disc.fig09.parameters import (
+    BRANCH_END,
+    BRANCH_START,
+    CENTRED,
+    FOLD_OFFSETS,
+    FOLD_START,
+    LARGEST_LOAD,
+    OFFSETS,
+    OUTER_LOADS,
+    PAPER_LAW,
+    REFERENCE_TOLERANCE,
+    RING,
+)
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
+from compare.studies.toolkit.sticking import safest_angle, stuck
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
-from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing, contact_of
+from reference_model.contact.contact_law import IsotropicContact, contact_of
 from reference_model.formulas.disc import held_pin, pin_of, whirl_at
-from reference_model.formulas.pin import sticking_radius, whirl_radius
+from reference_model.formulas.pin import release_time, sticking_radius, whirl_radius
 from reference_model.steady.stability import turning_frame_jacobian, whirl_eigenvalues
-from reference_model.steady.steady_states import whirls
+from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-RING = FIG9
-CENTRED = replace(FIG9, offset=0.0)
 
-PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
-"""(23)."""
+def circle_of(load: float, which: int) -> SpinningWhirl:
+    """Return a whirl of the ring without offset at μN = ``load`` in N, number ``which`` by falling size."""
+    return whirls(with_load(CENTRED, load))[which]
 
-LARGEST_LOAD = 0.2
-"""End of the axis in N: twice the load C·X0 about which sticking begins. The paper prints no range."""
 
-BRANCH_START = 0.1
-BRANCH_END = 1.0
-"""Load of the first whirl of the branch in units of C·X0, and its last crossing of the x axis in those of X0."""
+def rest_of(load: float) -> SpinningEquilibrium:
+    """Return the self-centred equilibrium of the ring at μN = ``load`` in N."""
+    return equilibrium_of(with_load(RING, load))
 
-OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
-"""Loads in N of whirls before the branch."""
 
-FOLD_START = 0.016
-"""Load a little above that of the fold, in units of C·X0."""
+def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
+    """Return the state of a disc that sticks at ``share`` of the radius (9), and when (7) lets go, in s."""
+    pin = held_pin(replace(disc, contact_points=None))
+    radius, angle = share * sticking_radius(pin), safest_angle(pin)
+    state = np.insert(np.append(stuck(pin, radius, angle), disc.disc_speed), 2, 0.0)
+    return state, release_time(pin, radius, angle) if share > 1.0 else math.inf
 
-FOLD_OFFSETS = (0.04, 0.06, 0.1, 0.15, 0.25)
-OFFSETS = np.geomspace(0.004, 0.25, 40)
-"""X0 in m for which the end of the whirl, and those of the other motions, are computed."""
 
-DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
-
-SOURCE = (
-    'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and loads '
-    "are our choice, the paper leaves them out"
-)
-
-FOLD = "Without offset the whirl ends in a fold: at its smallest load an eigenvalue of it passes zero"
-WEAK = "As β → 0 the equilibrium loses its stability at β over the rate by which friction feeds its circular motion"
-
-MERGES = "The inner, unstable whirl shrinks onto the equilibrium at the load where that loses its stability"
+@functools.cache
+def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
+    """Return the reference's whirl with an offset, the outer one or the inner, unstable one."""
+    disc = with_load(replace(RING, offset=offset), load)
+    return whirl_orbit(
+        disc, guess=inner_orbit(disc) if which else None, tolerance=REFERENCE_TOLERANCE, samples=64
+    )
 
 
 def extent(orbit: Orbit) -> FloatArray:
@@ -165,36 +168,7 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
     )
 
 
-def theory() -> Findings:
-    """Compute all branches, and check the ends of whirl and equilibrium."""
-    found = orbits()
-    return Findings(
-        (fold_claim(), weak_damping_claim(RING), merging_claim(found)),
-        circles() | smooth(found) | rests() | sticking() | ends(),
-    )
-
-
-def fold_claim() -> Claim:
-    """Return the loads at which an eigenvalue passes zero beside the smallest ones of the balances."""
-    laws: Sequence[IsotropicContact | None] = (None, PAPER_LAW)
-    measured = [whirl_at(CENTRED, _marginal_ratio(law), law).load for law in laws]
-    return Claim(
-        FOLD,
-        equation="(20), (23)",
-        engine="theory",
-        predicted=[smallest_load_with_whirl(CENTRED, law) for law in laws],
-        measured=measured,
-        budget=ErrorBudget(1e-12 * max(measured), resolution=1e-9 * max(measured)),
-        parameters=parameters_of(CENTRED, without=("friction_force",)),
-        source=SOURCE,
-        unit="N",
-        note="On the continuous ring and by (23). Predicted: the minimum of the load over the ratio of the slip "
-        "speeds of rim and centre. Measured: the load where the eigenvalue is zero, to 1e-6 of "
-        "that ratio; the load is flat there.",
-    )
-
-
-def _marginal_ratio(law: IsotropicContact | None) -> float:
+def marginal_ratio(law: IsotropicContact | None) -> float:
     """Return the angle α of the whirl, tan α = R|S| : U, at which an eigenvalue but that of the phase is zero."""
 
     def growth(alpha: float) -> float:
@@ -206,52 +180,12 @@ def _marginal_ratio(law: IsotropicContact | None) -> float:
     return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
 
 
-def weak_damping_claim(disc: DiscOnDisc) -> Claim:
-    """Return the order in β of the error of :func:`weak_damping_load`."""
-    discs = [replace(disc, damping=float(damping)) for damping in DAMPINGS]
-    errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
-    order, numerical, model = extrapolated_order(errors, 1e-12)
-    return Claim(
-        WEAK,
-        equation="",
-        engine="theory",
-        predicted=1.0,
-        measured=order,
-        budget=ErrorBudget(numerical, model=model, resolution=0.05),
-        parameters=parameters_of(disc, without=("friction_force", "damping")),
-        source=SOURCE + "; the falling β are ours",
-        note=f"Order in β of the error, for {at_each('β', DAMPINGS)} N s/m, extrapolated. Not in the paper, which "
-        f"has the equilibrium stable. With the β of Fig. 9 it loses its stability at {last_stable_load(disc):.6f} N, "
-        f"{weak_damping_load(disc):.6f} N by this formula: far below C·X0, where sticking begins.",
-    )
-
-
-def merging_claim(found: Sequence[Orbit]) -> Claim:
-    """Extrapolate the load of the last orbits to one of no size."""
-    load = np.array([orbit.system.friction_force for orbit in found])
-    square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in found])
-    near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))
-    return Claim(
-        MERGES,
-        equation="",
-        engine="theory",
-        predicted=last_stable_load(RING),
-        measured=near,
-        budget=ErrorBudget(1e-9 * near, model=abs(near - far), resolution=0.01 * near),
-        parameters=parameters_of(RING, without=("friction_force",)),
-        source=SOURCE,
-        unit="N",
-        note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. "
-        "Measured: the load of the reference's inner whirls, found by shooting, as a polynomial in the square of "
-        f"their size (root of the mean square distance from the centre, {math.sqrt(square[-4]):.2g} to "
-        f"{math.sqrt(square[-1]):.2g} m), at zero. Model error: the change with one orbit less. So the basin of the "
-        "equilibrium shrinks to nothing there.",
-        basis="reference",
-        named={"last stable load": 0},
-    )
-
-
 # ---------------------------------------------------------------- curves
+
+
+def curves() -> Data:
+    """Return the branches of all motions over the load, and over the offset where they end."""
+    return circles() | smooth(orbits()) | rests() | sticking() | ends()
 
 
 def circles() -> Data:

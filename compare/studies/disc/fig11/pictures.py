@@ -22,7 +22,7 @@ from compare.figures import (
     new_figure,
     points,
 )
-from compare.studies.disc.fig11.cycle import TIMES
+from compare.studies.disc.fig11.parameters import TIMES
 from compare.studies.toolkit.fig11_motion import DISCS, RING
 from reference_model.systems import FloatArray
 

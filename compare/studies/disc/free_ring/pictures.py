@@ -39,7 +39,8 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
             away = np.abs(np.log(sliding / rim))
             seen = (away > LEAST_DEVIATION) & (place > 0.0)
             approach.semilogy(place[seen], away[seen], **curve(engine, label))
-        ratio.plot(found["inertia"], found["ratio"], **points(engine))
+        ends = [*found["ratio"], found["ratio of rings"]]
+        ratio.plot([*found["inertia"], 1.0], ends, **points(engine))
     plane.set(
         xlabel=r"$R\,|\dot\varphi|\,/\,v_0$",
         ylabel=r"$|v|\,/\,v_0$",

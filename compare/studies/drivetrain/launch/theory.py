@@ -6,6 +6,7 @@ slip. While it sticks, engine and disc are one body, and the clutch transmits wh
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from compare.studies.drivetrain.launch.parameters import (
+    ENGINE_SPEED,
+    KNOTS,
+    MEAN,
+    RIPPLE,
+    UNTIL,
+    capacity,
+    resistance,
+)
+from compare.studies.toolkit.drivetrain_bench import centred_car
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -180,6 +191,34 @@ class Launch:
 def states_at(parts: Sequence[Part], t: float) -> FloatArray:
     """Return the states at a time in s."""
     return next(part for part in parts if t <= part.end).states(t)
+
+
+@functools.cache
+def sticking_launch() -> tuple[Launch, tuple[Part, ...]]:
+    """Return the launch of the centred car under Coulomb friction that sticks, and its parts."""
+    from exudyn_models import four_cylinder
+
+    launch = Launch(centred_car(), capacity, KNOTS[1:], four_cylinder(MEAN, RIPPLE), resistance)
+    return launch, launch.run(ENGINE_SPEED, UNTIL)
+
+
+def time_of_stick() -> FloatArray:
+    """Return when that launch begins to stick and when it slips again, in s."""
+    _, parts = sticking_launch()
+    start = next(part.start for part in parts if part.sticks)
+    return np.array([start, next(part.start for part in parts if not part.sticks and part.start > start)])
+
+
+def torque_held(times: FloatArray) -> FloatArray:
+    """Return the torque in N m that holds the clutch in that launch, at times at which it sticks."""
+    launch, parts = sticking_launch()
+    return np.array([launch.held(t, states_at(parts, t)) for t in times])
+
+
+def end_of_launch() -> FloatArray:
+    """Return the speeds of engine, disc and vehicle in rad/s and the heat in J at the end of that launch."""
+    _, parts = sticking_launch()
+    return parts[-1].states(UNTIL)[3:]
 
 
 def _slip(t: float, state: FloatArray) -> float:

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import parameters_of
 from compare.claims.study import Recorded
 from compare.foreign.cases import CASES
-from compare.foreign.records import COLUMNS, Recording
-from reference_model.systems import FloatArray
-
-TOLERANCE, STEPS, ERROR, CHANGE = (COLUMNS.index(name) for name in ("tolerance", "steps", "error", "change"))
+from compare.foreign.records import Recording
+from compare.studies.engines.foreign_engines.ladders import ERROR, STEPS, TOLERANCE, estimate, recorded
 
 
-def estimate(runs: FloatArray) -> float:
-    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
-
-    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
-    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
-    """
-    return float(np.nansum(runs[-2:, CHANGE]))
+def recorded_settings() -> tuple[Recorded, ...]:
+    """Return what the report's matrix shows of each setting."""
+    return tuple(recorded_claims(recording) for recording in recorded())
 
 
 def recorded_claims(recording: Recording) -> Recorded:

@@ -1,336 +1,282 @@
-"""Plain motions: state by state beside the reference, and whether velocities and forces add up along them.
-
-The motions are those of ``trajectories_motions``.
-"""
+"""Plain motions: state by state beside the reference, and whether velocities and forces add up along them."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 
-from compare.claims.claim import Basis, Claim, ErrorBudget, Kind
-from compare.claims.error_estimates import SAFETY, refined
-from compare.claims.parameters import at_each, parameters_of
-from compare.claims.study import Data, Findings, Study
+from compare.claims.error_estimates import Measurement, refined
+from compare.claims.measured import Measured
+from compare.claims.study import Findings, Study
 from compare.engines import Engine
-from compare.figures import axis, curve, engines_in, new_figure
-from compare.studies.engines.trajectories.motions import (
+from compare.studies.engines.trajectories.drawn import DRAWN
+from compare.studies.engines.trajectories.parameters import (
     EXACT,
     MOTIONS,
-    NODES,
     PANEL,
-    WEIGHTS,
+    PINS,
+    PINS_THAT_STICK,
+    POINTS,
+    RINGS,
+    STICK_RESOLUTION,
     Motion,
+)
+from compare.studies.engines.trajectories.pictures import draw
+from compare.studies.engines.trajectories.pooling import MeasureAll, Motions, together
+from compare.studies.engines.trajectories.stick import as_many, late, samples_in_stick, stick_times
+from compare.studies.engines.trajectories.theory import (
+    NODES,
+    at_bounds,
+    at_nodes,
     by_reference,
-    drawn_motions,
+    equation_of,
+    forces,
+    gauss,
     times_of,
 )
-from compare.studies.engines.trajectories.stick import stick_claims
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
-from reference_model.contact.contact_law import contact_of
-from reference_model.support import Support
-from reference_model.systems import FloatArray, System
+from reference_model.systems import COLUMNS, FloatArray, System
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-States = Callable[[float], FloatArray]
-"""Gives the states at ``times_of(motion)`` that an engine finds at a tolerance."""
-
-SLOWEST_FALL = 0.9
-"""Largest ratio of neighbouring Legendre coefficients of what is integrated."""
-
-ONE_OF_EACH_KIND = ("a pin", "a pin that sticks on its way", "a disc on six points")
-"""What an engine is asked for that differs from another in its contact alone."""
-
-MOVES = "It moves state by state as the reference does: {}"
-KINEMATICS = "Places and angle change by the integrals of velocity and spin: {}"
-MOMENTUM = "Momentum and spin change by the impulses of friction, springs and dampers: {}"
-
-
-DRAWN = "{} with parameters from the whole range"
-
-
-def measure(engine: Engine, motions: Mapping[str, Motion] = MOTIONS) -> Findings:
-    """Follow each motion that the engine simulates."""
-    claims: list[Claim] = []
-    data: Data = {}
-    if engine.contact_only:
-        motions = {name: motion for name, motion in motions.items() if name in ONE_OF_EACH_KIND}
-    for name, motion in motions.items():
-        if not follows(engine, motion):
-            continue
-        run = functools.cache(functools.partial(_run, engine, motion))
-        claims += claims_of(engine, name, motion, run)
-        error = run(motion.tolerance).states - by_reference(motion).states
-        data[f"{name}: times"] = times_of(motion)
-        data[f"{name}: error"] = np.max(np.abs(error), axis=1)
-    return Findings(tuple(claims), data, not_simulated=_lacking(engine, motions.values()))
-
-
-def measure_whole_range(engine: Engine) -> Findings:
-    """Follow the motions by hand each for itself, and those that are drawn by kinds."""
-    by_hand = measure(engine)
-    if engine.contact_only:
-        return by_hand
-    return replace(by_hand, claims=by_hand.claims + claims_by_kinds(engine, drawn_motions()))
-
-
-def claims_by_kinds(engine: Engine, drawn: Mapping[str, Sequence[Motion]]) -> tuple[Claim, ...]:
-    """Return the claims on each kind of motions that the engine follows."""
-    claims: list[Claim] = []
-    for kind, motions in drawn.items():
-        if not all(follows(engine, motion) for motion in motions):
-            continue
-        name = DRAWN.format(kind)
-        parts: dict[str, list[Claim]] = {}
-        for motion in motions:
-            run = functools.cache(functools.partial(_run, engine, motion))
-            for claim in claims_of(engine, name, motion, run):
-                parts.setdefault(claim.sentence, []).append(claim)
-        claims += [pooled(part) for part in parts.values()]
-    return tuple(claims)
-
-
-def follows(engine: Engine, motion: Motion) -> bool:
-    """Return whether the engine promises to follow the motion."""
-    return engine.simulates(motion.system) and (engine.sticks or not motion.sticks)
-
-
-def _lacking(engine: Engine, motions: Iterable[Motion]) -> str:
-    lacking = engine.lacking(motion.system for motion in motions)
-    return lacking if lacking or engine.sticks else f"{engine.name} does not simulate stick"
-
-
-def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    """Return the motion at ``times_of(motion)``."""
-    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
-
-
-def claims_of(
-    engine: Engine, name: str, motion: Motion, run: Callable[[float], Trajectory]
-) -> tuple[Claim, ...]:
-    """Return all claims on one motion, which ``run`` follows at a tolerance."""
-
-    def states(tolerance: float) -> FloatArray:
-        return run(tolerance).states
-
-    moves = movement_claim(engine, name, motion, states)
-    if motion.sticks:  # there friction holds, and is none of the contact's law
-        return (moves, *stick_claims(engine, name, motion, run))
-    return (moves, *sum_claims(engine, name, motion, states))
-
-
-def pooled(claims: Sequence[Claim]) -> Claim:
-    """Return claims of one sentence on several systems as one, with the numbers and error bars of all of them."""
-    first = claims[0]
-    budgets = [np.broadcast_to(claim.budget.numerical, claim.measured.shape).ravel() for claim in claims]
-    speeds = [claim.parameters["disc_speed"] for claim in claims]
-    return Claim(
-        first.sentence,
-        equation=first.equation,
-        kind=first.kind,
-        engine=first.engine,
-        predicted=np.concatenate([claim.predicted.ravel() for claim in claims]),
-        measured=np.concatenate([claim.measured.ravel() for claim in claims]),
-        budget=ErrorBudget(
-            np.concatenate(budgets), resolution=max(claim.budget.resolution for claim in claims)
-        ),
-        parameters=_ranges([claim.parameters for claim in claims]),
-        source=first.source,
-        unit=first.unit,
-        note=f"{len(claims)} motions, for {at_each('ω', np.array(speeds, dtype=float))} rad/s. {first.note}",
-        basis=first.basis,
-    )
-
-
-def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
-    """Return the smallest and the largest value of each parameter in words, or the one that all have."""
-    found: dict[str, float | str] = {}
-    for name, value in parameters[0].items():
-        values = [one[name] for one in parameters]
-        numbers = [one for one in values if not isinstance(one, str)]
-        spread = len(set(values)) > 1
-        found[name] = f"{min(numbers):.3g} … {max(numbers):.3g}" if spread else value
-    return found
-
-
-def movement_claim(engine: Engine, name: str, motion: Motion, states: States) -> Claim:
-    """Compare all states with the reference's."""
-    measured, error = refined(states, motion.tolerance)
-    predicted = by_reference(motion).states
-    # A single number may be right by chance, and so may all of them where both runs take the same steps.
-    worst = float(np.max(error)) + motion.tolerance * float(np.max(np.abs(predicted)))
-    return Claim(
-        MOVES.format(name),
-        equation=_equation(motion),
-        kind="trajectory",
-        engine=engine.name,
-        predicted=predicted,
-        measured=measured,
-        budget=ErrorBudget(worst, resolution=motion.resolution),
-        parameters=parameters_of(motion.system),
-        source=motion.source,
-        unit="m, m/s" if isinstance(motion.system, PinOnDisc) else "m, rad, m/s, rad/s",
-        note=f"To t = {motion.until:g} s from {motion.start}. Predicted: the reference at tolerance {EXACT:g}.",
-    )
-
-
-def sum_claims(engine: Engine, name: str, motion: Motion, states: States) -> tuple[Claim, Claim]:
-    """Compare what changes in each panel with the integral of what changes it."""
-    body = motion.system
-    half = body.state_size // 2
-    inertia = np.array(
-        [body.mass, body.mass] + ([body.polar_inertia] if isinstance(body, DiscOnDisc) else [])
-    )
-    spins = isinstance(body, DiscOnDisc)
-
-    def claim(
-        sentence: str,
-        kind: Kind,
-        basis: Basis,
-        unit: str,
-        amounts: Callable[[FloatArray], FloatArray],
-        rates: Callable[[FloatArray], FloatArray],
-    ) -> Claim:
-        def integrals(tolerance: float) -> tuple[FloatArray, FloatArray]:
-            return gauss(rates(_at_nodes(states(tolerance))))
-
-        measured, error = refined(
-            lambda tolerance: (
-                np.diff(amounts(_at_bounds(states(tolerance))), axis=0) - integrals(tolerance)[0]
-            ),
-            motion.tolerance,
-        )
-        cut = float(np.max(integrals(motion.tolerance)[1]))
-        return Claim(
-            sentence.format(name),
-            equation=_equation(motion) if kind == "conservation" else "",
-            kind=kind,
-            engine=engine.name,
-            predicted=np.zeros_like(measured),
-            measured=measured,
-            budget=ErrorBudget(
-                float(np.max(error)) + cut + 2.0 * motion.tolerance, resolution=motion.resolution
-            ),
-            parameters=parameters_of(body),
-            source=motion.source,
-            unit=unit,
-            note=f"What is missing in each of {len(measured)} times {PANEL:g} s. Integrals by Gauss's rule with "
-            f"{len(NODES)} nodes; its error from how the Legendre coefficients of what is integrated fall. "
-            "The tolerance counts as an error of both states besides.",
-            basis=basis,
-        )
-
-    return (
-        claim(
-            KINEMATICS,
-            "formula",
-            "independent",
-            "m, rad" if spins else "m",
-            lambda found: found[..., :half],
-            lambda found: found[..., half:],
-        ),
-        claim(
-            MOMENTUM,
-            "conservation",
-            "reference",
-            "N s, N m s" if spins else "N s",
-            lambda found: inertia * found[..., half:],
-            functools.partial(forces, body),
-        ),
-    )
-
-
-def _at_bounds(states: FloatArray) -> FloatArray:
-    return states[:: len(NODES) + 1]
-
-
-def _at_nodes(states: FloatArray) -> FloatArray:
-    """Return the states at the nodes of each panel, shape (panels, nodes, 4 or 6)."""
-    return states[:-1].reshape(-1, len(NODES) + 1, states.shape[1])[:, 1:]
-
-
-def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
-
-    The rule with n nodes misses the Legendre coefficients from 2n on. They are taken to fall from one to the next as
-    those from the middle of the first n to the last do, and with SAFETY: where a point of the contact comes to rest
-    they fall more and more slowly, as a power of their number.
-    """
-    n = len(NODES)
-    project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)
-    series = np.einsum("ij,pjk->pik", project, rates)
-    middle, last = (np.max(np.abs(series[:, k - 1 : k + 1]), axis=1) for k in (n // 2, n - 1))
-    fall = np.divide(last, middle, out=np.zeros_like(last), where=last > 0.0) ** (1.0 / (n - 1 - n // 2))
-    fall = np.minimum(fall, SLOWEST_FALL)
-    return PANEL * series[:, 0], PANEL * SAFETY * last * fall ** (n + 1.5) / (1.0 - fall)
-
-
-def forces(body: System, states: FloatArray) -> FloatArray:
-    """Return the force in N, and of a disc the moment in N m, at ``states`` (shape (..., 4 or 6)) where it slips."""
-    law, support = contact_of(body), Support.of(body)
-    half, omega = body.state_size // 2, body.disc_speed
-
-    def force(state: FloatArray) -> list[float]:
-        z, v = complex(*state[:2]), complex(*state[half : half + 2])
-        angle, spin = (state[2], state[-1]) if isinstance(body, DiscOnDisc) else (0.0, 0.0)
-        share, arm = law.force_and_moment(v - 1j * omega * z, omega - spin, angle)
-        w = z - body.offset
-        total = body.friction_force * share - body.damping * v - support.secant(abs(w)) * w
-        if not isinstance(body, DiscOnDisc):
-            return [total.real, total.imag]
-        lag = spin - body.shaft_speed
-        return [total.real, total.imag, body.friction_force * arm - body.shaft_damping * lag]
-
-    return np.apply_along_axis(force, -1, states)
-
-
-def _equation(motion: Motion) -> str:
-    if isinstance(motion.system, PinOnDisc):
-        return "(1)"
-    return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
-
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw how far each motion is from the reference's over time."""
-    figure, (axes,) = new_figure(width=7.0, height=4.0)
-    for engine in engines_in(data):
-        label = engine
-        for name in MOTIONS:
-            if f"{name}: times" in data[engine]:
-                error = np.maximum(data[engine][f"{name}: error"], EXACT)
-                axes.semilogy(data[engine][f"{name}: times"], error, **curve(engine, label))
-                label = "_"
-    axes.set(xlabel=axis("t", "s"), ylabel="largest difference of a component of the state")
-    if data:
-        axes.legend()
-    return {"trajectories": figure}
-
-
-STUDY = Study(
-    name="trajectories",
-    title="Plain motions, state by state",
-    section="The engines",
-    paper="Equations (1) and (19) say how a pin and a disc move. In the paper's figures mass, inertia and stiffness "
-    "are all one, so that an engine which takes one for another moves as it should. Here no two parameters are "
-    "equal. Each motion is compared with the reference's, and besides with nothing but the laws of force: in "
-    "every quarter of a second places must change by the integral of velocity, momentum by the impulse of forces. A "
-    "mistake may be confined to a corner of the parameters, so motions drawn from the whole range that the other "
-    "studies use are followed besides: slow and fast discs in both senses, offsets of both signs, supports with "
-    "stops, points, rings, and pins that stick, whose release (7) gives.",
-    by_hand=measure_whole_range,
+STUDY = Study.beside(
+    __file__,
+    "trajectories",
+    words={"exact": f"{EXACT:g}", "tolerance": f"{Motion.tolerance:g}"},
     draw=draw,
-    figures={
-        "trajectories": "Difference of each motion from the reference's at tolerance 1e-13, the largest of all "
-        "components of the state; the engines at tolerance 1e-10."
-    },
     seconds=6.0,
     quick=True,
     contact=True,
 )
+
+INTEGRATED = (
+    f"What is missing in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its error from how "
+    "the Legendre coefficients of what is integrated fall. The tolerance counts as an error of both states besides."
+)
+
+NAMES = {motion: name for name, motion in MOTIONS.items()}
+
+
+def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
+    """Return motions by hand each for itself, and those that are drawn by kinds."""
+    return {name: (motion,) for name, motion in by_hand.items()} | {
+        f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
+    }
+
+
+SLIDING = by_name(PINS, "pins", "pins on stops")
+STICKING = by_name(PINS_THAT_STICK, "pins that stick")
+OF_DISCS = {"(19), (20)": by_name(RINGS, "rings"), "(19), (21)": by_name(POINTS, "points")}
+"""By the equations that they follow."""
+
+
+def of_bodies(
+    sentence: str,
+    *,
+    of_pins: str,
+    of_discs: str,
+    pins: Mapping[str, Motions],
+    by_law: bool = True,
+    **more: Any,
+) -> Callable[[MeasureAll], MeasureAll]:
+    """Declare a claim of pins, and of discs on rings and on points, in the unit ``of_pins`` or ``of_discs``.
+
+    ``by_law`` says whether it is about the equations by which they move; ``more`` is as ``Study.claim`` takes it.
+    """
+
+    def declare(function: MeasureAll) -> MeasureAll:
+        for equation, each in ({"(1)": pins} | OF_DISCS).items():
+            unit = of_pins if each is pins else of_discs
+            STUDY.claim(sentence, equation=equation if by_law else "", unit=unit, each=each, **more)(function)
+        return function
+
+    return declare
+
+
+# ---------------------------------------------------------------- what is claimed
+
+
+@functools.lru_cache(maxsize=256)  # of all motions, at the tolerances of an error estimate
+def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+    """Return the motion at ``times_of(motion)``, for all claims on it."""
+    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
+
+
+@of_bodies(
+    "It moves state by state as the reference does: {}",
+    of_pins="m, m/s",
+    of_discs="m, rad, m/s, rad/s",
+    pins=SLIDING | STICKING,
+    kind="trajectory",
+    note=f"Predicted: the reference at tolerance {EXACT:g}.",
+)
+@together
+def moves(engine: Engine, motion: Motion) -> Measured:
+    """Compare all states with the reference's."""
+    found = refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
+    predicted = by_reference(motion).states
+    times, data = times_of(motion), {}
+    if motion in NAMES:
+        error = np.max(np.abs(found.value - predicted), axis=1)
+        data = {f"{NAMES[motion]}: times": times, f"{NAMES[motion]}: error": error}
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        # A single number may be right by chance, and so may all of them where both runs take the same steps.
+        error=found.largest + motion.tolerance * float(np.max(np.abs(predicted))),
+        resolution=motion.resolution,
+        at={"t in s": times},
+        components=names_of(motion.system),
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+        data=data,
+    )
+
+
+@of_bodies(
+    "Places and angle change by the integrals of velocity and spin: {}",
+    of_pins="m",
+    of_discs="m, rad",
+    pins=SLIDING,
+    by_law=False,
+    note=INTEGRATED,
+)
+@together
+def kinematics(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the change of places and angle in each panel with the integral of velocity and spin."""
+    half = motion.system.state_size // 2
+    return balance(engine, motion, lambda states: states[..., :half], lambda states: states[..., half:])
+
+
+@of_bodies(
+    "Momentum and spin change by the impulses of friction, springs and dampers: {}",
+    of_pins="N s",
+    of_discs="N s, N m s",
+    pins=SLIDING,
+    kind="conservation",
+    basis="reference",
+    note=INTEGRATED,
+)
+@together
+def momentum(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the change of momentum and spin in each panel with the integral of forces and moments."""
+    body = motion.system
+    half = body.state_size // 2
+    inertia = np.array(
+        [body.mass, body.mass, *([body.polar_inertia] if isinstance(body, DiscOnDisc) else [])]
+    )
+    return balance(
+        engine, motion, lambda states: inertia * states[..., half:], functools.partial(forces, body)
+    )
+
+
+def balance(
+    engine: Engine,
+    motion: Motion,
+    amounts: Callable[[FloatArray], FloatArray],
+    rates: Callable[[FloatArray], FloatArray],
+) -> Measured | None:
+    """Compare what changes in each panel with the integral of what changes it; None where the motion sticks."""
+    if motion.sticks:  # there friction holds, and is none of the contact's law
+        return None
+
+    def integrals(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        return gauss(rates(at_nodes(run(engine, motion, tolerance).states)))
+
+    def missing(tolerance: float) -> FloatArray:
+        changes = np.diff(amounts(at_bounds(run(engine, motion, tolerance).states)), axis=0)
+        return np.asarray(changes - integrals(tolerance)[0])
+
+    found = refined(missing, motion.tolerance)
+    cut = float(np.max(integrals(motion.tolerance)[1]))
+    return Measured(
+        predicted=np.zeros_like(found.value),
+        value=found.value,
+        error=found.largest + cut + 2.0 * motion.tolerance,
+        resolution=motion.resolution,
+        at={"from t in s": at_bounds(times_of(motion))[:-1]},
+        components=names_of(motion.system)[: found.value.shape[1]],
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+    )
+
+
+@STUDY.claim(
+    "It sticks and lets go when the reference does: {}",
+    kind="trajectory",
+    unit="s",
+    resolution=STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, beside those of the reference.",
+    each=STICKING,
+)
+@together
+def phases(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare beginnings and ends of all stick phases with the reference's."""
+    if not motion.sticks:
+        return None
+    predicted = stick_times(by_reference(motion))
+    found = refined(
+        lambda tolerance: as_many(stick_times(run(engine, motion, tolerance)), predicted), motion.tolerance
+    )
+    return of_stick(motion, predicted, found, ("stick", "release"))
+
+
+@STUDY.claim(
+    "What sticks half way through a stick phase is let go when (7) says so: {}",
+    equation="(7)",
+    unit="s",
+    resolution=STICK_RESOLUTION,
+    note="End of each stick phase, less what (7) says for the place in the middle of it.",
+    each=STICKING,
+)
+@together
+def release(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the ends of stick phases with (7), where the reference finds any."""
+    pin, middles = motion.system, samples_in_stick(by_reference(motion))
+    if not isinstance(pin, PinOnDisc) or not middles:
+        return None
+    found = refined(lambda tolerance: late(run(engine, motion, tolerance), pin, middles), motion.tolerance)
+    return of_stick(motion, np.zeros(len(middles)), found, ("release",))
+
+
+def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]) -> Measured:
+    """Return what is measured of a pin's stick phases; the numbers are of each ``kind`` in turn."""
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        # An error of the state may make the first number of two right by chance; one of the tolerance is in all.
+        error=found.largest + motion.tolerance * motion.until,
+        components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+    )
+
+
+def started(motion: Motion) -> str:
+    """Return from where, and until when, a motion is followed."""
+    return f"To t = {motion.until:g} s from {motion.start}."
+
+
+def names_of(system: System) -> list[str]:
+    """Return the names of the components of a state."""
+    return [name for name, _ in COLUMNS[type(system)]]
+
+
+# ---------------------------------------------------------------- of other motions
+
+
+def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
+    """Measure what the study claims, of each of the given motions in place of its own."""
+    declared = []
+    for one in STUDY.declared:
+        (like,) = next(iter(one.each.values()))
+        mine = {
+            name: (motion,) for name, motion in motions.items() if equation_of(motion) == equation_of(like)
+        }
+        declared += [replace(one, each=mine)] if mine else []
+    return replace(STUDY, declared=declared).measure(engine)

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.paper_parameters import CENTRED
 from compare.claims.study import Data
 from compare.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
+from compare.studies.pin.whirl_stability.parameters import DEVIATION_TIMES, PIN, K
 from reference_model.formulas.pin import variational_matrix
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-K = CENTRED.natural_frequency
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
@@ -30,68 +29,71 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
 def draw_motions(data: Mapping[str, Data]) -> Figure:
     """Draw the radius after a start on the circle (11), and a small deviation that decays."""
     figure, (leaving, decay) = new_figure(ncols=2, width=9.8, height=3.6)
+    _draw_leaving(leaving, data)
+    _draw_decay(decay, data)
+    return figure
+
+
+def _draw_leaving(panel: Axes, data: Mapping[str, Data]) -> None:
     last = 0.0
     for engine in engines_in(data):
         found = data[engine]
+        times = found["leaving_time"]
         label = engine
         for speed, radius in zip(found["start"], found["leaving"], strict=True):
             if engine == engines_in(data)[0] and speed < K:
-                leaving.annotate(
+                panel.annotate(
                     rf"$\omega = {speed / K:g}\,k$",
-                    (found["leaving_time"][-1], radius[-1] / radius[0]),
+                    (times[-1], radius[-1] / radius[0]),
                     (5, 0),
                     textcoords="offset points",
                     va="center",
                     fontsize=9.5,
                 )
-            leaving.plot(found["leaving_time"], radius / radius[0], **curve(engine, label))
+            panel.plot(times, radius / radius[0], **curve(engine, label))
             label = "_"
-        decay.plot(found["history_time"], found["history"], **curve(engine))
-        last = max(last, float(found["leaving_time"][-1]))
+        last = max(last, float(times[-1]))
     above = [speed / K for engine in engines_in(data)[:1] for speed in data[engine]["start"] if speed > K]
     if above:
-        leaving.annotate(
-            rf"$\omega = {', '.join(f'{ratio:g}' for ratio in above)}\,k$", (6.0, 1.03), fontsize=9.5
-        )
-    leaving.set(
+        ratios = ", ".join(f"{ratio:g}" for ratio in above)
+        panel.annotate(rf"$\omega = {ratios}\,k$", (6.0, 1.03), fontsize=9.5)
+    panel.set(
         xlabel=axis("t", "s"),
         ylabel=r"$\rho\,/\,\rho_c$",
         xlim=(0.0, last + 3.6),
         ylim=(0.0, 1.15),
         title="Starts on the circle (11)",
     )
-    leaving.legend(loc="lower left")
+    panel.legend(loc="lower left")
+
+
+def _draw_decay(panel: Axes, data: Mapping[str, Data]) -> None:
+    """Draw the deviation inside of the envelope of its modes."""
+    for engine in engines_in(data):
+        panel.plot(data[engine]["history_time"], data[engine]["history"], **curve(engine))
     if "theory" in data:
-        decay.plot(
-            data["theory"]["deviation_time"], data["theory"]["deviation"], **curve("theory", "eq. (12)")
-        )
-    times = np.linspace(0.0, 60.0, 301)
-    values, vectors = np.linalg.eig(variational_matrix(CENTRED))
+        theory = data["theory"]
+        panel.plot(theory["deviation_time"], theory["deviation"], **curve("theory", "eq. (12)"))
+    times = DEVIATION_TIMES
+    values, vectors = np.linalg.eig(variational_matrix(PIN))
     shares = np.abs(np.linalg.solve(vectors, np.array([1.0, K, 0.0])) * vectors[0])
     real = np.abs(values.imag) == 0.0
     middle = shares[real] * np.exp(values[real].real * times[:, np.newaxis])
     width = np.sum(shares[~real] * np.exp(values[~real].real * times[:, np.newaxis]), axis=1)
     envelope: dict[str, Any] = {"color": GREY, "linewidth": 1.0}
-    decay.plot(
-        times,
-        middle,
-        **envelope,
-        linestyle="--",
-        label=rf"real eigenvalue: $\propto \exp({values[real][0].real:.3f}\,t)$",
-    )
-    for sign, label in (
-        (1.0, rf"beside it the pair: $\propto \exp({values[~real][0].real:.3f}\,t)$"),
-        (-1.0, "_"),
-    ):
-        decay.plot(times, middle[:, 0] + sign * width, **envelope, linestyle=(0.0, (1.0, 1.0)), label=label)
-    decay.set(
+    label = rf"real eigenvalue: $\propto \exp({values[real][0].real:.3f}\,t)$"
+    panel.plot(times, middle, **envelope, linestyle="--", label=label)
+    label = rf"beside it the pair: $\propto \exp({values[~real][0].real:.3f}\,t)$"
+    for sign in (1.0, -1.0):
+        panel.plot(times, middle[:, 0] + sign * width, **envelope, linestyle=(0.0, (1.0, 1.0)), label=label)
+        label = "_"
+    panel.set(
         xlabel=axis("t", "s"),
         ylabel=r"$\xi\,/\,a$",
         xlim=(0.0, times[-1]),
-        title=rf"Small deviation of the radius, $\omega = {CENTRED.disc_speed / K:g}\,k$",
+        title=rf"Small deviation of the radius, $\omega = {PIN.disc_speed / K:g}\,k$",
     )
-    decay.legend(loc="upper right", fontsize=9.0)
-    return figure
+    panel.legend(loc="upper right", fontsize=9.0)
 
 
 def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
@@ -104,7 +106,7 @@ def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
             panel.plot(theory["speed"] / K, sign * theory["eigenvalue"][:, which, part] / K, **line)
         for engine in engines_in(data):
             found = data[engine]
-            chosen = found["point"][:, 1] == CENTRED.damping
+            chosen = found["point"][:, 1] == PIN.damping
             speed = np.repeat(found["point"][chosen, 0], 4)
             panel.plot(speed / K, sign * found["eigenvalue"][chosen][..., part].ravel() / K, **points(engine))
         panel.set(xlabel=axis(r"\omega/k"), xscale="log", xlim=(1.0, 7.2))

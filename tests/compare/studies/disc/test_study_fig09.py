@@ -1,18 +1,21 @@
-"""The study of Figs. 9 and 10 agrees for every sound engine, and each of its claims fails for broken ones."""
+"""The study of Figs. 9 and 10: what its claims see, and where its motions end."""
 
-import functools
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies_under_test import altered, verdicts
+from studies_under_test import altered
+from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import Engine, engines
-from compare.studies.disc.fig09 import claims as study
+from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
+from compare.studies.disc.fig09.claims import STUDY, of_theory
+from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
+from compare.studies.toolkit.self_centred import last_load
 from reference_model import simulate
 from reference_model.contact.contact_law import Ring, Shares, Slopes
+from reference_model.formulas.disc import pin_of, whirl_at
 from reference_model.formulas.pin import first_order_whirl_shift
 
 
@@ -36,163 +39,113 @@ def five_points(system, state, times, *, tolerance=1e-9):
     return simulate(replace(system, contact_points=5), state, times, tolerance=tolerance)
 
 
-FEW = {"orbits": ((0.0015, 0), (0.0015, 1)), "rest_loads": (0.05,), "stick_loads": (0.2,)}
-
-OF_SIX = {study.SIX_CIRCLE, study.SIX_RESTS, study.SIX_LETS_GO}
-OF_CIRCLE = {study.CIRCLE, study.BY_23, study.LARGE}
-OF_RING = OF_CIRCLE | {
-    study.ORBIT,
-    study.SHIFTED,
-    study.SHRUNK,
-    study.RESTS,
-    study.GROWS,
-    study.DECAYS,
-    study.STAYS,
-    study.LETS_GO,
-    study.COEXIST,
-}
-
-BALANCES = OF_CIRCLE | {study.ORBIT, study.SHRUNK, study.GROWS, study.LETS_GO}
-"""What every wrong force or moment changes."""
-
-FAULTS = {
-    "friction 0.1 % off": (altered(friction_force=1.001), BALANCES | {study.RESTS} | OF_SIX),
-    # Damping does not move what rests, and to first order the shift by the offset follows from it alone.
-    "damping 0.1 % off": (
-        altered(damping=1.001),
-        BALANCES | {study.SHIFTED, study.DECAYS, study.SIX_CIRCLE, study.SIX_LETS_GO},
-    ),
-    "inertia 10 % off": (altered(polar_inertia=1.1), {study.ORBIT, study.GROWS, study.SIX_LETS_GO}),
-    "moment 1 % off": (Engine("other moment", other_moment, ("ring",)), BALANCES | {study.RESTS}),
-    "five points for six": (Engine("five points", five_points, ("points",)), OF_SIX),
-}
-"""Engines with a fault, and the statements that see it."""
+QUICK_OF_SIX = ("six_rests", "six_releases")
+QUICK = ("orbits", "rests", "deviations_grow", "sticks", "releases", "coexist", *QUICK_OF_SIX)
 
 
-QUICK = {
-    study.ORBIT: lambda engine: study.orbit_claim(engine, ((0.0015, 1),)),
-    study.RESTS: lambda engine: study.rest_claim(
-        engine, (0.05,), *study.measured_rests(engine, study.RING, (0.05,))
-    ),
-    study.GROWS: study.growth_claim,
-    study.STAYS: lambda engine: study.stays_claim(engine, (0.2,))[0],
-    study.LETS_GO: lambda engine: study.release_claim(engine, (0.2,)),
-    study.COEXIST: study.coexistence_claim,
-}
-QUICK_OF_SIX = {
-    study.SIX_RESTS: lambda engine: study.six_rest_claim(
-        engine, (0.05,), *study.measured_rests(engine, study.on_six(study.RING), (0.05,))
-    ),
-    study.SIX_LETS_GO: lambda engine: study.six_release_claim(engine, (0.2,)),
-}
+class TestFig09(StudyTests):
+    study = STUDY
+    sound = ("reference",)
+    few = {
+        "orbits": {"whirls": ((0.0015, 0), (0.0015, 1))},
+        "rests": {"loads": (0.05,)},
+        "sticks": {"loads": (0.2,)},
+        "releases": {"loads": (0.2,)},
+        "six_rests": {"loads": (0.05,)},
+        "six_releases": {"loads": (0.2,)},
+    }
+    faults = {
+        "friction 0.1 % off": altered(friction_force=1.001),
+        "damping 0.1 % off": altered(damping=1.001),
+        "inertia 10 % off": altered(polar_inertia=1.1),
+        "moment 1 % off": Engine("other moment", other_moment, ("ring",)),
+        "five points for six": Engine("five points", five_points, ("points",)),
+    }
+    # The table turned: a row for each claim.
+    by_claim = {
+        # friction, damping, inertia, moment, five points
+        "circles": (SEES, SEES, BLIND, SEES, LEFT_OUT),
+        "error_of_23": (SEES, SEES, BLIND, SEES, LEFT_OUT),
+        "limit_of_large_loads": (SEES, SEES, BLIND, SEES, LEFT_OUT),
+        "orbits": (SEES, SEES, SEES, SEES, LEFT_OUT),
+        # To first order the shift by the offset follows from damping alone.
+        "offset_shifts": (BLIND, SEES, BLIND, BLIND, LEFT_OUT),
+        "offset_changes_size": (SEES, SEES, BLIND, SEES, LEFT_OUT),
+        # Neither damping nor inertia moves what rests.
+        "rests": (SEES, BLIND, BLIND, SEES, LEFT_OUT),
+        "deviations_grow": (SEES, SEES, SEES, SEES, LEFT_OUT),
+        "whirl_attracts": (BLIND, SEES, BLIND, BLIND, LEFT_OUT),
+        "sticks": (BLIND, BLIND, BLIND, BLIND, LEFT_OUT),
+        "releases": (SEES, SEES, BLIND, SEES, LEFT_OUT),
+        "coexist": (BLIND, BLIND, BLIND, BLIND, LEFT_OUT),
+        "six_circles": (SEES, SEES, BLIND, LEFT_OUT, SEES),
+        "six_rests": (SEES, BLIND, BLIND, LEFT_OUT, SEES),
+        "six_releases": (SEES, SEES, SEES, LEFT_OUT, SEES),
+    }
+    columns = tuple(by_claim)
+    table = dict(zip(faults, zip(*by_claim.values(), strict=True), strict=True))
 
-
-@functools.cache
-def measured():
-    """Measure a part of the study with the reference, once for all tests."""
-    return study.measure(engines(["reference"])[0], **FEW)
-
-
-@functools.cache
-def found_by_theory():
-    return study.theory()
-
-
-def test_every_statement_holds_in_the_reference():
-    assert verdicts(measured()) == dict.fromkeys(OF_RING | OF_SIX, Verdict.AGREES)
-
-
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [("exudyn", sentence) for sentence in QUICK | QUICK_OF_SIX]
-    + [("exudyn-native", sentence) for sentence in QUICK_OF_SIX],
-)
-def test_the_quick_statements_hold_in_exudyn(name, sentence):
-    claim = (QUICK | QUICK_OF_SIX)[sentence](engines([name])[0])
-    assert claim.sentence == sentence
-    assert claim.verdict is Verdict.AGREES
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_seen_by_the_statements_that_it_concerns_and_by_no_others(fault):
-    engine, seen = FAULTS[fault]
-    found = verdicts(study.measure(engine, **FEW))
-    assert found == dict.fromkeys(found, Verdict.AGREES) | dict.fromkeys(seen, Verdict.DIFFERS)
-
-
-def test_a_disc_with_half_the_friction_does_not_stick_where_it_should():
-    half = altered(friction_force=0.5)
-    assert study.stays_claim(half, (0.12, 0.2))[0].verdict is Verdict.DIFFERS
-    assert study.coexistence_claim(half).verdict is Verdict.DIFFERS
-
-
-def test_an_engine_of_points_only_measures_the_rows_of_six_points():
-    points = study.measure(Engine("points", simulate, ("points",)), **FEW)
-    assert set(verdicts(points)) == OF_SIX
-    assert "continuous ring" in points.not_simulated
-
-
-def test_the_theory_holds():
-    assert verdicts(found_by_theory()) == dict.fromkeys(
-        (theory.FOLD, theory.WEAK, theory.MERGES), Verdict.AGREES
+    @pytest.mark.parametrize(
+        ("name", "claim"),
+        [("exudyn", claim) for claim in QUICK] + [("exudyn-native", claim) for claim in QUICK_OF_SIX],
     )
+    def test_the_quick_claims_hold_in_exudyn(self, name, claim):
+        few = self.few | {"orbits": {"whirls": ((0.0015, 1),)}}
+        (found,) = STUDY.measure(engine_named(name), few, only=(claim,)).claims
+        assert found.verdict is Verdict.AGREES
 
+    def test_a_disc_with_half_the_friction_does_not_stick_where_it_should(self):
+        found = STUDY.measure(altered(friction_force=0.5), only=("sticks", "coexist")).claims
+        assert [claim.verdict for claim in found] == [Verdict.DIFFERS] * 2
 
-def test_the_spin_of_the_whirl_tends_to_a_limit_that_does_not_depend_on_the_load():
-    far = [theory.whirl_at(theory.RING, alpha) for alpha in (1e-4, 1e-6)]
-    assert far[1].load == pytest.approx(100.0 * far[0].load, rel=1e-6)
-    # The next term of M : R²S/(2U) is of the order α².
-    for whirl, alpha in zip(far, (1e-4, 1e-6), strict=True):
-        assert whirl.spin == pytest.approx(theory.spin_of_large_whirl(theory.RING), abs=alpha**2 + 1e-14)
+    def test_an_engine_of_points_only_measures_the_rows_of_six_points(self):
+        found = STUDY.measure(Engine("points", simulate, ("points",)), self.few)
+        assert [claim.identity for claim in found.claims] == [
+            "fig09/six-circles",
+            "fig09/six-rests",
+            "fig09/six-releases",
+        ]
+        assert "continuous ring" in found.not_simulated
+        assert set(STUDY.draw({"points": found.data})) <= set(STUDY.figures)
 
+    def test_the_spin_of_the_whirl_tends_to_a_limit_that_does_not_depend_on_the_load(self):
+        far = [whirl_at(RING, alpha) for alpha in (1e-4, 1e-6)]
+        assert far[1].load == pytest.approx(100.0 * far[0].load, rel=1e-6)
+        # The next term of M : R²S/(2U) is of the order α².
+        for whirl, alpha in zip(far, (1e-4, 1e-6), strict=True):
+            assert whirl.spin == pytest.approx(theory.spin_of_large_whirl(RING), abs=alpha**2 + 1e-14)
 
-def test_the_shift_of_a_small_disc_is_that_of_a_pin():
-    small = replace(theory.RING, contact_radius=1e-5, shaft_damping=1e-9, damping=0.1, friction_force=0.12)
-    shift = theory.first_order_shift(small)
-    pin = first_order_whirl_shift(theory.pin_of(small))
-    assert [shift.real, shift.imag] == pytest.approx(pin, rel=1e-9)
+    def test_the_shift_of_a_small_disc_is_that_of_a_pin(self):
+        small = replace(RING, contact_radius=1e-5, shaft_damping=1e-9, damping=0.1, friction_force=0.12)
+        shift = theory.first_order_shift(small)
+        pin = first_order_whirl_shift(pin_of(small))
+        assert [shift.real, shift.imag] == pytest.approx(pin, rel=1e-9)
 
+    @pytest.mark.parametrize(("load", "stable"), [(0.02, True), (0.022, False), (0.1, False)])
+    def test_the_equilibrium_is_stable_up_to_a_load_far_below_that_of_sticking(self, load, stable):
+        assert theory.rest_of(load).stable is stable
+        assert theory.last_stable_load(RING) < 0.25 * last_load(RING)
 
-@pytest.mark.parametrize(("load", "stable"), [(0.02, True), (0.022, False), (0.1, False)])
-def test_the_equilibrium_is_stable_up_to_a_load_far_below_the_one_at_which_sticking_begins(load, stable):
-    assert study.rest_of(load).stable is stable
-    assert theory.last_stable_load(theory.RING) < 0.25 * theory.last_load(theory.RING)
+    @pytest.mark.parametrize(
+        ("formula", "claim", "factor"),
+        [
+            ("weak_damping_load", "weak_damping", 1.1),
+            ("last_stable_load", "merges", 1.001),
+            ("smallest_load_with_whirl", "fold", 1.001),
+        ],
+    )
+    def test_a_wrong_formula_is_seen(self, formula, claim, factor, monkeypatch):
+        right = getattr(of_theory, formula)
+        monkeypatch.setattr(of_theory, formula, lambda *which: factor * right(*which))
+        (found,) = STUDY.measure_theory(only=(claim,)).claims
+        assert found.verdict is Verdict.DIFFERS
 
-
-def test_a_wrong_formula_for_the_loss_of_stability_is_seen(monkeypatch):
-    right = theory.weak_damping_load
-    monkeypatch.setattr(theory, "weak_damping_load", lambda disc: 1.1 * right(disc))
-    assert theory.weak_damping_claim(theory.RING).verdict is Verdict.DIFFERS
-
-
-def test_whirls_that_shrink_onto_another_place_are_seen(monkeypatch):
-    orbits = theory.orbits()
-    end = theory.last_stable_load(theory.RING)
-    monkeypatch.setattr(theory, "last_stable_load", lambda disc: 1.001 * end)
-    assert theory.merging_claim(orbits).verdict is Verdict.DIFFERS
-
-
-def test_a_wrong_smallest_load_is_seen(monkeypatch):
-    right = theory.smallest_load_with_whirl
-    monkeypatch.setattr(theory, "smallest_load_with_whirl", lambda *which: 1.001 * right(*which))
-    assert theory.fold_claim().verdict is Verdict.DIFFERS
-
-
-def test_the_curve_of_the_whirls_goes_from_the_largest_load_to_the_equilibrium():
-    load, least, greatest, spin = found_by_theory().data["orbits"].T
-    rest = study.rest_of(load[-1])
-    assert load[0] == pytest.approx(theory.LARGEST_LOAD)
-    assert load[-1] == pytest.approx(theory.last_stable_load(theory.RING))
-    assert least[-1] == pytest.approx(np.hypot(rest.x, rest.y))
-    assert greatest[-1] == pytest.approx(least[-1])
-    assert spin[-1] == pytest.approx(rest.spin)
-    assert np.all(least <= greatest)
-
-
-def test_figures_are_drawn_whatever_is_there():
-    found = measured().data
-    of_six = {name: found[name] for name in ("circle load", "rest load", "six circle", "six rest")}
-    data = {"reference": found, "points": of_six, "theory": found_by_theory().data}
-    assert set(study.draw(data)) == set(study.STUDY.figures)
-    for name in data:
-        assert set(study.draw({name: data[name]})) <= set(study.STUDY.figures)
+    def test_the_curve_of_the_whirls_goes_from_the_largest_load_to_the_equilibrium(self):
+        load, least, greatest, spin = self.found("theory").data["orbits"].T
+        rest = theory.rest_of(load[-1])
+        assert load[0] == pytest.approx(LARGEST_LOAD)
+        assert load[-1] == pytest.approx(theory.last_stable_load(RING))
+        assert least[-1] == pytest.approx(np.hypot(rest.x, rest.y))
+        assert greatest[-1] == pytest.approx(least[-1])
+        assert spin[-1] == pytest.approx(rest.spin)
+        assert np.all(least <= greatest)

@@ -1,46 +1,22 @@
-"""The study of the free ring agrees for every sound engine and fails for each broken one."""
+"""The study of the free ring: what its claims see, and that its integrals are those of the motion in time."""
 
-import functools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from studies_under_test import sentences, verdicts
+from study_harness import LEFT_OUT, SEES, StudyTests
 
-from compare.claims.claim import Verdict
-from compare.engines import EVERY_KIND, Engine, engines
-from compare.studies.disc.free_ring import claims as study
-from compare.studies.disc.free_ring.theory import EXISTS, PUBLISHED, approach_constant, deviation
+from compare.engines import EVERY_KIND, Engine
+from compare.studies.disc.free_ring.claims import STUDY
+from compare.studies.disc.free_ring.parameters import LOPSIDED, OTHERS, RINGS
+from compare.studies.disc.free_ring.theory import approach_constant, deviation
 from compare.studies.toolkit.free_bodies import Slowing
 from reference_model import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.contact.elliptic import mean_directions
 from reference_model.trajectory import Phase, Solution, Trajectory
-
-FEW = {
-    "rings": study.RINGS[1:3],
-    "others": study.OTHERS[::5],
-    "integrated": (study.RINGS[1], study.OTHERS[0]),
-    "lopsided": study.LOPSIDED[1:3],
-}
-ALL = {
-    study.TOGETHER,
-    study.RATIO_ONE,
-    study.APPROACH,
-    study.RATIO_OTHER,
-    study.LOPSIDED_POWERS,
-    study.STOP,
-    study.EXACT,
-    study.HEAT,
-}
-
-
-@functools.cache
-def measured(name):
-    """Measure a part of the study with a registered engine, once for all tests."""
-    return study.measure(engines([name])[0], **FEW)
 
 
 def uncoupled(system, state, times, *, tolerance=1e-9):
@@ -83,46 +59,66 @@ def other_law(contact):
     return Engine("broken", simulated, EVERY_KIND)
 
 
-BROKEN = {
-    "a thousandth more friction": other_system(
-        lambda disc: replace(disc, friction_force=1.001 * disc.friction_force)
-    ),
-    "a thousandth more inertia": other_system(
-        lambda disc: replace(disc, polar_inertia=1.001 * disc.polar_inertia)
-    ),
-    "the expansion (23) for the ring": other_law(ThreeTermRing),
-    "sliding and spinning braked each by itself": Engine("broken", uncoupled, EVERY_KIND),
-    "twelve points for the ring": other_system(lambda disc: replace(disc, contact_points=12)),
-}
-
-
-@pytest.mark.parametrize("name", ["reference", "exudyn"])
-def test_every_statement_holds_in_a_sound_engine(name):
-    assert verdicts(measured(name)) == dict.fromkeys(ALL, Verdict.AGREES)
-
-
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of the ratio of no motion
-@pytest.mark.parametrize(
-    ("fault", "seen"),
-    [
-        # The ratio does not depend on the friction force, only the time that it takes does.
-        ("a thousandth more friction", {study.STOP, study.EXACT, study.HEAT}),
-        ("a thousandth more inertia", {study.STOP, study.EXACT, study.HEAT}),
-        # An expansion without infinite slope comes to the ratio 1 like a power.
-        ("the expansion (23) for the ring", {study.RATIO_ONE, study.APPROACH, study.STOP, study.HEAT}),
-        (
-            "sliding and spinning braked each by itself",
-            ALL - {study.EXACT},
+class TestFreeRing(StudyTests):
+    study = STUDY
+    sound = ("reference", "exudyn")
+    few = {
+        "end_together": {"throws": (*RINGS[1:3], *OTHERS[::5])},
+        "ratio_one": {"throws": RINGS[1:3]},
+        "approach": {"throws": RINGS[1:3]},
+        "other_ratios": {"throws": OTHERS[::5]},
+        "powers": {"throws": LOPSIDED[1:3]},
+        "stops": {"throws": (RINGS[1], OTHERS[0])},
+        "heat": {"throws": RINGS[1:3]},
+    }
+    faults = {
+        "a thousandth more friction": other_system(
+            lambda disc: replace(disc, friction_force=1.001 * disc.friction_force)
         ),
-        ("twelve points for the ring", {study.APPROACH, study.STOP, study.HEAT}),
-    ],
-)
-def test_a_broken_engine_is_found_out(fault, seen):
-    assert seen <= sentences(study.measure(BROKEN[fault], **FEW), Verdict.DIFFERS)
+        "a thousandth more inertia": other_system(
+            lambda disc: replace(disc, polar_inertia=1.001 * disc.polar_inertia)
+        ),
+        "the expansion (23) for the ring": other_law(ThreeTermRing),
+        "sliding and spinning braked each by itself": Engine("broken", uncoupled, EVERY_KIND),
+        "twelve points for the ring": other_system(lambda disc: replace(disc, contact_points=12)),
+    }
+    columns = (
+        "end_together",
+        "ratio_one",
+        "approach",
+        "other_ratios",
+        "powers",
+        "stops",
+        "pure_throws",
+        "heat",
+    )
+    table = {
+        # The ratio does not depend on the friction force, only the time that it takes does.
+        "a thousandth more friction": (*[LEFT_OUT] * 5, SEES, SEES, SEES),
+        "a thousandth more inertia": (*[LEFT_OUT] * 5, SEES, SEES, SEES),
+        # An expansion without infinite slope comes to the ratio 1 like a power.
+        "the expansion (23) for the ring": (LEFT_OUT, SEES, SEES, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, SEES),
+        "sliding and spinning braked each by itself": (*[SEES] * 6, LEFT_OUT, SEES),
+        "twelve points for the ring": (*[LEFT_OUT] * 2, SEES, *[LEFT_OUT] * 2, SEES, LEFT_OUT, SEES),
+    }
 
+    @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of the ratio of no motion
+    def test_each_claim_sees_the_faults_that_concern_it(self, fault, claim, expected):
+        super().test_each_claim_sees_the_faults_that_concern_it(fault, claim, expected)
 
-def test_the_theory_holds():
-    assert verdicts(study.theory()) == {EXISTS: Verdict.AGREES, PUBLISHED: Verdict.AGREES}
+    def test_the_exact_throws_know_both_formulas(self):
+        (predicted,) = (
+            claim.predicted
+            for claim in self.found("reference").claims
+            if claim.identity == "free-ring/pure-throws"
+        )
+        g, v, radius = 0.1, 0.3, 0.12
+        assert predicted[:, 0] == pytest.approx([v / g, v / g, v / g, 2.5 * v / g])
+        assert np.hypot(*predicted[0, 1:3]) == pytest.approx(0.5 * v**2 / g)
+        assert predicted[3, 3] == pytest.approx(-0.5 * 2.5 * (v**2 / g) / radius)
+
+    def test_nothing_is_drawn_of_nothing(self):
+        assert STUDY.draw({}) == {}
 
 
 @pytest.mark.parametrize(("inertia", "sliding", "rim"), [(1.0, 1.0, 0.3), (0.7, 0.2, 1.0), (1.4, 1.0, 0.2)])
@@ -162,19 +158,3 @@ def test_the_constant_of_the_approach_does_not_depend_on_where_it_is_taken():
     far, near = (approach_constant(1.0, 0.1, near) for near in (1e-4, 1e-7))
     assert far == pytest.approx(near, rel=1e-7)
     assert deviation(near / 0.001) < 1e-9
-
-
-def test_the_exact_throws_know_both_formulas():
-    claim = next(claim for claim in measured("reference").claims if claim.sentence == study.EXACT)
-    g, v, radius = 0.1, 0.3, 0.12
-    assert claim.predicted[:, 0] == pytest.approx([v / g, v / g, v / g, 2.5 * v / g])
-    assert np.hypot(*claim.predicted[0, 1:3]) == pytest.approx(0.5 * v**2 / g)
-    assert claim.predicted[3, 3] == pytest.approx(-0.5 * 2.5 * (v**2 / g) / radius)
-
-
-def test_figures_are_drawn_whatever_is_there():
-    data = {"reference": measured("reference").data, "theory": study.theory().data}
-    assert set(study.draw(data)) == set(study.STUDY.figures)
-    assert study.draw({}) == {}
-    for part in ({"theory": data["theory"]}, {"reference": data["reference"]}):
-        assert set(study.draw(part)) == set(study.STUDY.figures)

@@ -3,53 +3,58 @@
 from dataclasses import replace
 from functools import partial
 
-import pytest
-from studies_under_test import findings_of, sentences, verdicts
+from study_harness import BLIND, SEES
+from wrong_parts import WrongPartTests
 
 import exudyn_models
-from compare.claims.claim import Verdict
-from compare.studies.engines.connector import claims as study
+from compare.studies.engines.connector.claims import STUDY
 from exudyn_models.forces import user_functions
 from exudyn_models.forces.jit import taking_lists
 
-RING, POINTS = (f"{study.MOMENTA}: {contact}" for contact in ("ring", "six points"))
 
-
-@pytest.mark.parametrize(
-    ("engine", "expected"),
-    [("exudyn", {RING, POINTS, study.LINEARISED}), ("exudyn-native", {POINTS})],
-)
-def test_every_statement_holds(engine, expected):
-    findings = findings_of(study, engine, {})
-    assert verdicts(findings) == dict.fromkeys(expected, Verdict.AGREES)
-    assert set(study.draw({engine: findings.data})) == set(study.STUDY.figures)
-    assert study.draw({}) == {}
-
-
-def test_the_discs_slip_all_the_time_and_exchange_momentum():
-    data = findings_of(study, "exudyn", {}).data
-    each = data["six points: angular momenta"]
-    assert abs(each[-1, 0] - each[0, 0]) > 0.1
-
-
-def test_a_reaction_without_the_arm_of_the_force_is_found_out(monkeypatch):
+def reaction_without_the_arm_of_the_force(patch):
     def without_arm(law, *arguments):
         if len(arguments) > 6:  # the Jacobian stays as it is
             return law(*arguments)
         *on_master, _, fx, fy, moment = law(*arguments)
         return *on_master, -moment, fx, fy, moment
 
-    monkeypatch.setattr(
+    patch.setattr(
         user_functions, "taking_lists", lambda law, *sizes: partial(without_arm, taking_lists(law, *sizes))
     )
-    assert sentences(findings_of(study, "exudyn", {}), Verdict.DIFFERS) == {RING, POINTS}
 
 
-def test_a_linearisation_of_another_damping_is_found_out(monkeypatch):
+def linearisation_of_another_damping(patch):
     eigenvalues = exudyn_models.eigenvalues
-    monkeypatch.setattr(
+    patch.setattr(
         exudyn_models,
         "eigenvalues",
         lambda system, state: eigenvalues(replace(system, damping=system.damping * (1.0 + 1e-6)), state),
     )
-    assert sentences(findings_of(study, "exudyn", {}), Verdict.DIFFERS) == {study.LINEARISED}
+
+
+class TestConnector(WrongPartTests):
+    study = STUDY
+    sound = ("exudyn", "exudyn-native")
+    # The built-in contact has single points only, and Exudyn linearises it by differences.
+    not_claimed = {"exudyn-native": ("ring", "linearised")}
+    faults = {
+        "reaction without its arm": reaction_without_the_arm_of_the_force,
+        "linearisation of another damping": linearisation_of_another_damping,
+    }
+    columns = ("ring", "six_points", "linearised")
+    table = {
+        "reaction without its arm": (SEES, SEES, BLIND),
+        "linearisation of another damping": (BLIND, BLIND, SEES),
+    }
+
+    def test_the_built_in_contact_says_what_is_missing_and_has_its_figure(self):
+        found = self.found("exudyn-native")
+        assert found.not_simulated == (
+            "the built-in contact has single points only, and Exudyn linearises it by differences"
+        )
+        assert set(STUDY.draw({"exudyn-native": found.data})) == set(STUDY.figures)
+
+    def test_the_discs_slip_all_the_time_and_exchange_momentum(self):
+        each = self.found("exudyn").data["six points: angular momenta"]
+        assert abs(each[-1, 0] - each[0, 0]) > 0.1

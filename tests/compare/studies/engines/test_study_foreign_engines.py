@@ -18,21 +18,12 @@ from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES
 from compare.studies.engines.foreign_engines import claims as foreign_engines
-from compare.studies.engines.foreign_engines.claims import (
-    AXES,
-    BULLET,
-    BY_AXIS,
-    CREEP,
-    FIRST_ORDER,
-    HOLDS,
-    STUDY,
-    draw,
-    halvings,
-    recorded_settings,
-    theory,
-    time_to,
-)
-from compare.studies.engines.foreign_engines.recorded import CHANGE, ERROR, STEPS, estimate, recorded_claims
+from compare.studies.engines.foreign_engines import ladders, recorded
+from compare.studies.engines.foreign_engines.claims import STUDY, draw
+from compare.studies.engines.foreign_engines.ladders import CHANGE, ERROR, STEPS, estimate, halvings
+from compare.studies.engines.foreign_engines.parameters import BY_AXIS, FIRST_ORDER, SECONDS
+from compare.studies.engines.foreign_engines.recorded import recorded_claims, recorded_settings
+from compare.studies.engines.foreign_engines.tables import time_to
 from reference_model import simulate
 
 BUILDERS = Path(__file__).parents[4] / "builders"
@@ -40,7 +31,8 @@ OURS = {"reference", "exudyn", "exudyn-native"}
 
 
 def verdicts(claims):
-    return {claim.sentence: claim.verdict for claim in claims}
+    """Return the verdict of each claim by the name of its function."""
+    return {claim.identity.partition("/")[2]: claim.verdict for claim in claims}
 
 
 def recorded_verdicts():
@@ -80,7 +72,7 @@ def test_four_foreign_engines_and_all_of_ours_are_recorded_in_every_case():
 
 
 def test_orders_of_all_settings_are_as_their_method_says():
-    claims = theory().claims
+    claims = STUDY.measure_theory().claims
     found = {claim.sentence: (claim.measured, claim.budget.total) for claim in claims}
     assert set(verdicts(claims).values()) == {Verdict.AGREES}, found
 
@@ -108,7 +100,7 @@ def test_a_cone_in_place_of_the_box_lets_go_in_time_and_is_found_out(monkeypatch
         return -slip / max(abs(slip), epsilon)
 
     monkeypatch.setattr(foreign_engines, "box", cone)
-    claim = foreign_engines._claim_of_release()
+    (claim,) = STUDY.measure_theory(only=("holds_longer",)).claims
     assert claim.verdict is Verdict.DIFFERS
     late, _ = claim.measured
     assert abs(late) < claim.budget.total[0]  # the integration finds the root of (7) for Coulomb's own law
@@ -172,7 +164,7 @@ def runs_of(found, exact=0.0, steps=HALVED):
     rows = np.full((len(steps), len(COLUMNS)), np.nan)
     rows[:, STEPS], rows[:, ERROR] = steps, np.abs(found - exact)
     rows[1:, CHANGE] = np.abs(np.diff(found))
-    rows[:, foreign_engines.SECONDS] = 1e-3 * steps
+    rows[:, SECONDS] = 1e-3 * steps
     return rows
 
 
@@ -230,22 +222,24 @@ def spoilt(change):
 
 
 def test_errors_that_stay_differ_from_first_order(monkeypatch):
-    monkeypatch.setattr(foreign_engines, "recorded", lambda: spoilt(lambda error: error + 0.3))
-    found = verdicts(theory().claims)
-    assert {sentence for sentence, said in found.items() if said is Verdict.AGREES} == {AXES, BULLET, HOLDS}
+    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(lambda error: error + 0.3))
+    monkeypatch.setattr(recorded, "recorded", ladders.recorded)
+    found = verdicts(STUDY.measure_theory().claims)
+    agreeing = {name for name, said in found.items() if said is Verdict.AGREES}
+    assert agreeing == {"axes-stay-off", "bullet-stays-off", "holds-longer"}
     assert all(set(said.values()) == {Verdict.DIFFERS} for said in recorded_verdicts().values())
 
 
 def test_errors_that_fall_differ_from_another_law(monkeypatch):
     halving = lambda error: error[0] * 0.5 ** np.arange(len(error))  # noqa: E731
-    monkeypatch.setattr(foreign_engines, "recorded", lambda: spoilt(halving))
-    found = verdicts(theory().claims)
-    assert found[AXES] is found[BULLET] is Verdict.DIFFERS
+    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(halving))
+    found = verdicts(STUDY.measure_theory().claims)
+    assert found["axes-stay-off"] is found["bullet-stays-off"] is Verdict.DIFFERS
 
 
 def test_creep_other_than_along_tangents_differs(monkeypatch):
-    monkeypatch.setattr(foreign_engines, "recorded", lambda: spoilt(lambda error: 1.01 * error))
-    assert verdicts(theory().claims)[CREEP] is Verdict.DIFFERS
+    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(lambda error: 1.01 * error))
+    assert verdicts(STUDY.measure_theory().claims)["creeps"] is Verdict.DIFFERS
 
 
 # --- files, figures, page
@@ -260,7 +254,7 @@ def test_columns_of_a_file_that_are_others_are_refused(tmp_path, monkeypatch):
 
 def test_figures_show_every_recording():
     with paper_style():
-        figures = draw({"theory": theory().data})
+        figures = draw({"theory": STUDY.measure_theory().data})
         assert draw({}) == {}
     assert set(figures) == set(STUDY.figures)
     for figure in figures.values():

@@ -1,81 +1,134 @@
+"""The study of plain motions: what its claims see of parameters, forces and outputs that are slightly wrong."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from broken_engines import broken_engines, broken_on_discs
-from studies_under_test import altered, findings_of, for_every_sound_engine, verdicts
+from studies_under_test import altered
+from study_harness import BLIND, LEFT_OUT, SEES, engine_named
+from wrong_parts import FamilyTests
 
 from compare.claims.claim import Verdict
-from compare.engines import EVERY_KIND, Engine, engines
+from compare.engines import EVERY_KIND, Engine
 from compare.judge.faults import FAULTS
-from compare.studies.engines.trajectories.claims import (
-    KINEMATICS,
-    MOMENTUM,
-    MOVES,
-    STUDY,
-    claims_by_kinds,
-    forces,
-    gauss,
-    measure,
-    pooled,
-)
-from compare.studies.engines.trajectories.motions import (
-    MOTIONS,
-    NODES,
-    PANEL,
-    SPEEDS,
-    by_reference,
-    drawn_motions,
-    times_of,
-)
+from compare.studies.engines.trajectories.claims import STUDY, measure, moves
+from compare.studies.engines.trajectories.drawn import DRAWN
+from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
+from compare.studies.engines.trajectories.pooling import pooled
 from compare.studies.engines.trajectories.stick import samples_in_stick, stick_times
+from compare.studies.engines.trajectories.theory import NODES, by_reference, forces, gauss, times_of
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc
 
 PIN, RING, SIX = "a pin", "a disc on the continuous ring", "a disc on six points"
 
-FEW = {name: MOTIONS[name] for name in (PIN, RING, SIX)}
+OF_PIN, OF_DISC = (
+    [name for name, value in vars(MOTIONS[body].system).items() if value] for body in (PIN, RING)
+)
+"""Names of the parameters that a pin, and that a disc has."""
 
 
-@for_every_sound_engine
-def test_sound_engines_move_as_the_reference_and_their_forces_add_up(engine):
-    findings = measure(engine)
-    assert len(findings.claims) == 3 * len(MOTIONS)
-    assert set(verdicts(findings).values()) == {Verdict.AGREES}
+ALL, DISCS, NONE = (SEES,) * 3, (LEFT_OUT, SEES, SEES), (LEFT_OUT,) * 3
+PIN_ALONE, SIX_ALONE = (SEES, LEFT_OUT, LEFT_OUT), (LEFT_OUT, LEFT_OUT, SEES)
+"""Parts of the table: of a claim on a pin, a ring, and six points."""
 
 
-@pytest.mark.parametrize("engine", engines(["reference", "exudyn-native"]), ids=lambda engine: engine.name)
-def test_sound_engines_do_so_over_the_whole_range_of_parameters(engine):
-    found = claims_by_kinds(engine, drawn_motions())
-    kinds = [kind for kind in drawn_motions() if kind != "rings" or "ring" in engine.kinds]
-    assert len(found) == 3 * len(kinds)
-    assert {claim.verdict for claim in found} == {Verdict.AGREES}, [claim.sentence for claim in found]
+def wrapped(system, initial_state, times, *, tolerance=1e-9):
+    """Return angles within a turn, which are not the integral of spin."""
+    run = simulate(system, initial_state, times, tolerance=tolerance)
+    states = run.states.copy()
+    states[:, 2] = (states[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    return replace(run, states=states)
+
+
+def fault(name):
+    """Return an engine of the judge that is wrong."""
+    return next(fault.engine for fault in FAULTS if fault.name == name)
+
+
+class TestTrajectories(FamilyTests):
+    study = STUDY
+    sound = ("reference",)
+    faults = (
+        {f"{parameter} off by 1e-6": altered(**{parameter: 1.0 + 1e-6}) for parameter in OF_DISC}
+        | {name: broken_engines()[name] for name in ("wrong sign", "half the damping")}
+        | {name: broken_on_discs()[name] for name in ("moment 1 % off", "five points")}
+        | {
+            "angle within a turn": Engine("wrapped", wrapped, EVERY_KIND),
+            "friction stronger at extreme speeds": fault("friction-stronger-at-extremes"),
+        }
+    )
+    columns = tuple(
+        f"{claim}/{name}" for claim in ("moves", "momentum", "kinematics") for name in (PIN, RING, SIX)
+    )
+    table = {f"{name} off by 1e-6": (*2 * (ALL if name in OF_PIN else DISCS), *NONE) for name in OF_DISC} | {
+        "wrong sign": (*2 * PIN_ALONE, *NONE),
+        "half the damping": (*2 * PIN_ALONE, *NONE),
+        "moment 1 % off": (*2 * SIX_ALONE, *NONE),
+        "five points": (*2 * SIX_ALONE, *NONE),
+        # No force depends on the angle of a ring.
+        "angle within a turn": (
+            LEFT_OUT,
+            SEES,
+            LEFT_OUT,
+            LEFT_OUT,
+            BLIND,
+            LEFT_OUT,
+            LEFT_OUT,
+            SEES,
+            LEFT_OUT,
+        ),
+        # It passes all motions at usual speeds, which is why the range has to be whole.
+        "friction stronger at extreme speeds": (BLIND,) * 9,
+    }
+
+    def test_no_two_parameters_are_equal(self):
+        for name in (PIN, RING):
+            values = [value for value in vars(MOTIONS[name].system).values() if value]
+            assert len(set(values)) == len(values)
+            assert 1.0 not in values
+
+    @pytest.mark.parametrize("name", ["exudyn", "intact"])
+    def test_sound_engines_move_as_the_reference_and_their_forces_add_up(self, name):
+        found = measure(engine_named(name), MOTIONS).claims
+        assert len(found) == 3 * len(MOTIONS)
+        assert {claim.verdict for claim in found} == {Verdict.AGREES}
+
+    def test_native_contact_does_so_over_the_whole_range_of_what_it_simulates(self):
+        found = STUDY.measure(engine_named("exudyn-native"))
+        of_rings = 3 * (sum("ring" in name for name in MOTIONS) + 1)
+        assert len(found.claims) == 3 * (len(MOTIONS) + len(DRAWN)) - of_rings
+        assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}
+
+    def test_one_that_is_another_in_its_contact_alone_is_asked_for_one_of_each_kind(self):
+        contact_only = replace(engine_named("exudyn-native"), contact_only=True)
+        assert len(STUDY.measure(contact_only).claims) == 9
 
 
 def test_the_whole_range_has_slow_and_fast_discs_in_both_senses_and_all_that_a_mistake_may_be_confined_to():
-    drawn = drawn_motions()
-    for motions in drawn.values():
+    for motions in DRAWN.values():
         speeds = [motion.system.disc_speed for motion in motions]
         for sense in (1.0, -1.0):
             for low, high in SPEEDS:
                 assert sum(low <= sense * speed <= high for speed in speeds) == 1
-    everything = [motion for motions in drawn.values() for motion in motions]
+    everything = [motion for motions in DRAWN.values() for motion in motions]
     assert {np.sign(motion.system.offset) for motion in everything} == {-1.0, 1.0}
-    for motion in drawn["pins on stops"]:
+    for motion in DRAWN["pins on stops"]:
         way = by_reference(motion).states[:, :2] - (motion.system.offset, 0.0)
         assert np.min(np.hypot(*way.T)) > motion.system.stop_gap  # on all sides
     centre_is_faster = set()
-    for motion in drawn["rings"]:
+    for motion in DRAWN["rings"]:
         run = by_reference(motion)
         rim = motion.system.contact_radius * np.abs(motion.system.disc_speed - run.states[:, 5])
         centre_is_faster |= set(run.slip_speed > rim)
     assert centre_is_faster == {True, False}
-    for motion in drawn["pins that stick"]:
+    for motion in DRAWN["pins that stick"]:
         assert samples_in_stick(by_reference(motion))
 
 
 def test_a_moment_of_stick_is_no_phase_but_one_of_a_millisecond_is():
-    (motion, *_) = drawn_motions()["pins that stick"]
+    (motion, *_) = DRAWN["pins that stick"]
     run = by_reference(motion)
     stick, slip = run.phases[:2]
     for moment, phases in ((1e-7, 1), (1e-3, 2)):
@@ -107,30 +160,27 @@ CONFINED = {
 
 @pytest.mark.parametrize("name", CONFINED)
 def test_a_mistake_that_is_small_or_confined_is_seen_by_two_kinds_of_claims(name):
-    engine = next(fault.engine for fault in FAULTS if fault.name == name)
-    found = claims_by_kinds(engine, {CONFINED[name]: drawn_motions()[CONFINED[name]]})
+    case = f"{CONFINED[name]} with parameters from the whole range"
+    declared = [replace(one, each={case: one.each[case]}) for one in STUDY.declared if case in one.each]
+    found = replace(STUDY, declared=declared).measure(fault(name)).claims
     kinds = {claim.kind for claim in found if claim.verdict is Verdict.DIFFERS}
     assert "trajectory" in kinds
     assert len(kinds) >= 2
 
 
-def test_a_mistake_at_extreme_speeds_passes_all_motions_at_usual_ones():
-    """Why the range has to be whole."""
-    engine = next(fault.engine for fault in FAULTS if fault.name == "friction-stronger-at-extremes")
-    assert {claim.verdict for claim in measure(engine, FEW).claims} == {Verdict.AGREES}
-
-
 def test_pooled_claims_keep_every_number_and_its_own_error_bar():
-    few = drawn_motions()["pins"][:2]
-    single = [claims_by_kinds(engines(["reference"])[0], {"pins": (motion,)})[0] for motion in few]
+    few = list(DRAWN["pins"])[:2]
+    single = [moves(engine_named("reference"), (motion,)) for motion in few]
     both = pooled(single)
-    assert both.predicted.size == sum(claim.predicted.size for claim in single)
+    assert both.predicted.size == sum(part.predicted.size for part in single)
     first = single[0].predicted.size
-    assert np.all(both.budget.total[:first] == single[0].budget.total)
-    assert np.all(both.budget.total[first:] == single[1].budget.total)
+    assert np.all(both.error[:first] == single[0].error)
+    assert np.all(both.error[first:] == single[1].error)
     assert both.parameters["mass"] == " … ".join(
         f"{mass:.3g}" for mass in sorted(motion.system.mass for motion in few)
     )
+    ((*_, last),) = both.axes
+    assert last == f"ω = {few[1].system.disc_speed:g} rad/s, t = 3 s, vy"
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -141,13 +191,6 @@ def test_nothing_comes_to_rest_where_forces_are_integrated(name):
     if isinstance(motion.system, DiscOnDisc):
         rim = motion.system.contact_radius * np.abs(motion.system.disc_speed - run.states[:, 5])
         assert np.min(np.abs(run.slip_speed - rim)) > 0.01  # no point of the ring rests either
-
-
-def test_no_two_parameters_are_equal():
-    for name in (PIN, RING):
-        values = [value for value in vars(MOTIONS[name].system).values() if value]
-        assert len(set(values)) == len(values)
-        assert 1.0 not in values
 
 
 @pytest.mark.parametrize("pole", [0.01, 0.1, 1.0])
@@ -169,50 +212,7 @@ def test_forces_are_those_that_the_reference_moves_by(name):
     assert forces(motion.system, states[1]) == pytest.approx(change, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    "parameter",
-    [name for name, value in vars(MOTIONS[RING].system).items() if value],
-)
-def test_an_error_of_a_millionth_in_any_parameter_is_found_by_trajectory_and_by_momentum(parameter):
-    pin_too = hasattr(MOTIONS[PIN].system, parameter)
-    motions = FEW if pin_too else {name: motion for name, motion in FEW.items() if name != PIN}
-    found = verdicts(measure(altered(**{parameter: 1.0 + 1e-6}), motions))
-    for name in motions:
-        assert found[MOVES.format(name)] is Verdict.DIFFERS
-        assert found[MOMENTUM.format(name)] is Verdict.DIFFERS
-
-
-@pytest.mark.parametrize("name", ["wrong sign", "half the damping"])
-def test_a_wrong_force_is_found(name):
-    found = verdicts(measure(broken_engines()[name], {PIN: MOTIONS[PIN]}))
-    assert found[MOVES.format(PIN)] is found[MOMENTUM.format(PIN)] is Verdict.DIFFERS
-
-
-@pytest.mark.parametrize("name", ["moment 1 % off", "five points"])
-def test_a_wrong_moment_is_found(name):
-    found = verdicts(measure(broken_on_discs()[name], {SIX: MOTIONS[SIX]}))
-    assert found[MOVES.format(SIX)] is found[MOMENTUM.format(SIX)] is Verdict.DIFFERS
-
-
-def test_an_angle_that_is_not_the_integral_of_spin_is_found():
-    def wrapped(system, initial_state, times, *, tolerance=1e-9):
-        run = simulate(system, initial_state, times, tolerance=tolerance)
-        states = run.states.copy()
-        states[:, 2] = (states[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
-        return replace(run, states=states)
-
-    found = verdicts(measure(Engine("wrapped", wrapped, EVERY_KIND), {RING: MOTIONS[RING]}))
-    assert found[KINEMATICS.format(RING)] is found[MOVES.format(RING)] is Verdict.DIFFERS
-    assert found[MOMENTUM.format(RING)] is Verdict.AGREES
-
-
 def test_an_engine_is_measured_on_what_it_promises():
-    findings = measure(Engine("pins that slip", simulate, ("pin",), sticks=False))
+    findings = measure(Engine("pins that slip", simulate, ("pin",), sticks=False), MOTIONS)
     assert len(findings.claims) == 9
     assert "disc" in findings.not_simulated
-
-
-def test_the_figure_copes_with_what_is_missing():
-    findings = findings_of(STUDY, "reference", {})
-    assert list(STUDY.draw({"reference": findings.data})) == ["trajectories"]
-    STUDY.draw({})

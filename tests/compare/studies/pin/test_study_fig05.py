@@ -1,6 +1,5 @@
-"""The study of Fig. 5 agrees for every sound engine, and each of its claims fails for broken ones."""
+"""The study of Fig. 5: what its claims see, and that its ways to the same numbers agree."""
 
-import functools
 import io
 import itertools
 import math
@@ -10,30 +9,16 @@ import numpy as np
 import PIL.Image
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import verdicts
+from studies_under_test import altered
+from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import Engine, engines
-from compare.studies.pin.fig05 import claims as study
+from compare.claims.paper_parameters import FIG5_STARTS
+from compare.engines import Engine
+from compare.studies.pin.fig05 import parameters, theory
+from compare.studies.pin.fig05.claims import STUDY
 from compare.studies.pin.fig05.pictures import animate
 from reference_model import simulate
-
-CLAIMS = (
-    study.SLIDES,
-    study.RESTS,
-    study.WHIRLS,
-    *(study.FIRST_STICK.format(name) for name in study.FIG5_STARTS),
-    *(study.ALL_STICKS.format(name) for name in study.FIG5_STARTS),
-    study.CRITICAL,
-    study.SIDES,
-)
-
-SEES, BLIND = Verdict.DIFFERS, Verdict.AGREES
-
-
-def stronger_friction(system, initial_state, times, *, tolerance=1e-9):
-    stronger = replace(system, friction_force=1.01 * system.friction_force)
-    return replace(simulate(stronger, initial_state, times, tolerance=tolerance), system=system)
 
 
 def never_released(system, initial_state, times, *, tolerance=1e-9):
@@ -59,46 +44,53 @@ def late(system, initial_state, times, *, tolerance=1e-9):
     return replace(trajectory, states=np.vstack((trajectory.states[:1], trajectory.states[:-1])))
 
 
-FAULTS = broken_engines() | {
-    "friction 1 % off": Engine("friction 1 % off", stronger_friction),
-    "stick never ends": Engine("stick never ends", never_released),
-    "one sample late": Engine("one sample late", late),
-}
+class TestFig05(StudyTests):
+    study = STUDY
+    faults = broken_engines() | {
+        "friction 1 % off": altered(friction_force=1.01),
+        "stick never ends": Engine("stick never ends", never_released),
+        "one sample late": Engine("one sample late", late),
+    }
+    columns = ("slides", "rests", "whirls", "first_stick", "all_sticks", "critical", "sides")
+    table = {
+        "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
+        "square": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
+        "half the damping": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
+        # Such a pin has both motions too, and its own velocity between them: both sides of that are right.
+        "friction 1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, BLIND),
+        "stick never ends": (BLIND, SEES, SEES, SEES, SEES, SEES, SEES),
+        # The phases are right, and a position of rest is the same a sample earlier.
+        "one sample late": (SEES, BLIND, SEES, BLIND, BLIND, BLIND, SEES),
+    }
 
-TABLE = {
-    #                    SLIDES RESTS  WHIRLS  first stick   all sticks    CRITICAL SIDES
-    "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-    "square": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-    "half the damping": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-    # Such a pin has both motions too, and its own velocity between them: both sides of that are right.
-    "friction 1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES, BLIND),
-    "stick never ends": (BLIND, SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-    # The phases are right, and a position of rest is the same a sample earlier.
-    "one sample late": (SEES, BLIND, SEES, BLIND, BLIND, BLIND, BLIND, BLIND, SEES),
-}
+    @pytest.mark.parametrize("claim", ["first_stick", "all_sticks"])
+    @pytest.mark.parametrize("fault", [name for name in table if name != "one sample late"])
+    def test_stick_phases_on_both_ways_see_the_fault(self, fault, claim):
+        found = self.claims_of_fault(fault, claim)
+        assert [one.verdict for one in found] == [Verdict.DIFFERS] * len(FIG5_STARTS)
 
+    def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(self):
+        found = {"reference": self.found("reference").data, "exudyn": self.found("intact").data}
+        broken = STUDY.measure(self.faults["square"], only=("all_sticks",)).data
+        (figure,) = STUDY.draw(found | {"broken": broken}).values()
+        labels = [line.get_label() for line in figure.axes[2].lines]
+        assert labels.count("exudyn") == 1
+        assert "broken" not in labels
 
-@functools.cache
-def measured(name):
-    engine = FAULTS[name] if name in FAULTS else engines([name])[0]
-    return study.measure(engine)
-
-
-@pytest.mark.parametrize("name", ["reference", "intact"])
-def test_every_statement_holds_in_a_sound_engine(name):
-    assert verdicts(measured(name)) == dict.fromkeys(CLAIMS, Verdict.AGREES)
-
-
-@pytest.mark.parametrize(
-    ("fault", "claim", "expected"),
-    [
-        (fault, claim, expected)
-        for fault, row in TABLE.items()
-        for claim, expected in zip(CLAIMS, row, strict=True)
-    ],
-)
-def test_each_claim_sees_the_faults_that_concern_it(fault, claim, expected):
-    assert verdicts(measured(fault))[claim] is expected
+    def test_the_animation_is_a_gif_of_more_than_50_frames_that_move(self):
+        (content,) = animate({"reference": self.found("reference").data}, until=20.8).values()
+        with PIL.Image.open(io.BytesIO(content)) as picture:
+            assert picture.format == "GIF"
+            assert picture.n_frames > 50
+            assert picture.info["loop"] == 0
+            pixels = []
+            for frame in range(picture.n_frames):
+                picture.seek(frame)
+                pixels.append(np.asarray(picture.convert("RGB"), dtype=int))
+        steps = [np.abs(after - before).max() for before, after in itertools.pairwise(pixels)]
+        assert min(steps) > 50
+        shades = np.concatenate([frame.reshape(-1, 3) for frame in pixels[:: len(pixels) - 1]])
+        assert np.ptp(shades) > 200  # neither blank nor black
 
 
 @pytest.mark.parametrize("count", [-1, 1])
@@ -110,81 +102,43 @@ def test_one_stick_phase_too_few_or_too_many_at_the_end_is_seen(count):
             return replace(trajectory, phases=(*phases, last_stick, last, replace(last, kind="stick")))
         return replace(trajectory, phases=(*phases, last))
 
-    engine = Engine("miscounting", simulated)
-    claim = study._claim_all_events(engine, functools.partial(study._run, engine), "whirl")
-    assert claim.verdict is Verdict.DIFFERS
+    found = STUDY.measure(Engine("miscounting", simulated), only=("all_sticks",)).claims
+    assert [claim.verdict for claim in found] == [Verdict.DIFFERS] * len(FIG5_STARTS)
 
 
 def test_a_pin_that_sticks_too_seldom_has_no_critical_velocity_rather_than_an_error():
-    assert math.isnan(study.critical_velocity(FAULTS["stick never ends"], 1e-8))
-    assert math.isnan(study.critical_velocity(FAULTS["wrong sign"], 1e-6))
+    assert math.isnan(theory.critical_velocity(TestFig05.faults["stick never ends"], 1e-8))
+    assert math.isnan(theory.critical_velocity(TestFig05.faults["wrong sign"], 1e-6))
 
 
-@pytest.mark.parametrize("name", study.FIG5_STARTS)
+@pytest.mark.parametrize("name", FIG5_STARTS)
 def test_first_stick_and_release_found_by_a_plain_event_are_those_of_the_reference(name):
     """Two ways to the same times: an event on the slip of (1) with (7), and slip-polar coordinates."""
-    times = study.first_stick_and_release(name, 4e-13)
-    assert times == pytest.approx(study.reference_events(name)[:2], abs=1e-10)
+    times = theory.first_stick_and_release(name, 4e-13)
+    assert times == pytest.approx(theory.reference_events(name)[:2], abs=1e-10)
 
 
 def test_the_plain_event_does_not_depend_on_the_slip_at_which_it_is_put():
     """That slip is 1e4 times the tolerance: what is left of the time is taken from its closed form."""
-    for name in study.FIG5_STARTS:
-        near, far = (study.first_stick_and_release(name, tolerance) for tolerance in (4e-13, 4e-11))
+    for name in FIG5_STARTS:
+        near, far = (theory.first_stick_and_release(name, tolerance) for tolerance in (4e-13, 4e-11))
         # The time left over is of the order s/(μN/m), and right to s times its derivatives.
         assert far == pytest.approx(near, abs=1e2 * 4e-11)
 
 
 def test_the_critical_velocity_of_the_map_divides_the_ends_of_long_runs():
     """The map from one stick phase to the next, and a plain bisection on where the pin is after 220 s."""
-    reference = engines(["reference"])[0]
+    reference = engine_named("reference")
     low, high = 0.0277, 0.0279
-    assert study.outside_at_end(reference, low, 1e-9) < 0.0
-    assert study.outside_at_end(reference, high, 1e-9) > 0.0
-    while high - low > study.CAPTURE:
+    assert theory.outside_at_end(reference, low, 1e-9) < 0.0
+    assert theory.outside_at_end(reference, high, 1e-9) > 0.0
+    while high - low > parameters.CAPTURE:
         middle = 0.5 * (low + high)
-        if study.outside_at_end(reference, middle, 1e-9) > 0.0:
+        if theory.outside_at_end(reference, middle, 1e-9) > 0.0:
             high = middle
         else:
             low = middle
-    assert low <= study.critical_velocity(reference, 1e-10) <= high
-
-
-@pytest.fixture(scope="module")
-def data():
-    """What both engines leave for the figures; the second one in the place of a slower one."""
-    return {"reference": measured("reference").data, "exudyn": measured("intact").data}
-
-
-@pytest.mark.parametrize("names", [("reference", "exudyn"), ("reference",), ("exudyn",), ()], ids=str)
-def test_figures_are_drawn_whatever_is_there(data, names):
-    figures = study.draw({name: data[name] for name in names})
-    assert set(figures) | {"fig05-animation"} == set(study.STUDY.figures)
-    for figure in figures.values():
-        figure.canvas.draw()
-
-
-def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(data):
-    (figure,) = study.draw(data | {"broken": measured("square").data}).values()
-    labels = [line.get_label() for line in figure.axes[2].lines]
-    assert labels.count("exudyn") == 1
-    assert "broken" not in labels
-
-
-def test_the_animation_is_a_gif_of_more_than_50_frames_that_move(data):
-    (content,) = animate(data, until=20.8).values()
-    with PIL.Image.open(io.BytesIO(content)) as picture:
-        assert picture.format == "GIF"
-        assert picture.n_frames > 50
-        assert picture.info["loop"] == 0
-        pixels = []
-        for frame in range(picture.n_frames):
-            picture.seek(frame)
-            pixels.append(np.asarray(picture.convert("RGB"), dtype=int))
-    steps = [np.abs(after - before).max() for before, after in itertools.pairwise(pixels)]
-    assert min(steps) > 50
-    shades = np.concatenate([frame.reshape(-1, 3) for frame in pixels[:: len(pixels) - 1]])
-    assert np.ptp(shades) > 200  # neither blank nor black
+    assert low <= theory.critical_velocity(reference, 1e-10) <= high
 
 
 def test_there_is_no_animation_without_an_engine():

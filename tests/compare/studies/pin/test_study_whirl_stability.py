@@ -1,78 +1,67 @@
-"""The study of the whirl agrees for every sound engine and fails for each broken one."""
+"""The study of the whirl: what its claims see, and that its theory sees wrong formulas."""
 
 import numpy as np
 import pytest
 from broken_engines import broken_engines
-from studies_under_test import findings_of, for_every_sound_engine, sentences, verdicts
+from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.whirl_stability import claims as study
+from compare.studies.pin.whirl_stability import parameters, theory
+from compare.studies.pin.whirl_stability.claims import STUDY, conditions
+from reference_model.formulas.pin import characteristic_coefficients_as_printed
 
-FEW = {"speeds": (1.5,), "starts": (0.8, 1.5), "points": ((1.5, 0.1), (1.5, 1.0))}
-ALL = {
-    study.RADIUS,
-    study.FREQUENCY,
-    study.BALANCE,
-    study.CAUGHT_BELOW,
-    study.EIGENVALUES,
-    study.STABLE,
-    study.HISTORY,
-}
+SPEEDS, STARTS, POINTS = {"speeds": (1.5,)}, {"starts": (0.8, 1.5)}, {"points": ((1.5, 0.1), (1.5, 1.0))}
 
 
-@for_every_sound_engine
-def test_every_statement_holds_in_a_sound_engine(engine):
-    findings = study.measure(engine, **FEW)
-    found = verdicts(findings)
-    if engine.name == "intact":  # it knows the radius to 1.4e-9 m or so, and the claim asks for 1.2e-9 m
-        assert found.pop(study.RADIUS) is not Verdict.DIFFERS
-    assert found == dict.fromkeys(found, Verdict.AGREES)
-    assert set(found) | {study.RADIUS} == ALL
-
-
-@pytest.mark.parametrize(
-    ("fault", "seen"),
-    [
+class TestWhirlStability(StudyTests):
+    study = STUDY
+    sound = ("reference", "exudyn")
+    few = {
+        "radius": SPEEDS,
+        "frequency": SPEEDS,
+        "balance": STARTS,
+        "caught": STARTS,
+        "eigenvalues": POINTS,
+        "stable": POINTS,
+    }
+    faults = broken_engines()
+    columns = ("radius", "frequency", "balance", "caught", "eigenvalues", "stable", "history")
+    table = {
         # The pin whirls backwards on a circle of the right radius: only (11)'s radius does not see that.
-        ("wrong sign", ALL - {study.RADIUS}),
-        ("square", {study.RADIUS, study.FREQUENCY, study.EIGENVALUES, study.HISTORY}),
+        "wrong sign": (LEFT_OUT, SEES, SEES, SEES, SEES, SEES, SEES),
+        "square": (SEES, SEES, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, SEES),
         # The pin ends stuck to the disc whatever the damping, and deviations still decay, only slower.
-        ("half the damping", {study.RADIUS, study.BALANCE, study.EIGENVALUES, study.HISTORY}),
-    ],
-)
-def test_a_broken_engine_is_found_out(fault, seen):
-    findings = study.measure(broken_engines()[fault], **FEW)
-    assert seen <= sentences(findings, Verdict.DIFFERS)
+        "half the damping": (SEES, LEFT_OUT, SEES, LEFT_OUT, SEES, LEFT_OUT, SEES),
+    }
+
+    def test_every_claim_holds_in_the_engine_that_faults_are_put_into(self):
+        found = {claim.sentence: claim.verdict for claim in self.found("intact").claims}
+        assert list(found) == list(STUDY.sentences())
+        # It knows the radius to 1.4e-9 m or so, and the claim asks for 1.2e-9 m.
+        radius = next(iter(found))
+        assert found.pop(radius) is not Verdict.DIFFERS
+        assert found == dict.fromkeys(found, Verdict.AGREES)
 
 
-def test_the_theory_holds():
-    assert set(verdicts(study.theory()).values()) == {Verdict.AGREES}
+def verdict(function):
+    (claim,) = STUDY.measure_theory(only=(function,)).claims
+    return claim.verdict
 
 
 def test_the_count_of_disagreements_sees_a_wrong_condition(monkeypatch):
     """The margin of (16) shifted a little disagrees with the eigenvalues at some points of the grid."""
-    margin = study.upper_branch_margin
-    monkeypatch.setattr(study, "upper_branch_margin", lambda pin: margin(pin) + 0.02)
-    *_, claims = study.hurwitz()
-    assert {claim.sentence: claim.verdict for claim in claims}[study.HURWITZ] is Verdict.DIFFERS
+    margin = conditions.upper_branch_margin
+    monkeypatch.setattr(conditions, "upper_branch_margin", lambda pin: margin(pin) + 0.02)
+    assert verdict("hurwitz") is Verdict.DIFFERS
 
 
 def test_the_printed_equation_13_does_not_pass(monkeypatch):
-    from reference_model.formulas.pin import characteristic_coefficients_as_printed
-
-    monkeypatch.setattr(study, "characteristic_coefficients", characteristic_coefficients_as_printed)
-    assert study.three_forms_claim().verdict is Verdict.DIFFERS
+    monkeypatch.setattr(conditions, "characteristic_coefficients", characteristic_coefficients_as_printed)
+    assert verdict("same_eigenvalues") is Verdict.DIFFERS
 
 
 def test_the_linear_deviation_solves_the_linear_equations():
     times = np.linspace(0.0, 2.0, 201)
-    deviation = study.linear_deviation(times)
+    deviation = theory.linear_deviation(times)
     assert deviation[0] == 1.0
-    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(study.K, rel=0.01)
-
-
-def test_figures_are_drawn_whatever_is_there():
-    data = {"reference": findings_of(study, "reference", FEW).data, "theory": study.theory().data}
-    assert set(study.draw(data)) == set(study.STUDY.figures)
-    for part in ({}, {"theory": data["theory"]}, {"reference": data["reference"]}):
-        assert set(study.draw(part)) <= set(study.STUDY.figures)
+    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(parameters.K, rel=0.01)

@@ -1,0 +1,94 @@
+"""Where whirl and equilibrium end, by formulas and by the reference's orbits; no engine takes part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from compare.claims.error_estimates import extrapolated_order
+from compare.claims.measured import Measured
+from compare.studies.disc.fig09.claims.study import STUDY
+from compare.studies.disc.fig09.parameters import CENTRED, DAMPINGS, PAPER_LAW, RING, SOURCE
+from compare.studies.disc.fig09.theory import (
+    last_stable_load,
+    marginal_ratio,
+    orbits,
+    weak_damping_load,
+)
+from reference_model import smallest_load_with_whirl
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.formulas.disc import whirl_at
+
+
+@STUDY.claim(
+    "Without offset the whirl ends in a fold: at its smallest load an eigenvalue of it passes zero",
+    equation="(20), (23)",
+    unit="N",
+    note="Predicted: the minimum of the load over the ratio of the slip speeds of rim and centre. Measured: the load "
+    "where the eigenvalue is zero, to 1e-6 of that ratio; the load is flat there.",
+    swept=("friction_force",),
+)
+def fold() -> Measured:
+    """Compare the loads at which an eigenvalue passes zero with the smallest ones of the balances."""
+    laws: Sequence[IsotropicContact | None] = (None, PAPER_LAW)
+    measured = [whirl_at(CENTRED, marginal_ratio(law), law).load for law in laws]
+    return Measured(
+        predicted=[smallest_load_with_whirl(CENTRED, law) for law in laws],
+        value=measured,
+        error=1e-12 * max(measured),
+        resolution=1e-9 * max(measured),
+        components=("continuous ring", "(23)"),
+        system=CENTRED,
+    )
+
+
+@STUDY.claim(
+    "As β → 0 the equilibrium loses its stability at β over the rate by which friction feeds its circular motion",
+    resolution=0.05,
+    note=f"Order in β of the error, for β = {', '.join(f'{damping:g}' for damping in DAMPINGS)} N s/m, extrapolated. "
+    "Not in the paper, which has the equilibrium stable.",
+    swept=("friction_force", "damping"),
+)
+def weak_damping() -> Measured:
+    """Observe the order in β of the error of ``weak_damping_load``."""
+    discs = [replace(RING, damping=float(damping)) for damping in DAMPINGS]
+    errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
+    order, numerical, model = extrapolated_order(errors, 1e-12)
+    return Measured(
+        predicted=1.0,
+        value=order,
+        error=numerical,
+        model=model,
+        source=f"{SOURCE}; the falling β are ours",
+        note=f"With the β of Fig. 9 it loses its stability at {last_stable_load(RING):.6f} N, "
+        f"{weak_damping_load(RING):.6f} N by this formula: far below C·X0, where sticking begins.",
+    )
+
+
+@STUDY.claim(
+    "The inner, unstable whirl shrinks onto the equilibrium at the load where that loses its stability",
+    unit="N",
+    note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. Measured: "
+    "the load of the reference's inner whirls, found by shooting, as a polynomial in the square of their size (root "
+    "of the mean square distance from the centre), at zero. Model error: the change with one orbit less. So the "
+    "basin of the equilibrium shrinks to nothing there.",
+    basis="reference",
+    named={"last stable load": 0},
+    swept=("friction_force",),
+)
+def merges() -> Measured:
+    """Extrapolate the load of the last orbits to one of no size."""
+    load = np.array([orbit.system.friction_force for orbit in orbits()])
+    square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in orbits()])
+    near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))
+    return Measured(
+        predicted=last_stable_load(RING),
+        value=near,
+        error=1e-9 * near,
+        model=abs(near - far),
+        resolution=0.01 * near,
+        note=f"Sizes: {math.sqrt(square[-4]):.2g} to {math.sqrt(square[-1]):.2g} m.",
+    )

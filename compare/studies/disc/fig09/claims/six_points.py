@@ -1,0 +1,136 @@
+"""The disc on six points, as the paper simulated it."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from compare.claims.error_estimates import refined
+from compare.claims.linearised_flow import rotated
+from compare.claims.measured import Measured
+from compare.engines import Engine
+from compare.studies.disc.fig09.claims.searches import circle, circles_of, rest, rests_of
+from compare.studies.disc.fig09.claims.study import STUDY
+from compare.studies.disc.fig09.parameters import (
+    CENTRED,
+    CIRCLES,
+    OUTSIDE,
+    REFERENCE_TOLERANCE,
+    REST_LOADS,
+    RING,
+    SOURCE_CENTRED,
+    STICK_LOADS,
+    TOLERANCE,
+    on_six,
+)
+from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, stuck_at
+from compare.studies.toolkit.self_centred import with_load
+from reference_model import simulate
+from reference_model.systems import FloatArray
+
+REFERENCE = Engine("reference", simulate, ("points",))
+
+BY_REFERENCE = f"Predicted by the reference at tolerance {REFERENCE_TOLERANCE:g}."
+
+
+@STUDY.claim(
+    "On six points the whirl without offset, in the mean, is that of exact Coulomb friction",
+    equation="(19)–(21)",
+    kind="trajectory",
+    resolution=1e-6,
+    note=f"In units of μN/(βk), k and ω; means over the motion that comes back turned. {BY_REFERENCE}",
+    swept=("friction_force",),
+)
+def six_circles(engine: Engine) -> Measured:
+    """Compare the whirls on six points with those of the reference."""
+    found = circles_of(engine, on_six(CENTRED))
+    predicted = np.array([_circle_of_reference(*one) for one in CIRCLES])
+    beside = np.abs(predicted[:, 0] - [circle_of(*one).radius / radius_of_pin(one[0]) for one in CIRCLES])
+    loads = [load for load, _ in CIRCLES]
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("radius", "frequency", "spin"),
+        system=on_six(CENTRED),
+        source=SOURCE_CENTRED,
+        note=f"In radius it differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
+        "1e-9 from 0.001 N on: slip is along the circle then, at all points.",
+        data={"circle load": loads, "six circle": found.value},
+    )
+
+
+@functools.cache
+def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
+    return tuple(circle(REFERENCE, on_six(CENTRED), load, which, REFERENCE_TOLERANCE))
+
+
+@STUDY.claim(
+    "On six points the self-centred disc, in the mean, rests and spins as exact Coulomb friction has it",
+    equation="(19)–(21)",
+    kind="trajectory",
+    resolution=1e-7,
+    note="Means in units of X0 and ω over the motion that comes back after a sixth of a turn. "
+    + BY_REFERENCE,
+    swept=("friction_force",),
+)
+def six_rests(engine: Engine, loads: Sequence[float] = REST_LOADS) -> Measured:
+    """Compare the motions about the equilibrium on six points with those of the reference."""
+    found = rests_of(engine, on_six(RING), loads)
+    return Measured(
+        predicted=[_rest_of_reference(load) for load in loads],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        system=on_six(RING),
+        data={"rest load": loads, "six rest": found.value},
+    )
+
+
+@functools.cache
+def _rest_of_reference(load: float) -> tuple[float, ...]:
+    return tuple(rest(REFERENCE, on_six(RING), load, REFERENCE_TOLERANCE))
+
+
+@STUDY.claim(
+    "A disc stuck on six points further out slips away as exact Coulomb friction has it",
+    equation="(7)",
+    kind="trajectory",
+    resolution=2e-3,
+    note="Displacement on the master disc in units of the radius, and spin less ω in units of ω, half as long again "
+    f"after the start as (7) has it for the continuous ring; at {OUTSIDE[-1]:g} of the radius (9). {BY_REFERENCE}",
+    swept=("friction_force",),
+)
+def six_releases(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measured:
+    """Compare how far discs outside of the radius (9) have slipped on six points with the reference."""
+    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], TOLERANCE)
+    predicted = [_slipped_in_reference(load) for load in loads]
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.rows,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        system=on_six(RING),
+        note=f"By then the disc has slipped by {', '.join(f'{math.hypot(*one[:2]):.2g}' for one in predicted)} of "
+        "the radius.",
+    )
+
+
+def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
+    disc = on_six(with_load(RING, load))
+    start, release = stuck_at(disc, OUTSIDE[-1])
+    end = 1.5 * release
+    run = engine.simulate(disc, start, [0.0, end], tolerance=tolerance)
+    away = rotated(run.at_end, -disc.disc_speed * end) - start
+    return np.array([*away[:2] / np.hypot(*start[:2]), away[-1] / disc.disc_speed])
+
+
+@functools.cache
+def _slipped_in_reference(load: float) -> tuple[float, ...]:
+    return tuple(_slipped(REFERENCE, load, REFERENCE_TOLERANCE))

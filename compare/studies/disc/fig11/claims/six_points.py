@@ -1,0 +1,84 @@
+"""The modulated motion on six points, of which single ones come to rest."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from compare.claims.error_estimates import refined
+from compare.claims.measured import Measured
+from compare.engines import Engine
+from compare.studies.disc.fig11.claims.study import STUDY
+from compare.studies.disc.fig11.parameters import EXTREMES, ROUND, TIMES
+from compare.studies.disc.fig11.theory import extremes_of
+from compare.studies.toolkit.fig11_motion import SIX, START
+from reference_model import Trajectory, simulate
+from reference_model.systems import FloatArray
+
+NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
+
+
+@STUDY.claim(
+    "Single points of six come to rest, so that the disc turns about them, when the reference says",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s",
+    resolution=1e-2,
+    note=f"{NOTE} A rest too many or too few shows as a missing number.",
+)
+def points_rest(engine: Engine) -> Measured:
+    """Compare when single points come to rest and let go with when they do in the reference."""
+    predicted = rests_of_points(_reference())
+
+    def rests(tolerance: float) -> FloatArray:
+        found = rests_of_points(_run(engine, tolerance))
+        return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
+
+    found = refined(rests)
+    longer = engine.simulate(SIX, START, TIMES, tolerance=1e-8)
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=float(np.max(np.nan_to_num(found.error, nan=np.inf))),
+        components=[
+            f"{what} {1 + i}" for i in range(len(predicted) // 2) for what in ("start of rest", "end of rest")
+        ],
+        system=SIX,
+        data={"six points": longer.states, "six points: rests": rests_of_points(longer)},
+    )
+
+
+@STUDY.claim(
+    "Least and greatest radius and spin of the modulated motion on six points within 300 s",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-5,
+    note=NOTE,
+)
+def extremes_on_six_points(engine: Engine) -> Measured:
+    """Compare the extremes over one modulation with those of the reference."""
+    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), alike=False)
+    return Measured(
+        predicted=extremes_of(_reference()),
+        value=found.value,
+        error=found.largest,
+        components=EXTREMES,
+        system=SIX,
+    )
+
+
+def rests_of_points(trajectory: Trajectory) -> FloatArray:
+    """Return when single points come to rest and let go, in s, one after the other, shape (2·rests,)."""
+    return np.ravel([(phase.start, phase.end) for phase in trajectory.phases if phase.kind == "pivot"])
+
+
+@functools.lru_cache(maxsize=4)
+def _run(engine: Engine, tolerance: float) -> Trajectory:
+    return engine.simulate(SIX, START, ROUND, tolerance=tolerance)
+
+
+@functools.cache
+def _reference() -> Trajectory:
+    return simulate(SIX, START, ROUND, tolerance=1e-11)

@@ -1,0 +1,186 @@
+"""Sliding for a while, and how small deviations from the whirl of Fig. 11 grow, on ring and on single points."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from scipy.stats import t as student
+
+from compare.claims.error_estimates import Measurement, refined
+from compare.claims.linearised_flow import ComplexArray, rotated
+from compare.claims.measured import Measured
+from compare.engines import Engine
+from compare.studies.disc.fig11.claims.study import STUDY
+from compare.studies.disc.fig11.parameters import (
+    AMPLITUDE,
+    CENTRED,
+    COMPONENTS,
+    DURATION,
+    FOLLOWED,
+    SLIDING,
+    SLIDING_START,
+    TOLERANCE,
+)
+from compare.studies.disc.fig11.theory import SteadyWhirl, steady_whirl
+from compare.studies.toolkit.fig11_motion import DISCS, integrated
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
+
+NOTE = (
+    f"Rate and frequency of a deviation of {AMPLITUDE:g} radii, followed for {DURATION:g} s to either side: straight "
+    "lines through logarithm and phase of its share in the pair of modes. Error: scatter about the lines, the change "
+    "with twice the deviation, and at a smaller tolerance."
+)
+
+
+@STUDY.claim(
+    "A disc on {} that slides moves for 100 s as (19) to (21) say, integrated as they stand",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad, m/s, rad/s",
+    resolution=1e-8,
+    each=tuple(DISCS),
+)
+def slides(engine: Engine, contact: str) -> Measured:
+    """Compare the trajectory of a disc that slides all the time with an integration of (19) as it stands."""
+    disc = DISCS[contact]
+    predicted, rougher = (
+        integrated(disc, SLIDING_START, SLIDING[-1], len(SLIDING), tolerance) for tolerance in (3e-14, 2e-13)
+    )
+    found = refined(
+        lambda tolerance: engine.simulate(disc, SLIDING_START, SLIDING, tolerance=tolerance).states, 5e-10
+    )
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        # A single number may be right by chance.
+        error=found.largest + float(np.max(np.abs(rougher - predicted))),
+        at={"t in s": SLIDING},
+        components=COMPONENTS,
+        system=disc,
+        source=f"{CENTRED}; start {SLIDING_START} is an assumption",
+        named={f"slip for 100 s on {contact}": None},
+    )
+
+
+@STUDY.claim(
+    "A small deviation from the whirl on {} grows at the rate that its linearisation gives",
+    equation="(19)–(21)",
+    unit="1/s",
+    note=NOTE,
+    basis="reference",
+    each=tuple(DISCS),
+)
+def rate_of_growth(engine: Engine, contact: str) -> Measured:
+    """Compare the growth of a deviation with the real part of the slowest pair of eigenvalues."""
+    found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
+    times, sizes = departure(engine, DISCS[contact], whirl, FOLLOWED)
+    return Measured(
+        predicted=whirl.eigenvalue.real,
+        value=found.value[0],
+        error=found.error[0],
+        resolution=1e-2 * abs(whirl.eigenvalue.real),
+        system=DISCS[contact],
+        source=CENTRED,
+        note=_linearised(DISCS[contact]),
+        named={f"rate of growth on {contact}": 0},
+        data={f"{contact}: departure": np.column_stack((times, sizes))},
+    )
+
+
+@STUDY.claim(
+    "A small deviation from the whirl on {} swings with the frequency that its linearisation gives",
+    equation="(19)–(21)",
+    unit="1/s",
+    note=NOTE,
+    basis="reference",
+    each=tuple(DISCS),
+)
+def frequency_of_growth(engine: Engine, contact: str) -> Measured:
+    """Compare the frequency of a deviation with the imaginary part of the slowest pair of eigenvalues."""
+    found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
+    return Measured(
+        predicted=whirl.eigenvalue.imag,
+        value=found.value[1],
+        error=found.error[1],
+        resolution=5e-3 * abs(whirl.eigenvalue.imag),
+        system=DISCS[contact],
+        source=CENTRED,
+        note=_linearised(DISCS[contact]),
+        named={f"frequency of growth on {contact}": 0},
+    )
+
+
+def _linearised(disc: DiscOnDisc) -> str:
+    if disc.contact_points is None:
+        return "Predicted: the eigenvalues in the frame that turns with the whirl."
+    return (
+        "Predicted: the multipliers of the whirl on points, which comes back turned after "
+        f"{steady_whirl(disc).period:.4g} s, by the reference."
+    )
+
+
+@functools.lru_cache(maxsize=4)
+def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
+    """Return growth rate and frequency in 1/s of a deviation from the whirl under a law of ``contact``, shape (2,).
+
+    Straight lines through ln|q| and the phase of q over time. The error is the 95 % interval that the scatter about
+    them gives, the change with a deviation twice as large and that at a smaller tolerance.
+    """
+    whirl = steady_whirl(disc, contact)
+    (measured, scatter), (error, _) = refined(
+        lambda tolerance: fitted(*deviation(engine, disc, whirl, AMPLITUDE, tolerance)), TOLERANCE
+    )
+    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * AMPLITUDE, TOLERANCE))
+    return Measurement(measured, scatter + np.abs(larger - measured) + error)
+
+
+def deviation(
+    engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, amplitude: float, tolerance: float
+) -> tuple[FloatArray, ComplexArray]:
+    """Return times in s, once a period, and the share of the pair in a deviation, 1 at the start.
+
+    Half the difference of two simulations that start on opposite sides of the whirl: its even powers drop out.
+    """
+    turns = np.arange(round(DURATION / whirl.period) + 1)
+    times = turns * whirl.period
+    outwards, inwards = (
+        rotated(
+            engine.simulate(disc, whirl.displaced(sign * amplitude), times, tolerance=tolerance).states,
+            -turns * whirl.turn,
+        )
+        for sign in (1.0, -1.0)
+    )
+    # The start is the real part of the mode: half of it, and half of its conjugate.
+    share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
+    return np.asarray(times, dtype=float), np.asarray(share)
+
+
+def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return the slopes of ln|q| and of the phase of q, and what the scatter leaves open of them."""
+    logarithms = np.column_stack((np.log(np.abs(share)), np.unwrap(np.angle(share))))
+    matrix = np.column_stack((np.ones_like(times), times))
+    inverse = np.linalg.pinv(matrix)
+    coefficients = inverse @ logarithms
+    freedom = len(times) - 2
+    residual = np.linalg.norm(logarithms - matrix @ coefficients, axis=0) / math.sqrt(freedom)
+    scatter = float(student.ppf(0.975, freedom)) * float(np.linalg.norm(inverse[1])) * residual
+    return coefficients[1], scatter
+
+
+def departure(
+    engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, until: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return times in s, once a period, and the size of the pair's share in units of the radius.
+
+    The deviation starts ten times as large as that of :func:`deviation`, and is followed beyond where it is small.
+    """
+    turns = np.arange(round(until / whirl.period) + 1)
+    times = turns * whirl.period
+    run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-8)
+    away = rotated(run.states, -turns * whirl.turn) - whirl.state
+    away[:, ANGLE] -= turns * whirl.advance
+    sizes = np.abs(away @ whirl.projection) / whirl.radius
+    return np.asarray(times, dtype=float), np.asarray(sizes)

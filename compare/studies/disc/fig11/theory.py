@@ -1,0 +1,331 @@
+"""Fig. 11 without an engine: the whirl and its modes, the modulated cycle, and the branches over the offset."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from compare.claims.linearised_flow import ComplexArray, rotated
+from compare.claims.paper_parameters import FIG11
+from compare.claims.study import Data
+from compare.engines import Engine
+from compare.studies.disc.fig11.parameters import (
+    BRANCH,
+    EXPANSION,
+    SAMPLES_A_TURN,
+    STEP,
+    TIMES,
+    TRIED,
+    UNTIL,
+    WHIRL_TOLERANCE,
+    WITHOUT_ANGLE,
+)
+from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated, rates
+from compare.studies.toolkit.steady_motion import steady_motion
+from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.steady.stability import jacobian_without_angle, turning_frame_jacobian
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
+
+# ---------------------------------------------------------------- the whirl and the modes by which it is left
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyWhirl:
+    """A whirl that comes back turned after each period, and the pair of modes by which it is left.
+
+    On the continuous ring it is a circle, which comes back at any time. On n points it has a ripple besides, which
+    repeats whenever the disc has turned by 2π/n against the line from the axis to its centre.
+
+    Parameters
+    ----------
+    state : array of shape (6,)
+        A state on the whirl.
+    period : float
+        In s.
+    turn, advance : float
+        Angle in rad by which all has turned about the axis in a period, and by which the disc has turned further.
+    eigenvalue : complex
+        Growth rate and frequency in 1/s of the pair that decays slowest, with the positive frequency.
+    mode, projection : complex array of shape (6,)
+        Right and left eigenvector, with a product of 1: of a deviation d, in the axes that turn with the whirl, the
+        share projection·d grows with the eigenvalue.
+
+    """
+
+    state: FloatArray
+    period: float
+    turn: float
+    advance: float
+    eigenvalue: complex
+    mode: ComplexArray
+    projection: ComplexArray
+
+    @property
+    def radius(self) -> float:
+        """Of the circle on which the centre starts, in m."""
+        return math.hypot(*self.state[:2])
+
+    def displaced(self, amplitude: float) -> FloatArray:
+        """Return the state displaced along the mode by ``amplitude``, in units of the radius."""
+        return np.asarray(self.state + amplitude * self.radius * self.mode.real)
+
+
+@functools.cache
+def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
+    """Return the whirl of ``disc`` without offset under its own law or that of ``contact``.
+
+    On points it is the one next to the circle of the continuous ring.
+    """
+    ring = replace(disc, contact_points=None)
+    circle = whirls(ring, contact)[0]
+    if disc.contact_points is not None:
+        return _on_points(disc, circle.state)
+    values, right = np.linalg.eig(turning_frame_jacobian(ring, circle.state, contact))
+    mode, projection = _growing(values, right)
+    period = 2.0 * math.pi / circle.frequency
+    # The angle, of which nothing depends, does not take part.
+    return SteadyWhirl(
+        circle.state,
+        period,
+        2.0 * math.pi,
+        circle.spin * period - 2.0 * math.pi,
+        next(value for value in circle.eigenvalues if value.imag > 0.0),
+        np.insert(mode, ANGLE, 0.0),
+        np.insert(projection, ANGLE, 0.0),
+    )
+
+
+def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
+    """Return the whirl on points near to the state ``guess``, with its linearised return map by differences."""
+    reference = Engine("reference", simulate, ("points",))
+    motion = steady_motion(reference, disc, guess, WHIRL_TOLERANCE)
+    if motion is None:
+        raise RuntimeError(f"no whirl on {disc.contact_points} points near the circle of the ring")
+    period, turn = motion.period, motion.frequency * motion.period
+
+    def returned(state: FloatArray) -> FloatArray:
+        return rotated(simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end, -turn)
+
+    step = STEP * guess[0]
+    columns = [
+        (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
+        for shift in step * np.eye(disc.state_size)
+    ]
+    multipliers, right = np.linalg.eig(np.column_stack(columns))
+    values = np.log(multipliers.astype(complex)) / period
+    mode, projection = _growing(values, right)
+    return SteadyWhirl(
+        motion.state, period, turn, motion.spin * period - turn, _pair(values), mode, projection
+    )
+
+
+def _pair(values: ComplexArray) -> complex:
+    """Return the eigenvalue of the slowest pair, with the positive imaginary part."""
+    return complex(max((value for value in values if value.imag > 0.0), key=lambda value: value.real))
+
+
+def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return both eigenvectors of the slowest pair, the right one with its place of length 1."""
+    which = int(np.argmin(np.abs(values - _pair(values))))
+    left = np.linalg.inv(right)[which]
+    size = np.linalg.norm(right[:2, which])
+    return np.asarray(right[:, which] / size), np.asarray(left * size)
+
+
+# ---------------------------------------------------------------- the modulated cycle
+
+
+def modulations(states: FloatArray) -> FloatArray:
+    """Return period, turn, least and greatest radius and spin of each modulation at ``TIMES``, shape (n, 6).
+
+    In s, rad, m and rad/s, from one maximum of the radius to the next; no rows where there are no two.
+    """
+    x, y = states[:, 0], states[:, 1]
+    radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
+    angle = CubicSpline(TIMES, np.unwrap(np.arctan2(y, x)))
+    turning, of_spin = (curve.derivative().roots(extrapolate=False) for curve in (radius, spin))
+    largest = turning[radius(turning, 2) < 0.0]
+    rows = []
+    for start, end in itertools.pairwise(largest):
+        radii = radius(turning[(start <= turning) & (turning <= end)])
+        spins = spin([start, *of_spin[(start < of_spin) & (of_spin < end)]])
+        rows.append(
+            [end - start, angle(end) - angle(start), radii.min(), radii.max(), spins.min(), spins.max()]
+        )
+    return np.array(rows).reshape(-1, 6)
+
+
+def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the last row of :func:`modulations` and its change from the one before, no numbers without them."""
+    found = modulations(states)
+    if len(found) < 2:
+        return np.full(6, np.nan), np.full(6, np.nan)
+    return found[-1], np.abs(found[-1] - found[-2])
+
+
+@functools.cache
+def predicted_modulation() -> tuple[FloatArray, FloatArray]:
+    """Return the last modulation of (19), integrated as it stands, and its error, both of shape (6,)."""
+    fine, rough = (
+        last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
+    )
+    return fine[0], np.abs(rough[0] - fine[0]) + fine[1]
+
+
+def extremes_of(trajectory: Trajectory) -> FloatArray:
+    """Return least and greatest radius in m and spin in rad/s, shape (4,)."""
+    found = []
+    for values in (trajectory.radius, trajectory.states[:, 5]):
+        curve = CubicSpline(trajectory.times, values)
+        all_values = [*curve(curve.derivative().roots(extrapolate=False)), *values[[0, -1]]]
+        found += [min(all_values), max(all_values)]
+    return np.array(found)
+
+
+# ---------------------------------------------------------------- whirl and equilibrium over the offset
+
+
+def disc_at(offset: float) -> DiscOnDisc:
+    """Return the disc of Fig. 11 with another X0 in m."""
+    return replace(FIG11, offset=offset)
+
+
+def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
+    """Return the modulus of the largest pair of conjugate multipliers; no number if there is none."""
+    return max((abs(value) for value in multipliers if value.imag > 0.0), default=math.nan)
+
+
+def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
+    """Return X0 in m of modulus 1, its error, the slope in 1/m, and the whirl in the middle of ``TRIED``.
+
+    From a parabola through the moduli at ``TRIED``; the error is the change by a straight line through the two that
+    are next to it, which is more than a term of third degree makes. Raises ``RuntimeError`` where there is no such
+    whirl, or none that is nearly critical.
+    """
+    orbits: list[Orbit] = []
+    for offset in TRIED:
+        guess = orbits[-1] if orbits else _whirl_of_reference()
+        orbits.append(
+            whirl_orbit(
+                disc_at(offset),
+                simulate=engine.simulate,
+                guess=guess,
+                tolerance=tolerance,
+                samples=SAMPLES_A_TURN,
+            )
+        )
+    middle = TRIED[1]
+    tried, moduli = np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits]
+    parabola = Polynomial.fit(tried, moduli, 2).convert()
+    if not np.all(np.isfinite(parabola.coef)):
+        raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
+    # So far from where it was laid a parabola says nothing any more.
+    roots = [root.real for root in parabola.roots() if root.imag == 0.0 and abs(root.real) < 0.1 * middle]
+    if not roots:
+        raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
+    root = float(min(roots, key=abs))
+    nearest = np.argsort(abs(tried - root))[:2]
+    straight = float(Polynomial.fit(tried[nearest], np.take(moduli, nearest), 1).roots()[0])
+    return middle + root, abs(straight - root), float(parabola.deriv()(root)), orbits[1]
+
+
+@functools.cache
+def _whirl_of_reference() -> Orbit:
+    """Return where shooting starts: the whirl at the first X0 of ``TRIED``."""
+    return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
+
+
+@functools.cache
+def critical_offset_of_reference() -> float:
+    """Return the critical X0 in m, from the reference."""
+    return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
+
+
+def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-10) -> ComplexArray:
+    """Return the multipliers, shape (5,), of the whirl of ``disc`` next to the orbit ``near``.
+
+    The orbit is found anew, by Newton's method with the exact derivative of the flow: (19) and its linearisation
+    are integrated together.
+    """
+
+    def equations(_: float, both: FloatArray) -> FloatArray:
+        jacobian = jacobian_without_angle(disc, both[:6])
+        return np.concatenate((rates(disc, both[:6]), (jacobian @ both[6:].reshape(5, 5)).ravel()))
+
+    state, period = near.state.copy(), near.period
+    for _ in range(6):
+        start = np.concatenate((state, np.eye(5).ravel()))
+        run = solve_ivp(equations, (0.0, period), start, method="DOP853", rtol=tolerance, atol=tolerance)
+        end, monodromy = run.y[:6, -1], run.y[6:, -1].reshape(5, 5)
+        miss = (end - state)[WITHOUT_ANGLE]
+        if float(np.max(np.abs(miss))) < 1e-10:
+            return np.asarray(np.linalg.eigvals(monodromy), dtype=complex)
+        by_time = np.array(rates(disc, end))[WITHOUT_ANGLE]
+        by_start = (monodromy - np.eye(5))[:, [0, 2, 3, 4]]  # y = 0 at the start
+        step = np.linalg.solve(np.column_stack((by_start, by_time)), miss)
+        state[[0, 3, 4, 5]] -= step[:4]
+        period -= step[4]
+    raise RuntimeError(f"no whirl at offset = {disc.offset:g} m next to the one at {near.system.offset:g} m")
+
+
+@functools.cache
+def rest_offset() -> float:
+    """Return X0 in m at which the self-centred equilibrium becomes stable.
+
+    The whirl goes on beyond, by a quarter of a per cent of X0.
+    """
+
+    def rate(offset: float) -> float:
+        return self_centred_equilibria(disc_at(offset))[0].eigenvalues[0].real
+
+    return float(brentq(rate, 0.019, 0.022, xtol=1e-12))
+
+
+def extents(run: Trajectory, last: int = 0) -> list[float]:
+    """Return least and greatest radius in m and spin in rad/s, of the ``last`` samples or of all."""
+    radius, spin = run.radius[-last:], run.states[-last:, 5]
+    return [radius.min(), radius.max(), spin.min(), spin.max()]
+
+
+# ---------------------------------------------------------------- what the figures show
+
+
+def curves() -> Data:
+    """Return eigenvalues and cycle of Fig. 11, and the branches of whirl and equilibrium over the offset."""
+    whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
+    return {
+        "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in whirls_of]),
+        "whirls": np.array([(whirl.radius, whirl.state[-1]) for whirl in whirls_of]),
+        "modulation": predicted_modulation()[0],
+        "cycle": integrated(RING, START, UNTIL, len(TIMES), 1e-12),
+        "(23)": simulate(RING, START, TIMES, tolerance=1e-8, contact=EXPANSION).states,
+        **branches(),
+    }
+
+
+def branches() -> Data:
+    """Follow whirl and equilibrium over X0."""
+    orbits: list[Orbit] = []
+    whirling = np.sort([*BRANCH, critical_offset_of_reference()])
+    for offset in whirling:
+        guess = orbits[-1].from_the_right() if orbits else None
+        orbits.append(whirl_orbit(disc_at(float(offset)), guess=guess, tolerance=1e-9, samples=64))
+    resting = np.sort([*np.linspace(0.0005, 0.025, 50), rest_offset()])
+    rest = [self_centred_equilibria(disc_at(float(offset)))[0] for offset in resting]
+    return {
+        "whirl: offset": whirling,
+        "whirl: extents": np.array([extents(orbit.trajectory) for orbit in orbits]),
+        "rest: offset": resting,
+        "rest: place": np.array([(math.hypot(state.x, state.y), state.spin) for state in rest]),
+        "critical offset": np.array(critical_offset_of_reference()),
+        "rest offset": np.array(rest_offset()),
+    }

@@ -1,0 +1,126 @@
+"""The motions by hand of the study of plain motions, and from what others are drawn.
+
+In the paper's parameters m, J and C are one: an engine that takes one for the other moves as it should. Here no two
+parameters are equal, so that each has a part of its own in the motion. A mistake may also be confined to a corner of
+the parameters, to a slow disc or to one that turns the other way: so motions are drawn from that whole range.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from reference_model import DiscOnDisc, PinOnDisc
+from reference_model.systems import System
+
+EXACT = 1e-13
+"""Tolerance of the reference."""
+
+PANEL = 0.25
+"""Length in s of the pieces of time over which forces are integrated."""
+
+STICK_RESOLUTION = 5e-4
+"""In s, so that a millisecond is seen. A law that only approximates stick lets go late, at 1e-9 by some 1e-5 s."""
+
+PIN = PinOnDisc(mass=1.3, stiffness=2.1, damping=0.17, friction_force=0.11, disc_speed=1.9, offset=0.07)
+
+STIFFENING = replace(PIN, hardening=0.4, stop_gap=0.2, stop_stiffness=0.2)
+
+DISC = DiscOnDisc(
+    mass=1.3,
+    polar_inertia=0.7,
+    stiffness=2.1,
+    damping=0.4,
+    friction_force=0.055,
+    disc_speed=1.9,
+    offset=0.03,
+    contact_radius=0.15,
+    shaft_damping=0.02,
+    shaft_speed=0.8,
+)
+
+SIX = replace(DISC, contact_points=6)
+
+OTHER_WAY = replace(DISC, damping=0.15, disc_speed=-1.9, shaft_speed=-1.6)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Parameters, start, length in s, whether it sticks on its way, resolution in SI units, and where it is from.
+
+    ``tolerance`` is that of the engine.
+    """
+
+    system: System
+    start: tuple[float, ...]
+    until: float
+    sticks: bool = False
+    tolerance: float = 1e-10
+    resolution: float = 1e-7
+    source: str = (
+        "parameters of which no two are equal, and a start from which nothing sticks, are our choice"
+    )
+
+
+DISC_START = (0.06, 0.01, 0.2, -0.01, 0.02, 0.9)
+
+PINS = {
+    "a pin": Motion(PIN, (0.6, 0.1, -0.2, 0.5), 20.0),
+    "a pin inside the play of its stop, with the disc turning the other way": Motion(
+        replace(PIN, disc_speed=-PIN.disc_speed, stop_gap=1.0, stop_stiffness=0.2),
+        (0.6, 0.1, -0.1, -0.6),
+        20.0,
+    ),
+    "a pin on a support that hardens, beyond its stop": Motion(STIFFENING, (0.6, 0.1, -0.2, 0.5), 20.0),
+}
+
+PINS_THAT_STICK = {
+    "a pin that sticks on its way": Motion(
+        FIG5,
+        FIG5_STARTS["whirl"],
+        15.0,
+        sticks=True,
+        tolerance=1e-9,
+        resolution=1e-5,
+        source="Fig. 5, second start",
+    )
+}
+
+RINGS = {
+    "a disc on the continuous ring": Motion(DISC, DISC_START, 20.0),
+    "a disc on the continuous ring, all turning the other way": Motion(
+        OTHER_WAY, (0.3, 0.1, 0.3, 0.05, -0.4, -1.7), 20.0
+    ),
+}
+
+POINTS = {"a disc on six points": Motion(SIX, DISC_START, 20.0)}
+
+MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
+"""Nowhere but in the pin that sticks does a point of the contact come to rest: there friction has a bend."""
+
+ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
+"""What an engine is asked for that differs from another in its contact alone."""
+
+# ---------------------------------------------------------------- drawn from the whole range
+
+SEED = 8
+
+SPEEDS = ((0.1, 0.3), (0.4, 3.0), (4.1, 6.0))
+"""|ω| in rad/s: slow, as about the natural frequency, and fast. The other studies go from 0.15 to 5."""
+
+UNTIL = 3.0
+"""In s."""
+
+LEAST_SLIP = 0.15
+"""Of the largest: nothing comes near to rest where forces are integrated."""
+
+MOST_TURN = 2.0
+"""Of a disc on points in rad in a ``PANEL``: its forces turn as fast."""
+
+STICKS_FOR = (0.2, 2.0)
+"""Time in s for which a pin sticks at the start."""
+
+MOST_PHASES = 6
+
+LEAST_SAMPLES = 4
+"""Of a stick phase, so that (7) can be asked in the middle of it."""

@@ -1,0 +1,31 @@
+"""How far engines are from the reference over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compare.claims.study import Data
+from compare.figures import axis, curve, engines_in, new_figure
+from compare.studies.engines.trajectories.parameters import EXACT, MOTIONS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+    """Draw how far each motion is from the reference's over time."""
+    figure, (axes,) = new_figure(width=7.0, height=4.0)
+    for engine in engines_in(data):
+        label = engine
+        for name in MOTIONS:
+            if f"{name}: times" in data[engine]:
+                error = np.maximum(data[engine][f"{name}: error"], EXACT)
+                axes.semilogy(data[engine][f"{name}: times"], error, **curve(engine, label))
+                label = "_"
+    axes.set(xlabel=axis("t", "s"), ylabel="largest difference of a component of the state")
+    if data:
+        axes.legend()
+    return {"trajectories": figure}

@@ -1,0 +1,86 @@
+"""The motions by the reference, and what changes places and momentum in them: integrals over panels of time."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss, legvander
+
+from compare.claims.error_estimates import SAFETY
+from compare.studies.engines.trajectories.parameters import EXACT, PANEL, Motion
+from reference_model import DiscOnDisc, PinOnDisc, Trajectory, simulate
+from reference_model.contact.contact_law import contact_of
+from reference_model.support import Support
+from reference_model.systems import FloatArray, System
+
+NODES, WEIGHTS = leggauss(10)
+"""Of Gauss's rule, on (−1, 1): forces are integrated to rounding where no point of the contact comes to rest."""
+
+SLOWEST_FALL = 0.9
+"""Largest ratio of neighbouring Legendre coefficients of what is integrated."""
+
+
+def times_of(motion: Motion) -> FloatArray:
+    """Return bounds and Gauss nodes of all panels in their order: each panel begins with a bound."""
+    bounds = np.linspace(0.0, motion.until, round(motion.until / PANEL) + 1)
+    places = np.concatenate(([0.0], 0.5 + 0.5 * NODES))
+    return np.append(bounds[:-1, np.newaxis] + PANEL * places, motion.until)
+
+
+@functools.cache
+def by_reference(motion: Motion) -> Trajectory:
+    """Return the motion at ``times_of(motion)`` by the reference at its tightest."""
+    return simulate(motion.system, motion.start, times_of(motion), tolerance=EXACT)
+
+
+def at_bounds(states: FloatArray) -> FloatArray:
+    """Return the states at the bounds of the panels, shape (panels + 1, 4 or 6)."""
+    return states[:: len(NODES) + 1]
+
+
+def at_nodes(states: FloatArray) -> FloatArray:
+    """Return the states at the nodes of each panel, shape (panels, nodes, 4 or 6)."""
+    return states[:-1].reshape(-1, len(NODES) + 1, states.shape[1])[:, 1:]
+
+
+def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
+
+    The rule with n nodes misses the Legendre coefficients from 2n on. They are taken to fall from one to the next as
+    those from the middle of the first n to the last do, and with SAFETY: where a point of the contact comes to rest
+    they fall more and more slowly, as a power of their number.
+    """
+    n = len(NODES)
+    project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)
+    series = np.einsum("ij,pjk->pik", project, rates)
+    middle, last = (np.max(np.abs(series[:, k - 1 : k + 1]), axis=1) for k in (n // 2, n - 1))
+    fall = np.divide(last, middle, out=np.zeros_like(last), where=last > 0.0) ** (1.0 / (n - 1 - n // 2))
+    fall = np.minimum(fall, SLOWEST_FALL)
+    return PANEL * series[:, 0], PANEL * SAFETY * last * fall ** (n + 1.5) / (1.0 - fall)
+
+
+def forces(body: System, states: FloatArray) -> FloatArray:
+    """Return the force in N, and of a disc the moment in N m, at ``states`` (shape (..., 4 or 6)) where it slips."""
+    law, support = contact_of(body), Support.of(body)
+    half, omega = body.state_size // 2, body.disc_speed
+
+    def force(state: FloatArray) -> list[float]:
+        z, v = complex(*state[:2]), complex(*state[half : half + 2])
+        angle, spin = (state[2], state[-1]) if isinstance(body, DiscOnDisc) else (0.0, 0.0)
+        share, arm = law.force_and_moment(v - 1j * omega * z, omega - spin, angle)
+        w = z - body.offset
+        total = body.friction_force * share - body.damping * v - support.secant(abs(w)) * w
+        if not isinstance(body, DiscOnDisc):
+            return [total.real, total.imag]
+        lag = spin - body.shaft_speed
+        return [total.real, total.imag, body.friction_force * arm - body.shaft_damping * lag]
+
+    return np.apply_along_axis(force, -1, states)
+
+
+def equation_of(motion: Motion) -> str:
+    """Return the equations of the paper by which the body moves."""
+    if isinstance(motion.system, PinOnDisc):
+        return "(1)"
+    return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"

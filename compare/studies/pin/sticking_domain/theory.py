@@ -1,0 +1,63 @@
+"""The radius (9) and the turn (7) over the speed of the disc, and where the radius is largest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.claims.study import Data
+from compare.studies.pin.sticking_domain.parameters import OUTSIDE, RESONANCE, pin_at
+from compare.studies.toolkit.sticking import safest_angle
+from reference_model.formulas.pin import sticking_radius, turn_until_release
+from reference_model.systems import FloatArray, PinOnDisc
+
+
+def curves() -> Data:
+    """Return the radius (9) in m, and the turns in rad until release, over ω in rad/s."""
+    speeds = np.unique(np.concatenate((np.linspace(0.15, 2.6, 200), RESONANCE + np.linspace(-0.2, 0.2, 81))))
+    return {
+        "speed": speeds,
+        "radius": np.array([sticking_radius(pin_at(speed)) for speed in speeds]),
+        "turn": predicted_turns(speeds),
+    }
+
+
+def predicted_turns(speeds: ArrayLike) -> FloatArray:
+    """Return the turns in rad that (7) predicts, shape (n, 2), for ``speeds`` in rad/s, shape (n,)."""
+    return np.array(
+        [
+            [turn_until_release(pin, share * sticking_radius(pin), safest_angle(pin)) for share in OUTSIDE]
+            for pin in map(pin_at, np.asarray(speeds, dtype=float).tolist())
+        ]
+    )
+
+
+def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
+    """Return √ of the vertex of the parabola through three points 1/A² over s = ω², and its error.
+
+    ``relative_error`` is that of the radii A.
+    """
+
+    def found(values: FloatArray) -> float:
+        square, linear, _ = np.polyfit(s, values, 2)
+        return math.sqrt(max(-linear / (2.0 * square), 0.0))
+
+    if not np.all(np.isfinite(values)):
+        return math.nan, 0.0
+    middle = found(values)
+    shifts = [
+        abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)
+    ]
+    return middle, sum(shifts)
+
+
+def top(pin: PinOnDisc, speed: float, width: float) -> float:
+    """Return ω in rad/s at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
+    step = width * speed
+    # Beside the middle, so that the answer is not put in.
+    nodes = speed + step * np.array([-0.6, 0.4, 1.4])
+    low, middle, high = (sticking_radius(replace(pin, disc_speed=node)) for node in nodes)
+    return float(nodes[1] + 0.5 * step * (low - high) / (low - 2.0 * middle + high))

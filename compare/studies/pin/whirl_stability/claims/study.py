@@ -1,0 +1,20 @@
+"""The study itself, to which all claims belong."""
+
+from __future__ import annotations
+
+from compare.claims.study import Study
+from compare.studies.pin.whirl_stability.parameters import PIN, SOURCE
+from compare.studies.pin.whirl_stability.pictures import draw
+from compare.studies.pin.whirl_stability.theory import curves
+
+STUDY = Study.beside(
+    __file__,
+    "whirl-stability",
+    source=SOURCE,
+    system=PIN,
+    draw=draw,
+    curves=curves,
+    seconds=2.0,
+    quick=True,
+    contact=True,
+)
