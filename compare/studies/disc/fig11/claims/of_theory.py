@@ -33,7 +33,7 @@ from compare.studies.disc.fig11.theory import (
 )
 from compare.studies.toolkit.fig11_motion import DISCS, RING, SOURCE, START
 from reference_model import simulate, whirl_orbit
-from reference_model.orbits.shooting import modulated_cycle
+from reference_model.orbits import modulated_cycle
 from reference_model.systems import FloatArray
 
 
