@@ -72,7 +72,7 @@ def quoted(engine):
 
 STUDY = replace(
     VERDICTS,
-    measure=quoted,
+    by_hand=quoted,
     theory=None,
     draw=lambda data: {},
     finding="It rests at {place, 2 digits} m.",
