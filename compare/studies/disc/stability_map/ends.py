@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.claims.answers import asked, holds
-from compare.claims.claim import Claim
-from compare.claims.paper_parameters import FIG11
-from compare.claims.parameters import at_each, parameters_of
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.parameters import at_each
 from compare.engines import Simulate
+from compare.studies.disc.stability_map.parameters import DISC
 from reference_model.systems import DiscOnDisc
 
 SETTLED = 1200.0
@@ -59,44 +58,33 @@ def kind_of_end(
     return "modulated cycle" if high - low > MODULATED * (high + low) else "whirl", low, high
 
 
-def ends_of(
-    simulate: Simulate, name: str, sentence: str, starts: Sequence[Start], equation: str = "(19), (20)"
-) -> tuple[list[str], Claim]:
-    """Return what the motions end as, and the claim that it is what they are said to.
-
-    ``equation`` is that of the motions and of their law of friction.
-    """
+def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
+    """Return what motions end as, and in how many that is what they are said to."""
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:
         ends[tolerance] = [kind_of_end(simulate, start, tolerance)[0] for start in starts]
         return [end == start.end for end, start in zip(ends[tolerance], starts, strict=True)]
 
-    answers = holds(*asked(as_said, SETTLING_TOLERANCE))
+    answers = asked(as_said, SETTLING_TOLERANCE)
     found = ends[SETTLING_TOLERANCE]
-    durations = sorted({start.duration for start in starts})
     differing = [
         f"{end} in place of {start.end} for {changes(start.disc)}"
         for end, start in zip(found, starts, strict=True)
         if end != start.end
     ]
-    return found, Claim(
-        sentence,
-        equation=equation,
-        engine=name,
-        **answers,
-        parameters=parameters_of(FIG11),
+    return found, answers_of(
+        *answers,
         source="Fig. 11 with X0 = 0; one parameter at a time is another",
-        note=f"Whether each motion ends as said after {at_each('t', durations)} s: "
+        note=f"Whether each motion ends as said after {at_each('t', sorted({one.duration for one in starts}))} s: "
         + ", ".join(f"{start.end} for {changes(start.disc)}" for start in starts)
         + f". {'; '.join(differing)}".rstrip("; "),
-        basis="reference",
     )
 
 
 def changes(disc: DiscOnDisc) -> str:
     """Return in words what of Fig. 11's parameters is different."""
     differing = [
-        f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(FIG11, name)
+        f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
     return ", ".join(differing) or "Fig. 11"

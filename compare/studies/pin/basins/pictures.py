@@ -10,6 +10,8 @@ import numpy as np
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.claims.study import Data
 from compare.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
+from compare.studies.pin.basins.parameters import PLANE
+from reference_model.ensemble import EndState
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,9 +22,6 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap
-
-    from compare.studies.pin.basins.claims import PLANE
-    from reference_model.ensemble import EndState
 
     found = data["theory"]
     figure, (plane, orbit, share) = new_figure(ncols=3, width=13.0, height=4.0)

@@ -23,7 +23,8 @@ from compare.studies.pin.fig04.parameters import (
 )
 from compare.studies.pin.fig04.pictures import draw
 from compare.studies.pin.fig04.theory import curves, error_of_eq18
-from reference_model import Orbit, PinOnDisc, whirl_orbit
+from compare.studies.toolkit.whirls import whirl_of
+from reference_model import Orbit, PinOnDisc
 from reference_model.formulas.pin import (
     first_order_whirl_response,
     first_order_whirl_shift,
@@ -168,7 +169,7 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
     """Return the means of the whirls in m, shape (n, 2), following the branch from high speed down."""
     found, guess = [], None
     for speed in reversed(speeds):
-        guess = _orbit(engine, pin_at(speed), SHOOTING, guess)
+        guess = whirl_of(engine, pin_at(speed), SHOOTING, guess)
         found.append(harmonics(engine, pin_at(speed), guess))
     return Measurement(*(np.array(each)[::-1, :2] for each in zip(*found, strict=True)))
 
@@ -185,10 +186,10 @@ def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Mea
 
     The second harmonic is that of a time at which the first one is real.
     """
-    first_orbit = guess or _orbit(engine, pin, SHOOTING, None)
+    first_orbit = guess or whirl_of(engine, pin, SHOOTING)
 
     def found(tolerance: float) -> FloatArray:
-        orbit = _orbit(engine, pin, tolerance, first_orbit)
+        orbit = whirl_of(engine, pin, tolerance, first_orbit)
         x, y = orbit.trajectory.states[:-1, :2].T
         _, first, second = (np.fft.fft(x + 1j * y) / len(x))[:3]
         second *= (np.conj(first) / abs(first)) ** 2
@@ -196,10 +197,6 @@ def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Mea
 
     # A miss of the orbit shifts its mean by about as much.
     return refined(found, SHOOTING).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
-
-
-def _orbit(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None) -> Orbit:
-    return whirl_orbit(pin, simulate=engine.simulate, tolerance=tolerance, guess=guess, samples=64)
 
 
 def _complex(point: FloatArray) -> complex:

@@ -1,36 +1,27 @@
 """The run-up balances its energy, its figures show what is there, and its spectrum finds a known whirl."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from studies_under_test import findings_of, sentences, verdicts
+from study_harness import BLIND, LEFT_OUT, SEES
+from wrong_parts import WrongPartTests
 
-from compare.claims.claim import Verdict
-from compare.studies.drivetrain.run_up import claims as study
-from compare.studies.drivetrain.run_up import pictures
-from compare.studies.toolkit.drivetrain_bench import RPM, onset_speed, passenger_car
+from compare.studies.drivetrain.run_up import claims, pictures
+from compare.studies.drivetrain.run_up.parameters import SLIP, TURNS, transmitted
+from compare.studies.drivetrain.run_up.spectrum import order_spectrum, strongest_line
+from compare.studies.drivetrain.run_up.theory import whirls_above_onset
+from compare.studies.toolkit.drivetrain_bench import (
+    RPM,
+    centre,
+    natural_frequency,
+    onset_speed,
+    passenger_car,
+)
 from exudyn_models.parts.friction_sensors import RingFriction
 
-FEW = {"top": 1100.0}
-
-
-@pytest.fixture(scope="module")
-def findings():
-    return findings_of(study, "exudyn", FEW)
-
-
-def test_the_energy_is_balanced(findings):
-    assert verdicts(findings) == {study.BALANCE: Verdict.AGREES}
-
-
-def test_the_mean_torque_brings_the_engine_to_the_end(findings):
-    assert findings.data["engine"][-1, 1] == pytest.approx(FEW["top"] * RPM, rel=0.02)
-    assert findings.data["slip"][-1] == pytest.approx(study.SLIP, abs=4.0)
-
-
-def test_heat_that_is_counted_wrong_by_a_thousandth_is_found_out(monkeypatch):
-    power = RingFriction.power
-    monkeypatch.setattr(RingFriction, "power", lambda friction, mbs, t: 1.001 * power(friction, mbs, t))
-    assert sentences(findings_of(study, "exudyn", {"top": 850.0}), Verdict.DIFFERS) == {study.BALANCE}
+SHORT = 1100.0
+"""Turns a minute; before a window of the spectrum is full."""
 
 
 def run_up_with(orders, until=6000.0):
@@ -49,8 +40,114 @@ def run_up_with(orders, until=6000.0):
     }
 
 
+def as_predicted(off=0.0):
+    """Return data of a run-up on the lines of the claim, but for ``off`` orders, as it turns faster."""
+    data = run_up_with({1.0: 1e-4})
+    car = passenger_car()
+    times, (angle, speed) = data["times"], data["engine"].T
+    circling, _, frequency = whirls_above_onset(car).T
+    below = speed < 0.5 * (circling[0] + natural_frequency(car))
+    own = np.where(below, speed - SLIP, np.interp(speed, circling, frequency)) + off * speed
+    phase = np.concatenate(([0.0], np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(times))))
+    z = 3e-4 * np.exp(1j * phase) + 1e-4
+    return data | {"disc": np.column_stack((z.real, z.imag, angle))}
+
+
+MOVES = {
+    "on its lines": as_predicted,
+    "follows its unbalance all the way": lambda: run_up_with({0.98: 3e-4, 0.0: 1e-4}),
+    "whirls from the beginning": lambda: run_up_with({0.88: 3e-4, 0.0: 1e-4}),
+    "beside its lines": lambda: as_predicted(off=1.5 / TURNS),
+}
+
+
+def moving(move):
+    """Let every run-up be one with the data of ``move()``."""
+
+    def put(patch):
+        data = move()
+        angle, speed = data["engine"].T
+        motion = SimpleNamespace(**data | {"engine_angle": angle, "engine_speed": speed})
+        patch.setattr(claims, "_run_ups", lambda engine, top: (motion, motion))
+
+    return put
+
+
+def heat_counted_wrong_by_a_thousandth(patch):
+    power = RingFriction.power
+    patch.setattr(RingFriction, "power", lambda friction, mbs, t: 1.001 * power(friction, mbs, t))
+
+
+class TestDrivetrainRunUp(WrongPartTests):
+    study = claims.STUDY
+    few = {"balance": {"top": SHORT}, "lines": {"top": SHORT}}
+    # A run-up shorter than a window claims nothing of the spectrum.
+    not_claimed = {"exudyn": ("lines",)}
+    few_of_faults = {"balance": {"top": 850.0}}
+    faults = {"heat": heat_counted_wrong_by_a_thousandth} | {
+        name: moving(move) for name, move in MOVES.items()
+    }
+    columns = ("balance", "lines")
+    table = {
+        "heat": (SEES, LEFT_OUT),
+        "on its lines": (LEFT_OUT, BLIND),
+        "follows its unbalance all the way": (LEFT_OUT, SEES),
+        "whirls from the beginning": (LEFT_OUT, SEES),
+        "beside its lines": (LEFT_OUT, SEES),
+    }
+
+    def test_a_disc_on_the_lines_is_found_on_them(self):
+        (claim,) = self.claims_of_fault("on its lines", "lines")
+        assert np.max(claim.difference) < 0.5 / TURNS
+
+    @pytest.mark.parametrize(
+        ("move", "windows"),
+        [
+            ("follows its unbalance all the way", "above"),
+            ("whirls from the beginning", "below"),
+            ("beside its lines", "above"),
+        ],
+    )
+    def test_a_disc_beside_its_line_is_found_out_in_the_windows_where_it_is(self, move, windows):
+        (claim,) = self.claims_of_fault(move, "lines")
+        speeds, _ = strongest_line(MOVES[move]())
+        ends = natural_frequency(passenger_car()), whirls_above_onset(passenger_car())[0, 0]
+        chosen = speeds[(speeds < ends[0]) | (speeds >= ends[1])]
+        off = claim.difference > claim.budget.total
+        assert np.all(off[chosen >= ends[1]] if windows == "above" else off[chosen < 0.8 * ends[0]])
+
+    def test_the_mean_torque_brings_the_engine_to_the_end(self):
+        data = self.found("exudyn").data
+        assert data["engine"][-1, 1] == pytest.approx(SHORT * RPM, rel=0.02)
+        assert data["slip"][-1] == pytest.approx(SLIP, abs=4.0)
+
+    def test_the_reference_predicts_self_centring_below_the_onset_and_a_whirl_above(self):
+        data = self.found("theory").data
+        car = passenger_car()
+        speed, rest = data["rest"].T
+        assert np.all(np.diff(rest) < 0.0)
+        assert rest[0] < car.offset
+        assert speed[-1] < data["onset"][0] < data["whirl"][0, 0]
+        assert data["onset"][0] == onset_speed(car, SLIP, transmitted(car))
+        assert np.all(data["whirl"][:, 1] > car.stop_gap)
+        # The unbalance resonates where the disc itself, which slips, turns at k.
+        assert speed[np.argmax(data["unbalance"])] == pytest.approx(data["onset"][1] + SLIP, rel=0.02)
+
+    def test_figures_are_drawn_whatever_is_there(self, monkeypatch):
+        monkeypatch.setattr(pictures, "FRAMES", 1)
+        theory = self.found("theory").data
+        drawn = {"exudyn": run_up_with({0.9: 5e-4, 0.0: 2e-4}), "theory": theory}
+        figures = self.study.draw(drawn)
+        gifs = self.study.animations(drawn)
+        assert {*figures, *gifs} == set(self.study.figures)
+        assert all(each.startswith(b"GIF89a") for each in gifs.values())
+        assert self.study.draw({"theory": theory}) == {}
+        assert self.study.animations({}) == {}
+        assert set(drawn["exudyn"]) == set(self.found("exudyn").data)
+
+
 def test_the_spectrum_finds_amplitude_order_and_sense_of_a_whirl():
-    speed, orders, amplitude = pictures.order_spectrum(run_up_with({0.9: 5e-4, -0.9: 1e-4, 0.0: 2e-4}))
+    speed, orders, amplitude = order_spectrum(run_up_with({0.9: 5e-4, -0.9: 1e-4, 0.0: 2e-4}))
     assert speed[0] > 800.0 * RPM
     assert speed[-1] < 6000.0 * RPM
     width = orders[1] - orders[0]
@@ -64,73 +161,7 @@ def test_the_spectrum_finds_amplitude_order_and_sense_of_a_whirl():
 
 def test_the_envelope_goes_from_the_least_to_the_largest_distance():
     data = run_up_with({0.0: 2e-4, 1.0: 1e-4})
-    speed, least, largest = pictures.envelope(data, np.abs(pictures.centre(data["disc"])))
+    speed, least, largest = pictures.envelope(data, np.abs(centre(data["disc"])))
     np.testing.assert_allclose(least[1:-1], 1e-4, rtol=0.05)
     np.testing.assert_allclose(largest[1:-1], 3e-4, rtol=0.01)
     assert np.all(np.diff(speed) > 0.0)
-
-
-def test_the_reference_predicts_self_centring_below_the_onset_and_a_whirl_above():
-    data = study.theory().data
-    car = passenger_car()
-    speed, rest = data["rest"].T
-    assert np.all(np.diff(rest) < 0.0)
-    assert rest[0] < car.offset
-    assert speed[-1] < data["onset"][0] < data["whirl"][0, 0]
-    assert data["onset"][0] == onset_speed(car, study.SLIP, study.transmitted(car))
-    assert np.all(data["whirl"][:, 1] > car.stop_gap)
-    # The unbalance resonates where the disc itself, which slips, turns at k.
-    assert speed[np.argmax(data["unbalance"])] == pytest.approx(data["onset"][1] + study.SLIP, rel=0.02)
-
-
-def as_predicted(off=0.0):
-    """Return data of a run-up on the lines of the claim, but for ``off`` orders, as it turns faster."""
-    data = run_up_with({1.0: 1e-4})
-    car = passenger_car()
-    times, (angle, speed) = data["times"], data["engine"].T
-    circling, _, frequency = study.whirls_above_onset(car).T
-    below = speed < 0.5 * (circling[0] + pictures.natural_frequency(car))
-    own = np.where(below, speed - study.SLIP, np.interp(speed, circling, frequency)) + off * speed
-    phase = np.concatenate(([0.0], np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(times))))
-    z = 3e-4 * np.exp(1j * phase) + 1e-4
-    return data | {"disc": np.column_stack((z.real, z.imag, angle))}
-
-
-def test_a_disc_on_the_lines_is_found_on_them():
-    claim = study.lines_claim("exudyn", as_predicted(), as_predicted())
-    assert claim.verdict is Verdict.AGREES
-    assert np.max(claim.difference) < 0.5 / pictures.TURNS
-
-
-@pytest.mark.parametrize(
-    ("wrong", "windows"),
-    [
-        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # it follows its unbalance all the way
-        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # it whirls from the beginning
-        (as_predicted(off=1.5 / pictures.TURNS), "above"),
-    ],
-)
-def test_a_disc_beside_its_line_is_found_out(wrong, windows):
-    claim = study.lines_claim("exudyn", wrong, wrong)
-    assert claim.verdict is Verdict.DIFFERS
-    speeds, _ = pictures.strongest_line(wrong)
-    ends = pictures.natural_frequency(passenger_car()), study.whirls_above_onset(passenger_car())[0, 0]
-    chosen = speeds[(speeds < ends[0]) | (speeds >= ends[1])]
-    off = claim.difference > claim.budget.total
-    assert np.all(off[chosen >= ends[1]] if windows == "above" else off[chosen < 0.8 * ends[0]])
-
-
-def test_a_run_up_shorter_than_a_window_claims_nothing_of_the_spectrum(findings):
-    assert study.LINES not in verdicts(findings)
-
-
-def test_figures_and_animation_are_drawn_of_what_is_there(findings, monkeypatch):
-    monkeypatch.setattr(pictures, "FRAMES", 1)
-    drawn = {"exudyn": run_up_with({0.9: 5e-4, 0.0: 2e-4}), "theory": study.theory().data}
-    figures = study.STUDY.draw(drawn)
-    gifs = study.STUDY.animations(drawn)
-    assert {*figures, *gifs} == set(study.STUDY.figures)
-    assert all(each.startswith(b"GIF89a") for each in gifs.values())
-    assert study.STUDY.draw({"theory": study.theory().data}) == {}
-    assert study.STUDY.animations({}) == {}
-    assert set(drawn["exudyn"]) == set(findings.data)

@@ -1,116 +1,57 @@
-import functools
+"""The study of convergence: engines whose errors do not fall as declared differ, and its means of measurement."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from study_harness import BLIND, LEFT_OUT, SEES, engine_named
+from wrong_parts import FamilyTests
 
 import exudyn_models
-import reference_model
-from compare.claims.claim import Verdict
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
-from compare.engines import Engine, engines
-from compare.figures import paper_style, saved
+from compare.engines import Engine
 from compare.studies import STUDIES
-from compare.studies.engines.engine_convergence.claims import (
-    CREEP,
-    FIRST_STICK,
-    LATER,
-    SCANS,
-    SLIDES,
-    SOLVERS,
-    STATE,
-    STICKS,
-    STUDY,
-    claim_of_creep,
-    claim_of_sliding,
-    claim_of_sticking,
-    claims_of_regularisation,
-    claims_of_steps,
-    draw,
-    measure,
-    release_shift_by_creep,
-)
+from compare.studies.engines.engine_convergence.claims import STUDY
+from compare.studies.engines.engine_convergence.solvers import SOLVERS
+from compare.studies.engines.engine_convergence.theory import release_shift_by_creep
+from reference_model import simulate
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.trajectory import Solution, Trajectory
 
-BOTH = ("reference", "exudyn")
+BOTH = ("exudyn", "reference")
 
 
-@functools.cache
-def findings(name):
-    return measure(engines([name])[0])
+# --- engines and solvers that are broken on purpose
 
 
-def verdicts(claims):
-    return {claim.sentence: claim.verdict for claim in claims}
+def staying_at_1e_7(name):
+    """Return an engine whose error does not fall below 1e-7, nor that of its events below 1e-4 s."""
 
-
-@pytest.mark.parametrize("name", BOTH)
-def test_every_order_is_the_declared_one(name):
-    claims = findings(name).claims
-    found = {claim.sentence: (claim.measured, claim.budget.total) for claim in claims}
-    assert set(verdicts(claims).values()) == {Verdict.AGREES}, found
-
-
-def test_study_is_part_of_the_report_and_has_claims_of_both_engines():
-    assert STUDY in STUDIES
-    assert set(verdicts(findings("reference").claims)) == {SLIDES, STICKS}
-    assert set(verdicts(findings("exudyn").claims)) > {SLIDES, STICKS, FIRST_STICK, LATER, STATE, CREEP}
-
-
-@pytest.mark.parametrize("names", [BOTH, ("reference",), ("exudyn",), ()])
-def test_figures_are_drawn_from_whatever_engines_have_finished(names):
-    with paper_style():
-        figures = draw({name: findings(name).data for name in names})
-    assert set(figures) <= set(STUDY.figures)
-    assert ("engine-convergence-orders" in figures) == ("exudyn" in names)
-    if names == BOTH:
-        assert all(png.startswith(b"\x89PNG") for _, png in map(saved, figures.values()))
-
-
-# --- engines that are broken on purpose
-
-
-def simulate_of(name):
-    return engines([name])[0].simulate
-
-
-@pytest.mark.parametrize("name", BOTH)
-def test_an_engine_whose_error_stays_at_1e_7_differs(name):
     def offset(*arguments, **options):
-        trajectory = simulate_of(name)(*arguments, **options)
+        trajectory = engine_named(name).simulate(*arguments, **options)
         phases = tuple(
             replace(phase, start=phase.start + 1e-4, end=phase.end + 1e-4) for phase in trajectory.phases
         )
         return replace(trajectory, states=trajectory.states + 1e-7, phases=phases)
 
-    engine = Engine(name, offset)
-    for part in (claim_of_sliding, claim_of_sticking):
-        (claim,), _ = part(engine, SCANS[name])
-        assert claim.verdict is Verdict.DIFFERS, (claim.sentence, claim.measured, claim.budget.total)
+    return Engine(name, offset)
 
 
-@pytest.mark.parametrize("name", BOTH)
-def test_an_engine_that_follows_the_root_of_the_tolerance_differs(name):
-    def lazy(*arguments, tolerance):
-        return simulate_of(name)(*arguments, tolerance=1e-3 * tolerance**0.5)
+def lazy(name):
+    """Return an engine that follows the root of the tolerance."""
 
-    for part in (claim_of_sliding, claim_of_sticking):
-        (claim,), _ = part(Engine(name, lazy), SCANS[name])
-        assert claim.verdict is Verdict.DIFFERS, (claim.sentence, claim.measured, claim.budget.total)
-        assert claim.measured == pytest.approx(0.5, abs=0.15)
+    def simulated(*arguments, tolerance):
+        return engine_named(name).simulate(*arguments, tolerance=1e-3 * tolerance**0.5)
+
+    return Engine(name, simulated)
 
 
-def test_an_engine_that_misses_a_stick_phase_differs():
-    def forgetful(*arguments, **options):
-        trajectory = reference_model.simulate(*arguments, **options)
-        return replace(trajectory, phases=trajectory.phases[:1])
-
-    (claim,), _ = claim_of_sticking(Engine("reference", forgetful), SCANS["reference"])
-    assert claim.verdict is Verdict.DIFFERS
-    assert np.isnan(claim.measured)
+def forgetful(*arguments, **options):
+    """Miss a stick phase."""
+    trajectory = simulate(*arguments, **options)
+    return replace(trajectory, phases=trajectory.phases[:1])
 
 
 def euler(pin, start, times, *, integrator, step):
@@ -130,40 +71,107 @@ def euler(pin, start, times, *, integrator, step):
     return Trajectory(pin, times.copy(), np.array(states), (), Solution("Euler", np.nan, 0, 0, 0.0))
 
 
-def test_an_integrator_of_first_order_differs_under_every_name():
-    claims, _ = claims_of_steps(euler)
-    assert [claim.verdict for claim in claims] == [Verdict.DIFFERS] * len(SOLVERS)
-    assert claims[0].measured == pytest.approx(1.0, abs=0.2)
+fixed_step, smoothed = exudyn_models.simulate_fixed_step, exudyn_models.simulate
 
 
-def test_an_integrator_of_second_order_differs_under_the_names_of_higher_order_only():
-    def second_order(*arguments, integrator, step):
-        return exudyn_models.simulate_fixed_step(*arguments, integrator="TrapezoidalIndex2", step=step)
-
-    claims, _ = claims_of_steps(second_order)
-    for claim, solver in zip(claims, SOLVERS, strict=True):
-        assert (claim.verdict is Verdict.DIFFERS) == (solver.order != 2)
+def trapezoidal(*arguments, integrator, step):
+    """An integrator of second order, whatever name it is given."""
+    return fixed_step(*arguments, integrator="TrapezoidalIndex2", step=step)
 
 
-def test_a_regularisation_of_half_order_differs():
-    def half(*arguments, tolerance, regularisation):
-        epsilon = 1e-2 * regularisation**0.5
-        return exudyn_models.simulate(*arguments, tolerance=tolerance, regularisation=epsilon)
-
-    assert verdicts(claims_of_regularisation(half)[0]) == dict.fromkeys(
-        (FIRST_STICK, LATER, STATE), Verdict.DIFFERS
-    )
+def half_order(*arguments, tolerance, regularisation):
+    """Smooth friction with an ε that falls like the root of what is asked for."""
+    return smoothed(*arguments, tolerance=tolerance, regularisation=1e-2 * regularisation**0.5)
 
 
-@pytest.mark.parametrize("factor", [10.0, 2.0, 0.5])
-def test_a_regularisation_of_the_wrong_width_differs(factor):
+def of_width(factor):
+    """Return a solver that smooths friction with another ε than it is asked for."""
+
     def wide(*arguments, regularisation, **options):
-        return exudyn_models.simulate_fixed_step(
-            *arguments, regularisation=factor * regularisation, **options
-        )
+        return fixed_step(*arguments, regularisation=factor * regularisation, **options)
 
-    (claim,), _ = claim_of_creep(wide)
-    assert claim.verdict is Verdict.DIFFERS, (claim.measured, claim.budget.total)
+    return wide
+
+
+SOLVERS_SEEN = {solver.name: SEES if solver.order != 2 else BLIND for solver in SOLVERS}
+
+
+class TestEngineConvergence(FamilyTests):
+    study = STUDY
+    sound = BOTH
+    not_claimed = {"reference": ("steps", "first_stick", "later_events", "state", "creep")}
+    few_of_faults = {claim: {"with_work": False} for claim in ("sliding", "sticking", "steps")}
+    faults = (
+        {f"{name} stays at 1e-7": staying_at_1e_7(name) for name in BOTH}
+        | {f"{name} follows the root of the tolerance": lazy(name) for name in BOTH}
+        | {
+            "misses a stick phase": Engine("reference", forgetful),
+            "first order": ("simulate_fixed_step", euler),
+            "second order": ("simulate_fixed_step", trapezoidal),
+            "ε of half order": ("simulate", half_order),
+        }
+        | {
+            f"ε {factor:g} times as wide": ("simulate_fixed_step", of_width(factor))
+            for factor in (10, 2, 0.5)
+        }
+    )
+    columns = (
+        "sliding",
+        "sticking",
+        *(f"steps/{name}" for name in SOLVERS_SEEN),
+        "first_stick",
+        "later_events",
+        "state",
+        "creep",
+    )
+    both, steps, last = (SEES, SEES), (LEFT_OUT,) * 4, (LEFT_OUT,) * 4
+    table = {
+        "reference stays at 1e-7": (*both, *steps, *last),
+        "exudyn stays at 1e-7": (*both, *steps, *last),
+        "reference follows the root of the tolerance": (*both, *steps, *last),
+        "exudyn follows the root of the tolerance": (*both, *steps, *last),
+        "misses a stick phase": (LEFT_OUT, SEES, *steps, *last),
+        "first order": (LEFT_OUT, LEFT_OUT, *[SEES] * 4, *last),
+        # It is what two of the solvers declare.
+        "second order": (LEFT_OUT, LEFT_OUT, *SOLVERS_SEEN.values(), *last),
+        "ε of half order": (LEFT_OUT, LEFT_OUT, *steps, SEES, SEES, SEES, LEFT_OUT),
+        "ε 10 times as wide": (LEFT_OUT, LEFT_OUT, *steps, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+        "ε 2 times as wide": (LEFT_OUT, LEFT_OUT, *steps, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+        "ε 0.5 times as wide": (LEFT_OUT, LEFT_OUT, *steps, LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES),
+    }
+
+    @classmethod
+    def measured_with(cls, fault, study, few):
+        """Measure with a wrong engine, or with a wrong function of Exudyn's models."""
+        wrong = cls.faults[fault]
+        if isinstance(wrong, Engine):
+            return study.measure(wrong, few)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(exudyn_models, *wrong)
+            return study.measure(engine_named("exudyn"), few)
+
+    def test_study_is_part_of_the_report(self):
+        assert STUDY in STUDIES
+
+    @pytest.mark.parametrize("names", [BOTH, ("reference",), ("exudyn",), ()])
+    def test_figures_are_drawn_from_whatever_engines_have_finished(self, names):
+        figures = STUDY.draw({name: self.found(name).data for name in names})
+        assert set(figures) <= set(STUDY.figures)
+        assert ("engine-convergence-orders" in figures) == ("exudyn" in names)
+
+    @pytest.mark.parametrize("name", BOTH)
+    @pytest.mark.parametrize("claim", ["sliding", "sticking"])
+    def test_the_root_of_the_tolerance_has_half_the_exponent(self, name, claim):
+        (found,) = self.claims_of_fault(f"{name} follows the root of the tolerance", claim)
+        assert found.measured == pytest.approx(0.5, abs=0.15)
+
+    def test_an_engine_that_misses_a_stick_phase_has_no_exponent(self):
+        (found,) = self.claims_of_fault("misses a stick phase", "sticking")
+        assert np.isnan(found.measured)
+
+    def test_the_first_order_is_seen_as_what_it_is(self):
+        (found,) = self.claims_of_fault("first order", "steps/RK44")
+        assert found.measured == pytest.approx(1.0, abs=0.2)
 
 
 # --- the means of measurement
@@ -172,7 +180,7 @@ def test_a_regularisation_of_the_wrong_width_differs(factor):
 def test_creep_shifts_a_release_as_an_integration_of_the_creep_says():
     epsilon = 1e-6
     for start in FIG5_STARTS.values():
-        stick = reference_model.simulate(FIG5, start, [0.0, 8.0], tolerance=1e-12).stick_phases[0]
+        stick = simulate(FIG5, start, [0.0, 8.0], tolerance=1e-12).stick_phases[0]
         motion = SlipMotion.of(FIG5)
 
         def creep(_, z, motion=motion):

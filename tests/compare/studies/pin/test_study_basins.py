@@ -1,109 +1,126 @@
+"""The study of the basins: what its claims see, of engines and of ends that are wrong."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies_under_test import altered, for_every_sound_engine, sentences, verdicts
+from studies_under_test import altered
+from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5
 from compare.figures import paper_style, saved
-from compare.studies.pin.basins import claims as basins
-from compare.studies.pin.basins.claims import (
-    AREA,
-    CLOSES,
-    DIVIDES,
-    PARTS,
-    RECOMPUTES,
-    RETURNS,
-    SHRINKS,
-    STUDY,
-    enclosed,
-    measure,
-    smooth,
-)
-from reference_model.ensemble import EndState, Ensemble
-from reference_model.systems import PinOnDisc
+from compare.studies.pin.basins import claims, theory
+from compare.studies.pin.basins.claims import STUDY
+from compare.studies.pin.basins.theory import enclosed, smooth
+from reference_model.ensemble import EndState
+
+GRID = {"side": 100, "cells": 6}
+SAMPLE = {"starts": 400, "speeds": tuple(np.linspace(1.1, 3.0, 6))}
+COARSE = {
+    "divides": GRID,
+    "area": GRID | {"pins": (FIG5,)},
+    "recomputes": {"count": 6, "starts": 400, "cells": 6},
+    "shrinks": SAMPLE,
+    "curves": GRID | SAMPLE,
+}
+"""A hundredth of the starts, at one speed, and a boundary from as few points as can be."""
+
+
+class TestBasins(StudyTests):
+    study = STUDY
+    sound = ("reference", "exudyn", "intact")
+    few = COARSE
+    faults = {
+        "friction 5 % off": altered(friction_force=1.05),
+        "damping 1e-5 off": altered(damping=1.0 + 1e-5),
+    }
+    columns = ("closes", "returns", "parts")
+    table = {
+        "friction 5 % off": (SEES, SEES, SEES),
+        "damping 1e-5 off": (LEFT_OUT, SEES, LEFT_OUT),
+    }
+
+    def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier(self):
+        (claim,) = self.claims_of_fault("damping 1e-5 off", "returns")
+        assert np.all((claim.difference > claim.budget.total)[[0, 2]])
+
+    def test_the_theory_holds(self):
+        claims = {claim.identity: claim.verdict for claim in self.found("theory").claims}
+        # The boundary passes through too many of so few cells.
+        assert claims.pop("basins/area") is Verdict.INCONCLUSIVE
+        assert claims == dict.fromkeys(
+            ("basins/divides", "basins/recomputes", "basins/shrinks"), Verdict.AGREES
+        )
+
+    def test_the_figure_is_saved(self):
+        with paper_style():
+            figures = STUDY.draw({"theory": self.found("theory").data})
+        assert set(figures) == set(STUDY.figures)
+        assert saved(figures["basins"])[1].startswith(b"\x89PNG")
 
 
 @pytest.fixture
-def coarse(monkeypatch):
-    """A hundredth of the starts, at one speed, and a boundary from as few points as can be."""
-    monkeypatch.setattr(basins, "WHERE", {FIG5: basins.WHERE[FIG5]})
-    monkeypatch.setattr(basins, "CELLS", 6)
-    monkeypatch.setattr(basins, "SIDE", 100)
-    monkeypatch.setattr(basins, "STARTS", 400)
-    monkeypatch.setattr(basins, "SPEEDS", np.linspace(1.1, 3.0, 6))
-    monkeypatch.setattr(basins, "RECOMPUTED", 6)
+def anew(monkeypatch):
+    """Let nothing that was found before the test, or in it, be found again."""
+    cached = (theory.ends_on_grid, theory.shares_over_speed)
+    for each in cached:
+        each.cache_clear()
+    yield monkeypatch
+    for each in cached:
+        each.cache_clear()
 
 
-@for_every_sound_engine
-def test_sound_engines_come_back_on_the_saddle_and_part_beside_the_boundary(engine):
-    assert verdicts(measure(engine)) == dict.fromkeys((CLOSES, RETURNS, PARTS), Verdict.AGREES)
+def claims_of_theory(*functions, few=COARSE):
+    return STUDY.measure_theory(few, only=functions).claims
 
 
-def test_an_engine_with_too_much_friction_neither_closes_nor_parts():
-    assert sentences(measure(altered(friction_force=1.05)), Verdict.DIFFERS) == {CLOSES, RETURNS, PARTS}
+def all_differ(*functions, few=COARSE):
+    return {claim.verdict for claim in claims_of_theory(*functions, few=few)} == {Verdict.DIFFERS}
 
 
-def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier():
-    claim = basins.returns_claim(altered(damping=1.0 + 1e-5))
-    assert claim.verdict is Verdict.DIFFERS
-    assert np.all((claim.difference > claim.budget.total)[[0, 2]])
-
-
-def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(coarse):
+def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
     """Of starts that come to the equilibrium in the quarter of the rectangle that is nearest to its middle."""
     x, vx = np.meshgrid(np.linspace(-1.0, 1.0, 401), np.linspace(-1.0, 1.0, 401))
-    ends = np.where((abs(x) <= 0.5) & (abs(vx) <= 0.5), EndState.SELF_CENTRED, EndState.WHIRL).astype(
-        np.uint8
-    )
-    claim = basins.area_claim({FIG5: ends})
+    middle = (abs(x) <= 0.5) & (abs(vx) <= 0.5)
+    ends = np.where(middle, EndState.SELF_CENTRED, EndState.WHIRL).astype(np.uint8)
+    monkeypatch.setattr(claims, "ends_on_grid", lambda pin, side: ends)
+    (claim,) = claims_of_theory("area")
     assert claim.verdict is Verdict.DIFFERS
     assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
 
 
-def test_theory_agrees_and_is_drawn(coarse):
-    found = basins.theory()
-    assert verdicts(found) == dict.fromkeys((DIVIDES, AREA, RECOMPUTES, SHRINKS), Verdict.AGREES) | {
-        AREA: Verdict.INCONCLUSIVE  # the boundary passes through too many of so few cells
-    }
-    with paper_style():
-        figures = STUDY.draw({"theory": found.data})
-    assert set(figures) == set(STUDY.figures)
-    assert saved(figures["basins"])[1].startswith(b"\x89PNG")
-
-
-def test_ends_of_wrong_starts_are_found_out(coarse, monkeypatch):
+def test_ends_of_wrong_starts_are_found_out(anew):
     """Of an ensemble that takes 2 mm too much for x0."""
-    right = basins.ensemble_of
+    right = theory.ensemble_of
 
-    def shifted(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+    def shifted(starts, *pin, **parameters):
         return right(np.add(starts, (0.002, 0.0, 0.0, 0.0)), *pin, **parameters)
 
-    monkeypatch.setattr(basins, "ensemble_of", shifted)
-    monkeypatch.setattr(basins, "SIDE", 400)
-    assert DIVIDES in sentences(basins.theory(), Verdict.DIFFERS)
+    anew.setattr(theory, "ensemble_of", shifted)
+    assert all_differ("divides", few={"divides": {"side": 400, "cells": 6}})
 
 
-def test_a_basin_that_grows_with_the_speed_is_found_out(coarse, monkeypatch):
-    right = basins.ensemble_of
+def test_a_basin_that_grows_with_the_speed_is_found_out(anew):
+    right = theory.ensemble_of
 
-    def slower(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+    def slower(starts, *pin, **parameters):
         return right(starts, *pin, **{name: 4.1 - values for name, values in parameters.items()})
 
-    monkeypatch.setattr(basins, "ensemble_of", slower)
-    assert SHRINKS in sentences(basins.theory(), Verdict.DIFFERS)
+    anew.setattr(theory, "ensemble_of", slower)
+    assert all_differ("shrinks")
 
 
-def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(coarse, monkeypatch):
-    right = basins.ensemble_of
+def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(anew):
+    right = theory.ensemble_of
 
-    def swapped(starts: np.ndarray, *pin: PinOnDisc, **parameters: np.ndarray) -> Ensemble:
+    def swapped(starts, *pin, **parameters):
         found = right(starts, *pin, **parameters)
         return replace(found, end=np.where(found.end == 1, 2, 1).astype(np.uint8))
 
-    monkeypatch.setattr(basins, "ensemble_of", swapped)
-    assert {DIVIDES, RECOMPUTES} <= sentences(basins.theory(), Verdict.DIFFERS)
+    for module in (theory, claims):
+        anew.setattr(module, "ensemble_of", swapped)
+    assert all_differ("divides", "recomputes")
 
 
 def test_a_circle_is_smooth_to_fourth_order():

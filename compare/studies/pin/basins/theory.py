@@ -1,0 +1,133 @@
+"""The ends of many starts, and the boundary between them: the stable set of a stick–slip orbit of saddle type."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from compare.claims.paper_parameters import FIG5
+from compare.claims.shares import Ends, of_sample
+from compare.claims.study import Data
+from compare.studies.pin.basins.parameters import (
+    CELLS,
+    ON_BOUNDARY,
+    PLANE,
+    SEED,
+    SIDE,
+    SPEEDS,
+    STARTS,
+    UNTIL,
+    WHERE,
+)
+from reference_model import StickSlipOrbit, basin_boundary, self_centred_equilibria, stick_slip_orbits
+from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
+from reference_model.systems import FloatArray, PinOnDisc
+
+
+def curves(
+    side: int = SIDE, cells: int = CELLS, speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS
+) -> Data:
+    """Return ends and boundary in the plane of starts, the saddle, and shares over the speed."""
+    orbit = saddle().trajectory
+    held = np.zeros(len(orbit.times))
+    for begin, end in orbit.stick_times.reshape(-1, 2):
+        held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
+    return {
+        "ends": ends_on_grid(FIG5, side).astype(float)[::2, ::2],
+        "curve": smooth(boundary(FIG5, cells)),
+        "saddle": np.column_stack((orbit.states[:, :2], held)),
+        "speeds": np.array(speeds),
+        "whirl": shares_over_speed(speeds, starts)[EndState.WHIRL],
+    }
+
+
+@functools.cache
+def saddle(tolerance: float = 1e-12, pin: PinOnDisc = FIG5) -> StickSlipOrbit:
+    """Return the orbit of ``pin`` whose stable set is the boundary."""
+    (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable)
+    return orbit
+
+
+@functools.cache
+def boundary(pin: PinOnDisc = FIG5, cells: int = CELLS) -> FloatArray:
+    """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
+    (curve,) = basin_boundary(saddle(ON_BOUNDARY, pin), ranges=WHERE[pin], cells=cells)
+    points = np.asarray(curve.points)
+    return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
+
+
+def smooth(points: FloatArray, samples: int = 1000) -> FloatArray:
+    """Return a closed curve through ``points`` (n, 2) by periodic cubic splines, shape (samples + 1, 2)."""
+    length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    curve = CubicSpline(length, points, bc_type="periodic")
+    return np.asarray(curve(np.linspace(0.0, length[-1], samples + 1)))
+
+
+def distances(points: FloatArray, curve: FloatArray) -> FloatArray:
+    """Return how far points (n, 2) are from those of a curve."""
+    from scipy.spatial import cKDTree
+
+    return np.asarray(cKDTree(curve).query(points)[0])
+
+
+def enclosed(curve: FloatArray) -> float:
+    """Return the area inside of a closed curve, shape (n, 2)."""
+    (x, y), (x_next, y_next) = curve[:-1].T, curve[1:].T
+    return 0.5 * abs(float(np.sum(x * y_next - x_next * y)))
+
+
+def inside(points: FloatArray, curve: FloatArray) -> NDArray[np.bool_]:
+    """Tell which points (n, 2) a closed curve encloses."""
+    from matplotlib.path import Path
+
+    return np.asarray(Path(curve).contains_points(points))
+
+
+def beyond_equilibrium(state: FloatArray) -> float:
+    """Return by how much in m a state is farther than X0 from the equilibrium: beyond it is on the whirl."""
+    (rest,) = self_centred_equilibria(FIG5)
+    return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
+
+
+def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
+    """Return states of shape (n, 4) from components of shape (n,)."""
+    zero = np.zeros_like(x)
+    return np.column_stack((x, zero, vx, zero))
+
+
+def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatArray) -> Ensemble:
+    """Return what ``starts`` of shape (n, 4) end in."""
+    return simulate_ensemble(pin, starts, duration=UNTIL, parameters=parameters)
+
+
+def places_on_grid(side: int) -> FloatArray:
+    """Return x0 and vx0 of the grid, shape (side², 2)."""
+    x, vx = (np.linspace(low, high, side) for low, high in PLANE)
+    return np.column_stack([each.ravel() for each in np.meshgrid(x, vx)])
+
+
+@functools.lru_cache(maxsize=2)
+def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
+    """Return what the starts of the grid end in, shape (side, side)."""
+    return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
+
+
+def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
+    """Return x0 and vx0 of the random starts, shape (starts, 2), and where further ones come from."""
+    random = np.random.default_rng(SEED)
+    return np.column_stack([random.uniform(low, high, starts) for low, high in PLANE]), random
+
+
+@functools.lru_cache(maxsize=1)
+def shares_over_speed(speeds: tuple[float, ...], starts: int) -> dict[EndState, FloatArray]:
+    """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
+    places, _ = random_places(starts)
+    found = ensemble_of(
+        np.tile(starts_at(*places.T), (len(speeds), 1)), disc_speed=np.repeat(speeds, starts)
+    ).end.reshape(len(speeds), starts)
+    rows = [of_sample(ends) for ends in found]
+    return {end: np.array([row[end] for row in rows]) for end in EndState}
