@@ -120,7 +120,7 @@ class Claim:
         Sentence of a claim of the same study from which this one follows for the same engine, by algebra or because
         it is read off the same numbers; "" for none.
     answers : bool
-        Whether the numbers count answers of yes or no, see ``compare.claims.answers``.
+        Whether the numbers count answers of yes or no, see ``compare.claims.measured.answers_of``.
     named : mapping
         Names by which texts quote an element (its flat index), or all of them at once (None), see
         ``compare.report.quotes``.

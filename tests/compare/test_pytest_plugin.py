@@ -11,7 +11,6 @@ from processes import PATIENCE, ROOT
 
 from compare.claims.claim import THEORY
 from compare.studies import STUDIES
-from compare.studies.claim_list import sentences
 
 ENGINES = """
 import os, time
@@ -46,7 +45,7 @@ def sliding(*arguments, tolerance=1e-9):
 sliding.sticks = False
 """
 
-CLAIMS = {study.name: sentences(study) for study in STUDIES if study.only != (THEORY,)}
+CLAIMS = {study.name: list(study.sentences()) for study in STUDIES if study.only != (THEORY,)}
 
 
 def run(folder, *arguments):

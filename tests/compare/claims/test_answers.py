@@ -3,14 +3,24 @@
 import numpy as np
 import pytest
 
-from compare.claims.answers import asked, holds
-from compare.claims.claim import Claim, Verdict
+from compare.claims.claim import Claim, ErrorBudget, Verdict
+from compare.claims.measured import answers_of, asked
 from compare.report.worst import in_short
 
 
 def of(*margins_and_errors, **more):
-    about = {"equation": "", "engine": "good", "parameters": {}, "source": "a test"}
-    return Claim("It is so", **about, **holds(*margins_and_errors, **more))
+    found = answers_of(*margins_and_errors, **more)
+    return Claim(
+        "It is so",
+        equation="",
+        engine="good",
+        predicted=found.predicted,
+        measured=found.value,
+        budget=ErrorBudget(found.error, resolution=found.resolution),
+        parameters={},
+        source="a test",
+        answers=found.answers,
+    )
 
 
 @pytest.mark.parametrize(

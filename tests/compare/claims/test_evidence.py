@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fake_studies import GOOD, claim, draw_nothing, straight
 
-from compare.claims.claim import THEORY, Verdict
+from compare.claims.claim import BASES, THEORY, Verdict
 from compare.claims.evidence import evidence_of
 from compare.claims.study import Findings, Study
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
@@ -18,7 +18,6 @@ from compare.report.page import summary
 from compare.report.write import write_report
 from compare.run.runner import Run, run
 from compare.studies import STUDIES, studies
-from compare.studies.claim_list import as_text, listed_claims
 
 
 @pytest.mark.parametrize(
@@ -235,6 +234,7 @@ def test_matrix_and_table_show_one_number(tmp_path):
     (made,) = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"]
     assert made["decided_by"] == {
         "element": 1,
+        "element_name": "no. 2 of 3",
         "difference": 9e-6,
         "allowed": 1e-5,
         "largest_difference": 2e-5,
@@ -243,16 +243,11 @@ def test_matrix_and_table_show_one_number(tmp_path):
 
 def test_what_implies_a_claim_is_a_claim_of_the_same_study_that_follows_from_none():
     found = 0
-    for study, claims in listed_claims().items():
-        for sentence, listed in claims.items():
-            assert listed["basis"] in ("independent", "reference", "self-check"), (study, sentence)
-            if listed["implied_by"]:
+    for study in STUDIES:
+        by_sentence = {one.sentence: one for one in study.declared}
+        for one in study.declared:
+            assert one.basis in (("independent", "reference", "self-check") if one.of_engine else BASES)
+            if one.implied_by:
                 found += 1
-                assert listed["implied_by"] in claims, (study, sentence)
-                assert not claims[listed["implied_by"]]["implied_by"], (study, sentence)
+                assert not by_sentence[one.implied_by].implied_by, (study.name, one.sentence)
     assert found > 8
-
-
-def test_the_list_of_claims_is_written_as_it_is_read():
-    claims = listed_claims()
-    assert json.loads(as_text(claims)) == claims
