@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import change_as_error
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.measured import Measured
@@ -137,30 +136,6 @@ class Operation:
             vehicle_torque=lambda time, angle, speed: -BRAKE * (speed - self.brake_speed),
             shaft_torque=self.torque,
         )
-
-
-def balance_claim(
-    sentence: str,
-    engine: str,
-    balances: Sequence[EnergyBalance],
-    parameters: Mapping[str, float | str],
-) -> Claim:
-    """Return what two balances of the same run say, the second at a smaller tolerance, see ``refined``."""
-    found, finer = (np.max(np.abs(each.residual)) / each.turnover for each in balances)
-    return Claim(
-        sentence,
-        equation="",
-        kind="conservation",
-        engine=engine,
-        predicted=0.0,
-        measured=found,
-        budget=ErrorBudget(change_as_error(found, finer), resolution=1e-6),
-        parameters=parameters,
-        source=SOURCE,
-        note="The largest of gains less losses less the growth of what is stored, over the energy turned over, "
-        f"{balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
-        basis="self-check",  # the model's own law of friction gives the heat
-    )
 
 
 def balance_of(balances: Sequence[EnergyBalance], parameters: Mapping[str, float | str]) -> Measured:

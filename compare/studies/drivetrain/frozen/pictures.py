@@ -11,9 +11,8 @@ from scipy.linalg import expm
 
 from compare.claims.study import Data
 from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.drivetrain.frozen.linear import in_turning_axes, state_matrix_of
-from compare.studies.drivetrain.frozen.map import SPEED, SURPLUS
-from compare.studies.drivetrain.frozen.modulated import MODULATED, PUSH, whirls_of
+from compare.studies.drivetrain.frozen.parameters import MODULATED, PUSH, SPEED, SURPLUS
+from compare.studies.drivetrain.frozen.theory import in_turning_axes, state_matrix_of, whirls_of
 from compare.studies.toolkit.drivetrain_bench import passenger_car
 
 if TYPE_CHECKING:

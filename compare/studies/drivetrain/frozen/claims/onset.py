@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import eig, matrix_balance, norm
 from scipy.optimize import brentq
 
-from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.measured import Measured
+from compare.engines import Engine
+from compare.studies.drivetrain.frozen.claims.study import STUDY
+from compare.studies.drivetrain.frozen.parameters import CASES
 from compare.studies.toolkit.drivetrain_bench import (
-    SOURCE,
     Operation,
+    centred_car,
     facings,
     natural_frequency,
     onset_speed,
@@ -23,29 +24,35 @@ from compare.studies.toolkit.drivetrain_bench import (
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import FloatArray
 
-if TYPE_CHECKING:
-    from exudyn_models import Drivetrain
+IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in CASES]
 
-ONSET = "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)"
-REFERENCE_ONSET = (
-    "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable there too"
+NAMED = {f"onset at {words}": i for i, words in enumerate(IN_WORDS)}
+
+NOTE = (
+    "D = μN·∂F/∂U at U = 0, averaged over the facings, is their damping of small motions, which turns with the "
+    "flywheel. The zero of the real part of the radial eigenvalue over ω; numerical error: rounding of that "
+    "eigenvalue, by its condition, over the slope."
 )
 
-CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
-"""Torque in N m and slip in rad/s."""
 
-
-def claim_of_linearised_drivetrain(engine: str, car: Drivetrain) -> Claim:
-    """Return what Exudyn's linearisation says; the flywheel is the car's own, free to turn."""
+@STUDY.claim(
+    "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)",
+    unit="rad/s",
+    resolution=1e-9,
+    note=NOTE,
+    named=NAMED,
+)
+def loses_stability(engine: Engine) -> Measured:
+    """Compare what Exudyn's linearisation says; the flywheel is the car's own, free to turn."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 
-    centred = replace(car, offset=0.0, unbalance=0.0)
+    car = centred_car()
 
     def matrix(speed: float, slip: float, torque: float) -> FloatArray:
         model = build_drivetrain(
-            centred,
+            car,
             normal_load=car.normal_load(torque),
             regularisation=REGULARISATION,
             engine_speed=speed,
@@ -53,43 +60,42 @@ def claim_of_linearised_drivetrain(engine: str, car: Drivetrain) -> Claim:
         )
         return state_matrix(model.mbs)
 
-    return _claim(ONSET, engine, centred, matrix)
+    return _measured(matrix)
 
 
-def claim_of_reference(car: Drivetrain) -> Claim:
-    """Return what the reference says of the reduced disc."""
-    centred = replace(car, offset=0.0, unbalance=0.0)
+@STUDY.claim(
+    "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable at ω = k(1 + β/D)",
+    unit="rad/s",
+    resolution=1e-9,
+    note=NOTE,
+    named=NAMED,
+)
+def reduced_disc_loses_stability() -> Measured:
+    """Compare what the reference says of the reduced disc."""
+    car = centred_car()
 
     def matrix(speed: float, slip: float, torque: float) -> FloatArray:
-        disc = Operation(speed, slip, torque).reduced(centred)
+        disc = Operation(speed, slip, torque).reduced(car)
         return jacobian_without_angle(disc, [0.0] * 5 + [speed - slip], facings(car))
 
-    return _claim(REFERENCE_ONSET, "theory", centred, matrix)
+    return _measured(matrix)
 
 
-def _claim(sentence: str, engine: str, car: Drivetrain, matrix: Callable[..., FloatArray]) -> Claim:
+def _measured(matrix: Callable[..., FloatArray]) -> Measured:
+    """Compare the onset by ``matrix(speed, slip, torque)`` with the closed form."""
+    car = centred_car()
+    closed = [onset_speed(car, slip, torque) for torque, slip in CASES]
     found = [
-        _onset(
-            partial(matrix, slip=slip, torque=torque), onset_speed(car, slip, torque), natural_frequency(car)
-        )
-        for torque, slip in CASES
+        _onset(partial(matrix, slip=slip, torque=torque), near, natural_frequency(car))
+        for (torque, slip), near in zip(CASES, closed, strict=True)
     ]
     measured, errors = np.transpose(found)
-    words = ", ".join(f"{torque:g} N m and {slip:g} rad/s" for torque, slip in CASES)
-    return Claim(
-        sentence,
-        equation="",
-        engine=engine,
-        predicted=[onset_speed(car, slip, torque) for torque, slip in CASES],
-        measured=measured,
-        budget=ErrorBudget(errors, resolution=1e-9),
+    return Measured(
+        predicted=closed,
+        value=measured,
+        error=errors,
+        at={"torque and slip": IN_WORDS},
         parameters=parameters_of(car),
-        source=SOURCE,
-        unit="rad/s",
-        note=f"For torque and slip of {words}. D = μN·∂F/∂U at U = 0, averaged over the facings, is their damping of "
-        "small motions, which turns with the flywheel. The zero of the real part of the radial eigenvalue over ω; "
-        "numerical error: rounding of that eigenvalue, by its condition, over the slope.",
-        named={f"onset at {torque:g} N m and {slip:g} rad/s": i for i, (torque, slip) in enumerate(CASES)},
     )
 
 

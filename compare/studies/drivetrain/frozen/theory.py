@@ -1,9 +1,9 @@
-"""Small motions of the whole drivetrain about a whirl, with the reference's law of friction.
+"""What the reference says of the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
 
-Five coordinates: x and y of the disc's centre, its angle φ, that of the engine θ and that of the vehicle ψ. The slip
-u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates; the transpose of that map puts
-friction on the disc and its whole reaction, the moment −(M + z×F), on the engine. In axes that turn with the whirl
-its state rests, so that its stability is an eigenvalue problem.
+The small motions have five coordinates: x and y of the disc's centre, its angle φ, that of the engine θ and that of
+the vehicle ψ. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates; the
+transpose of that map puts friction on the disc and its whole reaction, the moment −(M + z×F), on the engine. In axes
+that turn with the whirl its state rests, so that its stability is an eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -17,7 +17,27 @@ import numpy as np
 from scipy.optimize import brentq
 
 from compare.claims.linearised_flow import ComplexArray
-from compare.studies.toolkit.drivetrain_bench import facings, natural_frequency
+from compare.claims.study import Data
+from compare.studies.drivetrain.frozen.parameters import (
+    SLIPPING,
+    SPEED,
+    SPEEDS,
+    SURPLUS,
+    SURPLUSES,
+    TORQUE,
+    TORQUES,
+    WHIRLS,
+    balanced_car,
+)
+from compare.studies.toolkit.drivetrain_bench import (
+    RPM,
+    Operation,
+    centred_car,
+    facings,
+    natural_frequency,
+    onset_speed,
+)
+from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support
@@ -157,3 +177,54 @@ def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
     return np.asarray(values[np.lexsort((-values.imag, -values.real))])
+
+
+def whirls_of(car: Drivetrain) -> list[CarWhirl]:
+    """Return the whirls of ``WHIRLS``."""
+    found = [whirl_under_surplus(car, speed * RPM, torque, surplus) for speed, torque, surplus in WHIRLS]
+    return [whirl for whirl in found if whirl is not None]
+
+
+def curves() -> Data:
+    """Return the lines of the steady motions, and where whirls are modulated."""
+    return _lines_of_reference(balanced_car()) | _maps_of_modulation(centred_car())
+
+
+def _lines_of_reference(car: Drivetrain) -> Data:
+    """Return the reference's x, y at rest and radius, frequency of a whirl over the speed in turns a minute."""
+    onset = onset_speed(car, SLIPPING, TORQUE) / RPM
+    slow, fast = np.linspace(300.0, onset - 1.0, 40), np.linspace(onset + 5.0, 6200.0, 25)
+    rests = [rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
+    circles = [whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
+    return {
+        "onset": np.array(onset),
+        "rest": np.array([(speed, each.x, each.y) for speed, each in zip(slow, rests, strict=True)]),
+        "whirl": np.array(
+            [(speed, each.radius, each.frequency) for speed, each in zip(fast, circles, strict=True)]
+        ),
+    }
+
+
+def _maps_of_modulation(car: Drivetrain) -> Data:
+    """Return growth rates in 1/s of the modulation over (torque, speed) and over (torque, surplus).
+
+    NaN where no whirl keeps the clutch from locking up. The radius in m, too, which tells whether it is on the stop.
+    """
+    over_speed = np.array([[whirl_growth(car, n, t, SURPLUS) for n in SPEEDS] for t in TORQUES])
+    over_surplus = np.array([[whirl_growth(car, SPEED, t, s) for s in SURPLUSES] for t in TORQUES])
+    return {
+        "speeds": SPEEDS,
+        "torques": TORQUES,
+        "surpluses": SURPLUSES,
+        "over speed": over_speed,
+        "over surplus": over_surplus,
+    }
+
+
+def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -> FloatArray:
+    """Return growth rate and radius of the whirl, shape (2,); NaN if there is none."""
+    whirl = whirl_under_surplus(car, speed * RPM, torque, surplus)
+    if whirl is None:
+        return np.array([np.nan, np.nan])
+    slowest = of_modulation(state_matrix_of(car, whirl), whirl.frequency)[0]
+    return np.array([slowest.real, whirl.radius])

@@ -1,0 +1,203 @@
+"""Steady motions of the clutch disc on the bench against those of the reference's reduced disc.
+
+With the shaft's axis beside the engine's the disc comes to rest in space below the onset; with both on one line it
+whirls on its stop above.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.claims.error_estimates import COARSENING, Measurement, change_as_error
+from compare.claims.measured import Measured
+from compare.engines import Engine
+from compare.studies.drivetrain.frozen.claims.study import STUDY
+from compare.studies.drivetrain.frozen.parameters import (
+    ABOVE,
+    BELOW,
+    DECAYS,
+    FINER,
+    SAMPLE,
+    SEEN,
+    SLIPPING,
+    START,
+    TOLERANCE,
+    TORQUE,
+    balanced_car,
+)
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.drivetrain_bench import (
+    BRAKE,
+    RPM,
+    Operation,
+    centre,
+    parameters_of,
+    start_disc,
+)
+from compare.studies.toolkit.drivetrain_steady import RINGS, rest_of, whirl_of
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain
+
+NOTE = (
+    f"At {TORQUE:g} N m and {SLIPPING:g} rad/s of slip, after {DECAYS:g} decay times of the slowest mode. "
+    "Numerical error: the change at a smaller tolerance, what is left of the transient by its change in the last "
+    f"{SEEN:g} decay times, and of the prediction the change with finer rings of the annulus; the largest counts for "
+    "all, since one alone may be right by chance."
+)
+
+
+class Steady(NamedTuple):
+    """A steady motion on the bench at ``speed`` in 1/min, and what the reference says of it; shape (3,) each.
+
+    x and y in m, or in a whirl radius in m and frequency in rad/s, and the slip in rad/s.
+    """
+
+    speed: float
+    found: Measurement
+    predicted: Measurement
+
+
+@STUDY.claim(
+    "Below the onset the clutch disc comes to rest in space where the reference's reduced disc does",
+    unit="m",
+    note=NOTE,
+)
+def rests(engine: Engine, below: tuple[float, ...] = BELOW) -> Measured:
+    """Compare x and y of the disc at rest."""
+    motions = _resting(engine, below)
+    return _measured(
+        motions, slice(0, 2), balanced_car().offset, components=("x", "y"), data={"rest": _shown(motions)}
+    )
+
+
+@STUDY.claim(
+    "Above the onset the clutch disc whirls on its stop, on the circle of the reference's reduced disc",
+    unit="m",
+    note=NOTE,
+)
+def radius(engine: Engine, above: tuple[float, ...] = ABOVE) -> Measured:
+    """Compare the distance of the centre from the axis."""
+    motions = _whirling(engine, above)
+    return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
+
+
+@STUDY.claim(
+    "Above the onset the clutch disc whirls with the frequency of the reference's reduced disc",
+    unit="rad/s",
+    note=NOTE,
+)
+def frequency(engine: Engine, above: tuple[float, ...] = ABOVE) -> Measured:
+    """Compare the angular velocity of the centre about the axis."""
+    return _measured(_whirling(engine, above), 1, 0.0)
+
+
+@STUDY.claim(
+    "At rest in space and in the whirl the clutch disc slips as the reference's reduced disc does",
+    unit="rad/s",
+    note=NOTE,
+)
+def slips(engine: Engine, below: tuple[float, ...] = BELOW, above: tuple[float, ...] = ABOVE) -> Measured:
+    """Compare the slip of the disc."""
+    return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, balanced_car().offset)
+
+
+def _measured(
+    motions: Sequence[Steady],
+    place: slice | int,
+    offset: float,
+    *,
+    components: Sequence[str] = (),
+    data: Mapping[str, ArrayLike] | None = None,
+) -> Measured:
+    """Compare the quantities at ``place``, of the disc with ``offset`` in m."""
+    predicted = np.array([one.predicted.value[place] for one in motions])
+    return Measured(
+        predicted=predicted,
+        value=[one.found.value[place] for one in motions],
+        error=np.max([one.found.error[place] + one.predicted.error[place] for one in motions]),
+        resolution=1e-7 * float(np.max(np.abs(predicted))),
+        at={"speed in 1/min": [one.speed for one in motions]},
+        components=components,
+        parameters=parameters_of(
+            balanced_car(), without=("offset",), offset=offset, torque=TORQUE, brake=BRAKE
+        ),
+        data=data or {},
+    )
+
+
+def _shown(motions: Sequence[Steady]) -> FloatArray:
+    return np.array([(one.speed, *one.found.value) for one in motions])
+
+
+@functools.lru_cache(maxsize=2)
+def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
+    """Return the states of rest at ``speeds`` in turns a minute, with the car's offset."""
+    car = balanced_car()
+
+    def one(speed: float) -> Steady:
+        bench = Operation(speed * RPM, SLIPPING, TORQUE, car.offset)
+
+        def quantities(rings: int) -> FloatArray:
+            rest = rest_of(car, bench, rings)
+            return np.array([rest.x, rest.y, bench.speed - rest.spin])
+
+        rate = -rest_of(car, bench).eigenvalues[0].real
+        found = _settled(car, bench, rate, complex(bench.offset), whirling=False)
+        return Steady(speed, found, _with_rings(quantities))
+
+    return tuple(one(speed) for speed in speeds)
+
+
+@functools.lru_cache(maxsize=2)
+def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
+    """Return the whirls at ``speeds`` in turns a minute, without offset."""
+    car = balanced_car()
+
+    def one(speed: float) -> Steady:
+        bench = Operation(speed * RPM, SLIPPING, TORQUE)
+
+        def quantities(rings: int) -> FloatArray:
+            whirl = whirl_of(car, bench, rings)
+            return np.array([whirl.radius, whirl.frequency, bench.speed - whirl.spin])
+
+        rate = -whirl_of(car, bench).eigenvalues[1].real
+        found = _settled(car, bench, rate, complex(START), whirling=True)
+        return Steady(speed, found, _with_rings(quantities))
+
+    return tuple(one(speed) for speed in speeds)
+
+
+def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
+    """Return ``quantities(rings)`` of the reference, and the change with finer rings as their error."""
+    found = quantities(RINGS)
+    return Measurement(found, np.abs(found - quantities(FINER)))
+
+
+def _settled(
+    car: Drivetrain, operation: Operation, rate: float, start: complex, *, whirling: bool
+) -> Measurement:
+    """Return x, y and slip, or in a whirl radius, frequency and slip, when all that decays has.
+
+    ``rate`` in 1/s is that of the slowest mode.
+    """
+
+    def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        model = operation.build(car)
+        start_disc(model, start, 0j)
+        motion = model.run(DECAYS / rate, sample_every=SAMPLE, tolerance=tolerance)
+        z, velocity = centre(motion.disc), centre(motion.disc_velocity)
+        shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)
+        return motion.times, np.column_stack((*shape, motion.slip))
+
+    (times, found), (_, finer) = run(TOLERANCE), run(TOLERANCE / COARSENING)
+    delay = SEEN / rate
+    earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
+    rest = remaining_transient(earlier, found[-1], rate, delay)
+    return Measurement(found[-1], change_as_error(found[-1], finer[-1], alike=False) + rest)

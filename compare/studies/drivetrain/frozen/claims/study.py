@@ -1,0 +1,24 @@
+"""The study that the claims are declared in."""
+
+from __future__ import annotations
+
+from compare.claims.study import Study
+from compare.studies.drivetrain.frozen.parameters import BORDER_SURPLUS, BORDER_TORQUES
+from compare.studies.drivetrain.frozen.pictures import draw
+from compare.studies.drivetrain.frozen.theory import curves
+from compare.studies.toolkit.drivetrain_bench import SOURCE
+
+STUDY = Study.beside(
+    __file__,
+    "drivetrain-frozen",
+    words={
+        "surplus": f"{100.0 * BORDER_SURPLUS:g}",
+        "low": f"{BORDER_TORQUES[0]:g}",
+        "high": f"{BORDER_TORQUES[-1]:g}",
+    },
+    source=SOURCE,
+    draw=draw,
+    curves=curves,
+    only=("exudyn",),
+    seconds=6.0,
+)
