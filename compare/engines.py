@@ -22,7 +22,7 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -333,53 +333,20 @@ def one_of(kind: str, name: str, names: Iterable[str]) -> str:
     raise ValueError(f"unknown {kind} {name!r}: {hint}")
 
 
-# The two packages are imported when they are used: the command line must start without SciPy and Exudyn.
-def _simulate_reference(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    import reference_model
-
-    return reference_model.simulate(system, initial_state, times, tolerance=tolerance)
+def _simulate_by(module: str, function: str, *arguments: Any, **options: Any) -> Trajectory:
+    """Simulate by a package that is imported now: the command line must start without SciPy and Exudyn."""
+    trajectory: Trajectory = getattr(importlib.import_module(module), function)(*arguments, **options)
+    return trajectory
 
 
-def _simulate_compiled(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    import reference_model
-
-    return reference_model.simulate(system, initial_state, times, tolerance=tolerance, compiled=True)
-
-
-def _simulate_plain(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    from reference_model import plain
-
-    return plain.simulate(system, initial_state, times, tolerance=tolerance)
-
-
-def _simulate_exudyn(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    import exudyn_models
-
-    return exudyn_models.simulate(system, initial_state, times, tolerance=tolerance)
-
-
-def _simulate_exudyn_native(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
-) -> Trajectory:
-    from exudyn_models.paper.native_contact import simulate_with_native_contact
-
-    return simulate_with_native_contact(system, initial_state, times, tolerance=tolerance)
-
+_simulate_reference = functools.partial(_simulate_by, "reference_model", "simulate")
 
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
-exudyn = register(Engine("exudyn", _simulate_exudyn, EVERY_KIND))
+exudyn = register(Engine("exudyn", functools.partial(_simulate_by, "exudyn_models", "simulate"), EVERY_KIND))
 exudyn_native = register(
     Engine(
         "exudyn-native",
-        _simulate_exudyn_native,
+        functools.partial(_simulate_by, "exudyn_models", "simulate_with_native_contact"),
         ("pin", "points"),
         kin="exudyn",
         contact_only=True,
@@ -390,12 +357,19 @@ exudyn_native = register(
     )
 )
 compiled = register(
-    Engine("compiled", _simulate_compiled, EVERY_KIND, nonlinear=False, kin="reference"), on_request=True
+    Engine(
+        "compiled",
+        functools.partial(_simulate_reference, compiled=True),
+        EVERY_KIND,
+        nonlinear=False,
+        kin="reference",
+    ),
+    on_request=True,
 )
 plain = register(
     Engine(
         "plain",
-        _simulate_plain,
+        functools.partial(_simulate_by, "reference_model.plain", "simulate"),
         EVERY_KIND,
         sticks=False,
         about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "

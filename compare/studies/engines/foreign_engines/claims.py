@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+import compare.studies.engines.foreign_engines.ladders as ladders
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.measured import Measured
 from compare.claims.study import Data, Study
 from compare.foreign.cases import CASES
 from compare.foreign.records import DIGITS
-from compare.studies.engines.foreign_engines import ladders
 from compare.studies.engines.foreign_engines.ladders import ERROR, STEPS, halvings
 from compare.studies.engines.foreign_engines.laws import (
     Law,

@@ -6,10 +6,10 @@ import functools
 
 import numpy as np
 
+import compare.studies.disc.fig11.claims.whirl as whirl
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
-from compare.studies.disc.fig11.claims import whirl
 from compare.studies.disc.fig11.claims.offsets import end_of, error_of_monodromy
 from compare.studies.disc.fig11.claims.study import STUDY
 from compare.studies.disc.fig11.parameters import (
