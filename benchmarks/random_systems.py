@@ -63,7 +63,8 @@ def random_system(seed: int) -> tuple[System, FloatArray]:
     return disc, state
 
 
-def _break_off(_: int, frame: FrameType | None) -> None:
+def break_off(_: int, frame: FrameType | None) -> None:
+    """Raise ``TimeoutError``: the handler of the signal that breaks a run off."""
     raise TimeoutError
 
 
@@ -101,7 +102,7 @@ def measure(seed: int) -> tuple[str, float, int, float, float]:
 
 def main() -> None:
     """Print each run that is not as it should be, and a summary."""
-    signal.signal(signal.SIGPROF, _break_off)
+    signal.signal(signal.SIGPROF, break_off)
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     results = []
