@@ -52,6 +52,12 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
 
     """
 
+    t: float
+    y: FloatArray
+    f: FloatArray
+    h_abs: float
+    K_extended: FloatArray
+
     def __init__(
         self,
         rates: Rates,
