@@ -9,7 +9,7 @@ accurate as at its end.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.polynomial import legendre
 from scipy.integrate import DenseOutput
 from scipy.special import roots_jacobi
 
+from reference_model.numerics.explicit import Rates
 from reference_model.systems import FloatArray
 
 NODES = 8
@@ -32,7 +33,8 @@ INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
 _FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Makes Legendre coefficients of values at the start and the nodes."""
 
-MOST_ITERATIONS = 10
+MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
+"""Of Newton's method, before a shorter step is tried: most of the work is in the Jacobians."""
 
 CONVERGED = 0.01
 """Change, as a share of what is tolerated, at which the unknowns at the nodes count as solved for."""
@@ -111,7 +113,7 @@ class Radau:
     Parameters
     ----------
     rates : callable
-        The right side, as SciPy takes it; it must not depend on the time.
+        The right side.
     t, y : float, array of shape (n,)
         Where to begin.
     end : float
@@ -125,7 +127,7 @@ class Radau:
 
     def __init__(
         self,
-        rates: Callable[[float, FloatArray], Sequence[float]],
+        rates: Rates,
         t: float,
         y: FloatArray,
         end: float,
@@ -198,13 +200,16 @@ class Radau:
         else:
             values = self._polynomial.beyond(places, CONVERGED * self._tolerated)
         inverse = None
-        last = math.inf
+        last, found = math.inf, 0
         for _ in range(MOST_ITERATIONS):
             rates = self._rates(values)
             if not np.all(np.isfinite(rates)):
                 return None
             if inverse is None:
-                jacobians = self._jacobians(values)
+                if found == MOST_JACOBIANS:
+                    return None
+                found += 1
+                jacobians = self._jacobians(values, rates)
                 try:
                     matrix = newton_matrix(jacobians, h)
                     rows = 1.0 / np.max(abs(matrix), axis=1)
@@ -229,14 +234,13 @@ class Radau:
     def _rates(self, values: FloatArray) -> FloatArray:
         """Return the rates at ``values`` (k, n)."""
         self.nfev += len(values)
-        return np.array([self._fun(0.0, row) for row in values])
+        return np.array([self._fun(row) for row in values.tolist()])
 
-    def _jacobians(self, values: FloatArray) -> FloatArray:
-        """Return the derivatives of the rates by the unknowns at the nodes, by differences."""
+    def _jacobians(self, values: FloatArray, rates: FloatArray) -> FloatArray:
+        """Return the derivatives of the ``rates`` at the nodes by the unknowns, by differences."""
         n = values.shape[1]
         result = np.empty((len(values), n, n))
         for i, row in enumerate(values):
             changes = self._scales.differences(row)
-            moved = np.diag(changes)
-            result[i] = (self._rates(row + moved) - self._rates(row - moved)).T / (2.0 * changes)
+            result[i] = (self._rates(row + np.diag(changes)) - rates[i]).T / changes
         return result

@@ -52,8 +52,8 @@ def slide_stiffly(
         s = math.exp(max(min(polar[-1], 50.0), -500.0))  # a trial may overshoot wildly
         return polar[:others] + [s * part for part in n], n, s
 
-    def rates(_: float, polar: FloatArray) -> Sequence[float]:
-        y, n, s = unknowns(polar.tolist())
+    def rates(polar: list[float]) -> Sequence[float]:
+        y, n, s = unknowns(polar)
         dy = motion.rates(y)
         growth = dy[others:]
         along = sum(a * b for a, b in zip(n, growth, strict=True))
