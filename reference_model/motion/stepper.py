@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, NoReturn
+from typing import Any, Literal, NamedTuple, NoReturn
 
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolution
 from scipy.optimize import brentq, minimize_scalar
 
-from reference_model.numerics.collocation import Radau, Scales
+from reference_model.numerics.collocation import Radau, RatesAt, Scales
 from reference_model.numerics.explicit import Explicit, Rates
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -202,7 +202,7 @@ class Stepper:
     run : Run
         The simulation, which counts steps and evaluations.
     rates : callable
-        The right side.
+        The right side: for an explicit method at one place, for an implicit one at many.
     y : sequence
         Where to begin.
     span : (float, float)
@@ -219,14 +219,15 @@ class Stepper:
     def __init__(
         self,
         run: Run,
-        rates: Rates,
+        rates: Rates | RatesAt,
         y: Sequence[float],
         span: tuple[float, float],
         relative_tolerance: FloatArray,
         edges: Sequence[Edge] = (),
         implicit: tuple[Scales, float] | None = None,
     ) -> None:
-        self._run, self._rates, self._edges = run, rates, edges
+        self._run, self._edges = run, edges
+        self._rates: Callable[..., Any] = rates
         self._scales = None if implicit is None else implicit[0]
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
