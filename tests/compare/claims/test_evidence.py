@@ -145,7 +145,7 @@ def test_the_motions_of_the_contact_alone_are_among_those_of_its_study(name, sen
 def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
     (study,) = studies(["whirl-stability"])
     part = replace(reference, contact_only=True)
-    few = dict.fromkeys(("radius", "frequency"), {"speeds": (1.5,)})
+    few = {name: {"speeds": (1.5,)} for name in ("radius", "frequency")}
     found = study.measure(part, few).claims
     assert [made.sentence.split(" with ")[1].split(" where")[0] for made in found] == [
         "the radius μN/(βk)",
