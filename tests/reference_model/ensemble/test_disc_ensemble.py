@@ -193,7 +193,9 @@ def test_a_whirl_without_offset_is_the_circle_of_the_formula():
 
 def test_the_modulated_whirl_of_fig_11_has_the_radii_of_the_reference():
     found = simulate_ensemble(FIG11, starts_of(20), duration=3000.0)
-    late = simulate(FIG11, starts_of(1)[0], np.linspace(0.0, 3000.0, 30001)).radius[20000:]
+    # Begun near to it: others come so close to the axis that the integrator's error decides where they go on from.
+    near = (0.04, 0.0, 0.0, 0.0, 0.04, 1.39)
+    late = simulate(FIG11, near, np.linspace(0.0, 3000.0, 30001)).radius[20000:]
     assert np.all(found.end == EndState.MODULATED)
     assert found.least_radius == pytest.approx(late.min(), rel=1e-3)
     assert found.largest_radius == pytest.approx(late.max(), rel=1e-3)
