@@ -65,7 +65,8 @@ def random_system(seed: int) -> tuple[System, FloatArray]:
     return disc, state
 
 
-def _break_off(_: int, frame: FrameType | None) -> None:
+def break_off(_: int, frame: FrameType | None) -> None:
+    """Raise ``TimeoutError``: the handler of the signal that breaks a run off."""
     raise TimeoutError
 
 
@@ -117,7 +118,7 @@ def _warm() -> None:
 
 def main() -> None:
     """Print each run that is not as it should be, and a summary."""
-    signal.signal(signal.SIGPROF, _break_off)
+    signal.signal(signal.SIGPROF, break_off)
     words = sys.argv[1:]
     compiled = "--compiled" in words
     numbers = [int(word) for word in words if word != "--compiled"]

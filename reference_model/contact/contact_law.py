@@ -33,6 +33,9 @@ from reference_model.systems import (
     require_system,
 )
 
+NONE = 1e-300
+"""Added to a speed, it changes none but that of rest, which then has no direction."""
+
 
 class Contact(Protocol):
     """A law of friction between two discs."""
@@ -248,6 +251,10 @@ class PointsOnRing(_OnCircle):
         """The points on the unit circle at φ = 0."""
         return tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
 
+    def arm(self, point: int, angle: float) -> complex:
+        """Return the position of a point relative to the centre, in m."""
+        return self.radius * cmath.exp(1j * angle) * self._around[point]
+
     def arms(self, angle: float) -> list[complex]:
         """Return the positions of the points relative to the centre, in m."""
         turn = self.radius * cmath.exp(1j * angle)
@@ -263,6 +270,23 @@ class PointsOnRing(_OnCircle):
                 friction = -velocity / speed
                 force += friction
                 moment += (arm.conjugate() * friction).imag
+        return force / self.points, moment / self.points
+
+    def friction_of_others(
+        self, point: int, slip: complex, relative_spin: float, angle: float
+    ) -> tuple[complex, float]:
+        """Return force and moment as :meth:`force_and_moment`, of all points but one, which slips with ``slip``."""
+        force, moment = 0j, 0.0
+        arms = self.arms(angle)
+        own = arms[point]
+        for j, arm in enumerate(arms):
+            if j != point:
+                velocity = slip - 1j * relative_spin * (arm - own)
+                speed = abs(velocity)
+                if speed > 0.0:
+                    friction = -velocity / speed
+                    force += friction
+                    moment += (arm.conjugate() * friction).imag
         return force / self.points, moment / self.points
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:

@@ -16,7 +16,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
 from scipy.special import ellipe, ellipkm1
+
+from reference_model.systems import FloatArray
 
 SMALL = 0.05
 """Parameter m below which B and D come from their series, because the differences would lose digits.
@@ -35,6 +38,18 @@ def mean_directions(slip: float, rim: float) -> tuple[float, float]:
         return _by_larger(ratio), _by_smaller(ratio)
     ratio = slip / rim
     return _by_smaller(ratio), _by_larger(ratio)
+
+
+def mean_directions_at(slips: FloatArray, rims: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """As :func:`mean_directions`, for arrays of shape (k,); at rest 1 and 0."""
+    ratio = np.minimum(slips, rims) / np.maximum(np.maximum(slips, rims), 1e-300)
+    m = ratio * ratio
+    by_larger = 2.0 / math.pi * ellipe(m)
+    complement = np.maximum(1.0 - m, 1e-300)  # at 0 it would be zero times infinity
+    large = 2.0 / math.pi * (ellipe(m) - complement * ellipkm1(complement)) / np.maximum(ratio, 1e-300)
+    by_smaller = np.where(m < SMALL, 0.5 * ratio * np.polyval(_B_SERIES, m), large)
+    faster = slips >= rims
+    return np.where(faster, by_larger, by_smaller), np.where(faster, by_smaller, by_larger)
 
 
 def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:

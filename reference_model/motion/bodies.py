@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference_model.contact.contact_law import IsotropicContact, Ring
+from reference_model.contact.contact_law import NONE, IsotropicContact, Ring
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.slip.breakaway import LEAST_SLIP, begin_slip
@@ -200,14 +200,15 @@ class PinBody(Body):
 
         def rates(unknowns: Sequence[float]) -> tuple[float, ...]:
             x, y, wx, wy = unknowns
-            w = complex(wx, wy)
-            speed = abs(w)
-            a = motion.pull(complex(x, y), w) - (g * w / speed if speed > 0.0 else 0.0)
+            w = wx + 1j * wy
+            a = motion.pull(x + 1j * y, w) - g * w / (abs(w) + NONE)
             return wx - omega * y, wy + omega * x, a.real, a.imag
 
         slow = run.thresholds.slow_slip * g
         edges = stop_edges(motion.support)
-        super().__init__(run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), motion)
+        super().__init__(
+            run, Coordinates(rates, rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), motion
+        )
 
     def holds_for(self, y: Sequence[float]) -> float:
         """As :meth:`Body.holds_for`: by eq. 6 and 7."""
@@ -263,7 +264,8 @@ class DiscBody(Body):
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
         edges += stop_edges(motion.centre.support)
-        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
+        many = motion.at_once.rates
+        coordinates = Coordinates(motion.rates, many, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
         super().__init__(run, coordinates, motion.centre)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:

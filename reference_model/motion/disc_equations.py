@@ -10,8 +10,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import cast
 
+from reference_model.contact.at_once import at_once
 from reference_model.contact.contact_law import Contact
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.systems import DiscOnDisc
@@ -65,11 +68,16 @@ class DiscMotion:
         """Return the rates of x, y, φ, u_x, u_y, r; at rest, where friction is set-valued, without friction."""
         x, y, angle, ux, uy, r = unknowns
         omega, g = self.centre.disc_speed, self.centre.friction
-        u = complex(ux, uy)
+        u = ux + 1j * uy
         force, moment = self.contact.force_and_moment(self.length * u, -r / self.gyration, angle)
-        a = self.centre.pull(complex(x, y), u) + g * force
+        a = self.centre.pull(x + 1j * y, u) + g * force
         spin_up = self.turning_pull(r) + g * moment / (self.length * self.gyration)
         return ux - omega * y, uy + omega * x, omega + r / self.gyration, a.real, a.imag, spin_up
+
+    @cached_property
+    def at_once(self) -> DiscMotion:
+        """The same for arrays of shape (k,) in place of numbers."""
+        return replace(self, contact=cast(Contact, at_once(self.contact)))
 
     def edge(self, unknowns: Sequence[float]) -> float:
         """Return U − R|S|: zero where a point of a continuous ring rests and its slopes are infinite."""

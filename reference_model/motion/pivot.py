@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import PointsOnRing
+from reference_model.contact.contact_law import NONE, PointsOnRing
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.slip.coordinates import Coordinates, stop_edges
 from reference_model.motion.stepper import Thresholds
@@ -44,13 +45,19 @@ class OnePoint:
     point: int
 
     @property
+    def at_once(self) -> OnePoint:
+        """The same for arrays of shape (k,) in place of numbers."""
+        motion = self.motion.at_once
+        return OnePoint(motion, cast(PointsOnRing, motion.contact), self.point)
+
+    @property
     def most(self) -> float:
         """The greatest friction of the point over the mass, g/n."""
         return self.motion.centre.friction / self.contact.points
 
     def arm(self, angle: float) -> complex:
         """Return the arm of the point."""
-        return self.contact.arms(angle)[self.point] / self.motion.length
+        return self.contact.arm(self.point, angle) / self.motion.length
 
     def velocity(self, unknowns: Sequence[float]) -> complex:
         """Return the slip velocity of the point for the standard unknowns of the disc."""
@@ -59,10 +66,9 @@ class OnePoint:
 
     def slipping_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
         """Return the rates of x, y, φ, r, v_x, v_y; where the point rests, without its own friction."""
-        v = complex(unknowns[4], unknowns[5])
-        speed = abs(v)
+        v = unknowns[4] + 1j * unknowns[5]
         carried, spin_up, arm, free = self._without_friction(unknowns, v)
-        friction = -self.most * (v / speed) if speed > 0.0 else 0j
+        friction = -self.most * (v / (abs(v) + NONE))
         torque = (arm.conjugate() * friction).imag / self.motion.gyration
         acceleration = free + friction + 1j * arm * torque / self.motion.gyration
         return (*carried, spin_up + torque, acceleration.real, acceleration.imag)
@@ -111,7 +117,14 @@ class OnePoint:
 
         edges = stop_edges(self.motion.centre.support)
         return Coordinates(
-            self.slipping_rates, 2, slow_slip, self._pace, self._standard, angle=2, edges=edges
+            self.slipping_rates,
+            self.at_once.slipping_rates,
+            2,
+            slow_slip,
+            self._pace,
+            self._standard,
+            angle=2,
+            edges=edges,
         )
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
@@ -120,6 +133,7 @@ class OnePoint:
         edges = stop_edges(self.motion.centre.support)
         return Coordinates(
             self.pivoting_rates,
+            self.at_once.pivoting_rates,
             1,
             lambda _: slow,
             self._pace,
@@ -149,23 +163,13 @@ class OnePoint:
     ) -> tuple[tuple[float, float, float], float, complex, complex]:
         """Return rates of x, y, φ, that of r, the arm and B, all without the friction of this point."""
         x, y, angle, r = unknowns[:4]
-        motion, kappa, n = self.motion, self.motion.gyration, self.contact.points
+        motion, kappa = self.motion, self.motion.gyration
         omega, g = motion.centre.disc_speed, motion.centre.friction
-        arms = [arm / motion.length for arm in self.contact.arms(angle)]
-        own = arms[self.point]
-        turning = 1j * r / kappa
-        force, moment = 0j, 0.0
-        for j, arm in enumerate(arms):
-            if j != self.point:
-                velocity = v + turning * (arm - own)
-                speed = abs(velocity)
-                if speed > 0.0:
-                    friction = velocity / speed
-                    force -= friction
-                    moment -= (arm.conjugate() * friction).imag
-        u = v - turning * own
-        acceleration = motion.centre.pull(complex(x, y), u) + g / n * force
-        spin_up = motion.turning_pull(r) + g / n * moment / kappa
+        own = self.arm(angle)
+        force, moment = self.contact.friction_of_others(self.point, motion.length * v, -r / kappa, angle)
+        u = v - 1j * r / kappa * own
+        acceleration = motion.centre.pull(x + 1j * y, u) + g * force
+        spin_up = motion.turning_pull(r) + g * moment / (motion.length * kappa)
         spin = omega + r / kappa
         free = acceleration + (1j * spin_up - spin * r) * own / kappa
         return (u.real - omega * y, u.imag + omega * x, spin), spin_up, own, free

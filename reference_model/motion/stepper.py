@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, NoReturn
+from typing import Any, Literal, NamedTuple, NoReturn
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput, OdeSolution
+from scipy.integrate import DenseOutput, OdeSolution
 from scipy.optimize import brentq, minimize_scalar
 
-from reference_model.numerics.collocation import Radau, Scales
+from reference_model.numerics.collocation import Radau, RatesAt, Scales
+from reference_model.numerics.explicit import Explicit, Rates
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -126,13 +127,13 @@ class Run:
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
 
-    def step(self, solver: DOP853 | Radau, since: float) -> None:
+    def step(self, solver: Explicit | Radau, since: float) -> None:
         """Take one step, or raise ``StepError`` with the time up to which all was well."""
         evaluations = solver.nfev
         message = solver.step()
         self.evaluations += solver.nfev - evaluations
         self.count_step(since)
-        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+        if solver.status == "failed" or not all(map(math.isfinite, solver.y.tolist())):
             raise StepError(
                 f"the integrator gave up after t = {self.seconds(since):g} s: "
                 f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
@@ -201,7 +202,7 @@ class Stepper:
     run : Run
         The simulation, which counts steps and evaluations.
     rates : callable
-        The right side, as SciPy takes it.
+        The right side: for an explicit method at one place, for an implicit one at many.
     y : sequence
         Where to begin.
     span : (float, float)
@@ -218,18 +219,19 @@ class Stepper:
     def __init__(
         self,
         run: Run,
-        rates: Callable[[float, FloatArray], Sequence[float]],
+        rates: Rates | RatesAt,
         y: Sequence[float],
         span: tuple[float, float],
         relative_tolerance: FloatArray,
         edges: Sequence[Edge] = (),
         implicit: tuple[Scales, float] | None = None,
     ) -> None:
-        self._run, self._rates, self._edges = run, rates, edges
+        self._run, self._edges = run, edges
+        self._rates: Callable[..., Any] = rates
         self._scales = None if implicit is None else implicit[0]
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
-        self._solver: DOP853 | Radau
+        self._solver: Explicit | Radau
         self._limited = 0  # steps that stability may have limited, less others
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
@@ -264,17 +266,8 @@ class Stepper:
 
     @property
     def stiffness(self) -> float:
-        """The length of the last step times the largest rate of decay.
-
-        Of the explicit method by its last two stages, both at the end of the step (Hairer and Wanner, IV.2).
-        """
-        solver = self._solver
-        if isinstance(solver, Radau):
-            return solver.stiffness
-        h = solver.t - solver.t_old
-        stage = solver.y_old + h * (solver.A[-1, :-1] @ solver.K[: len(solver.A) - 1])
-        apart = float(np.linalg.norm(solver.y - stage))
-        return h * float(np.linalg.norm(solver.f - solver.K[-2])) / apart if apart > 0.0 else 0.0
+        """The length of the last step times the largest rate of decay."""
+        return self._solver.stiffness
 
     def dense_output(self) -> DenseOutput | OdeSolution:
         """Return the interpolant of the last step, as accurate as its end."""
@@ -283,7 +276,7 @@ class Stepper:
             self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)
         return self._dense
 
-    def _interpolant(self, solver: DOP853) -> DenseOutput | OdeSolution:
+    def _interpolant(self, solver: Explicit) -> DenseOutput | OdeSolution:
         evaluations = solver.nfev
         dense = solver.dense_output()
         self._run.evaluations += solver.nfev - evaluations
@@ -301,10 +294,10 @@ class Stepper:
         middle, little = 0.5 * (first + last), 1e-3 * (last - first)
         slope = (dense(middle + little) - dense(middle - little)) / (2.0 * little)
         self._run.evaluations += 1
-        lacks = slope - np.array(self._rates(middle, dense(middle)))
+        lacks = slope - np.array(self._rates(dense(middle).tolist()))
         return float(0.5 * (last - first) * np.max(abs(lacks) / tolerated))
 
-    def _finer(self, done: DOP853, parts: int) -> OdeSolution:
+    def _finer(self, done: Explicit, parts: int) -> OdeSolution:
         """Return the motion in the last step from as many shorter ones."""
         first, last = done.t_old, done.t
         solver = self._explicit(first, done.y_old, last, (last - first) / parts, (last - first) / parts)
@@ -385,6 +378,6 @@ class Stepper:
 
     def _explicit(
         self, t: float, y: FloatArray, end: float, first_step: float | None, most: float = math.inf
-    ) -> DOP853:
-        tolerances = {"rtol": self._relative_tolerance, "atol": self._run.local_tolerance}
-        return DOP853(self._rates, t, y, end, first_step=first_step, max_step=most, **tolerances)
+    ) -> Explicit:
+        tolerances = self._relative_tolerance, self._run.local_tolerance
+        return Explicit(self._rates, t, y, end, first_step, *tolerances, most)

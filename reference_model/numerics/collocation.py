@@ -9,7 +9,7 @@ accurate as at its end.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +32,8 @@ INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
 _FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Makes Legendre coefficients of values at the start and the nodes."""
 
-MOST_ITERATIONS = 10
+MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
+"""Of Newton's method, before a shorter step is tried: most of the work is in the Jacobians."""
 
 CONVERGED = 0.01
 """Change, as a share of what is tolerated, at which the unknowns at the nodes count as solved for."""
@@ -57,22 +58,46 @@ def newton_matrix(jacobians: FloatArray, step: float) -> FloatArray:
     return np.asarray(np.eye(size) - step * coupling)
 
 
+RatesAt = Callable[[FloatArray], FloatArray]
+"""Takes the unknowns at many places, shape (n, k), and returns their rates, of the same shape."""
+
+
+def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
+    """Return the derivatives of the rates by the unknowns, by differences, shape (NODES, n, n).
+
+    Parameters
+    ----------
+    rates : RatesAt
+        The right side.
+    values, found : array of shape (NODES, n)
+        Unknowns, and their rates.
+    changes : array of shape (NODES, n)
+        Of the unknowns, by which derivatives are found.
+
+    """
+    nodes, n = values.shape
+    moved = values[:, np.newaxis] + changes[:, np.newaxis] * np.eye(n)
+    rates_moved = rates(moved.reshape(-1, n).T).T.reshape(nodes, n, n)
+    quotients = (rates_moved - found[:, np.newaxis]) / changes[:, :, np.newaxis]
+    return np.asarray(quotients.transpose(0, 2, 1))
+
+
 class Scales(NamedTuple):
-    """How large is little for the unknowns of a motion, all of shape (n,).
+    """How large is little for the unknowns of a motion.
 
     Parameters
     ----------
     tolerated : callable
         Takes the unknowns and returns the errors that a step may have.
-    differences : callable
-        Takes the unknowns and returns changes by which derivatives are found.
+    difference : float
+        Change of an unknown by which derivatives are found.
     most : array of shape (n,)
         Changes of the unknowns that Newton's method may make at a time.
 
     """
 
     tolerated: Callable[[FloatArray], FloatArray]
-    differences: Callable[[FloatArray], FloatArray]
+    difference: float
     most: FloatArray
 
 
@@ -110,8 +135,8 @@ class Radau:
 
     Parameters
     ----------
-    rates : callable
-        The right side, as SciPy takes it; it must not depend on the time.
+    rates : RatesAt
+        The right side.
     t, y : float, array of shape (n,)
         Where to begin.
     end : float
@@ -125,7 +150,7 @@ class Radau:
 
     def __init__(
         self,
-        rates: Callable[[float, FloatArray], Sequence[float]],
+        rates: RatesAt,
         t: float,
         y: FloatArray,
         end: float,
@@ -135,7 +160,7 @@ class Radau:
         self._fun, self.t_bound, self._scales = rates, end, scales
         self.t, self.y = t, np.asarray(y)
         self.status, self.nfev = "running", 0
-        self.f = self._rates(self.y[np.newaxis])[0]
+        self.f = self._rates(self.y[:, np.newaxis])[:, 0]
         self._tolerated = scales.tolerated(self.y)
         self._next = first_step
         self._least = LEAST_SHARE * first_step
@@ -180,7 +205,7 @@ class Radau:
             h *= max(0.1, change)
         self.t = self.t_bound if h == self.t_bound - self.t else self.t + h
         self.y = polynomial(self.t)
-        self.f = self._rates(self.y[np.newaxis])[0]
+        self.f = self._rates(self.y[:, np.newaxis])[:, 0]
         self._tolerated = self._scales.tolerated(self.y)
         self._unchanged = self._unchanged + 1 if change < 1.5 else 0
         self._next = h * min(most, change)
@@ -198,13 +223,17 @@ class Radau:
         else:
             values = self._polynomial.beyond(places, CONVERGED * self._tolerated)
         inverse = None
-        last = math.inf
+        last, found = math.inf, 0
         for _ in range(MOST_ITERATIONS):
-            rates = self._rates(values)
+            rates = self._rates(values.T).T
             if not np.all(np.isfinite(rates)):
                 return None
             if inverse is None:
-                jacobians = self._jacobians(values)
+                if found == MOST_JACOBIANS:
+                    return None
+                found += 1
+                changes = np.full(values.shape, self._scales.difference)
+                jacobians = jacobians_at(self._rates, values, rates, changes)
                 try:
                     matrix = newton_matrix(jacobians, h)
                     rows = 1.0 / np.max(abs(matrix), axis=1)
@@ -227,16 +256,6 @@ class Radau:
         return None
 
     def _rates(self, values: FloatArray) -> FloatArray:
-        """Return the rates at ``values`` (k, n)."""
-        self.nfev += len(values)
-        return np.array([self._fun(0.0, row) for row in values])
-
-    def _jacobians(self, values: FloatArray) -> FloatArray:
-        """Return the derivatives of the rates by the unknowns at the nodes, by differences."""
-        n = values.shape[1]
-        result = np.empty((len(values), n, n))
-        for i, row in enumerate(values):
-            changes = self._scales.differences(row)
-            moved = np.diag(changes)
-            result[i] = (self._rates(row + moved) - self._rates(row - moved)).T / (2.0 * changes)
-        return result
+        """Return the rates at ``values`` (n, k), and count them."""
+        self.nfev += values.shape[1]
+        return self._fun(values)

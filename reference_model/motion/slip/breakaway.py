@@ -18,7 +18,14 @@ from numpy.polynomial import legendre
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome
 from reference_model.motion.slip.slide import slide_slowly
 from reference_model.motion.stepper import Run
-from reference_model.numerics.collocation import INTEGRAL, NODES, POINTS, TO_SERIES, newton_matrix
+from reference_model.numerics.collocation import (
+    INTEGRAL,
+    NODES,
+    POINTS,
+    TO_SERIES,
+    jacobians_at,
+    newton_matrix,
+)
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -174,16 +181,27 @@ class _Sample:
         return self.motion.standard(self.piece.at(times - self.t).T)
 
 
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # of a trial, which is given up for that
 def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
     """Solve for the unknowns at the nodes by Newton's method, from ``values``; None if it does not converge."""
     others = len(start) - motion.slip
+
+    def rates_at(unknowns: FloatArray) -> FloatArray:
+        run.evaluations += unknowns.shape[1]
+        return motion.rates_at(unknowns)
+
     for _ in range(MOST_ITERATIONS):
-        rates = _rates(run, motion, values)
+        rates = rates_at(values.T).T
         if not np.all(np.isfinite(rates)):
             return None
-        jacobians = np.array([_jacobian(run, motion, *node) for node in zip(values, rates, strict=True)])
+        changes = np.full(values.shape, 1e-7)
+        # Derivatives by the slip on its own scale.
+        changes[:, others:] *= np.maximum(
+            np.linalg.norm(values[:, others:], axis=1, keepdims=True), LEAST_SLIP
+        )
+        jacobians = jacobians_at(rates_at, values, rates, changes)
         residual = values - start - step * (INTEGRAL @ rates)
         try:
             change = np.linalg.solve(newton_matrix(jacobians, step), residual.ravel())
@@ -194,7 +212,7 @@ def _collocate(
         slip = np.linalg.norm(values[:, others:], axis=1)
         converged = np.linalg.norm(change[:, others:], axis=1) < 1e-9 * slip + 1e-15 * step
         if converged.all() and np.all(abs(change) < 1e-13 * (1.0 + abs(values))):
-            rates = _rates(run, motion, values)
+            rates = rates_at(values.T).T
             return _Piece(
                 start,
                 step,
@@ -203,18 +221,3 @@ def _collocate(
                 falling=bool(np.dot(values[-1][others:], rates[-1][others:]) <= 0.0),
             )
     return None
-
-
-def _rates(run: Run, motion: Coordinates, values: FloatArray) -> FloatArray:
-    """Return the rates at ``values`` (n, unknowns)."""
-    run.evaluations += len(values)
-    return np.array([motion.rates(row) for row in values.tolist()])
-
-
-def _jacobian(run: Run, motion: Coordinates, values: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the derivatives of the rates by differences, those by the slip on its own scale."""
-    others = len(values) - motion.slip
-    changes = np.full(len(values), 1e-7)
-    changes[others:] *= max(float(np.linalg.norm(values[others:])), LEAST_SLIP)
-    moved = _rates(run, motion, values + np.diag(changes))
-    return np.asarray((moved - rates).T / changes)

@@ -29,6 +29,8 @@ class Coordinates:
     rates : callable
         Takes the unknowns and returns their rates in 1/T, friction included; it is asked neither where the slip is
         zero.
+    many : callable
+        The same for arrays of shape (k,) in place of numbers.
     slip : int
         Number of components of the slip.
     slow : callable
@@ -47,6 +49,7 @@ class Coordinates:
     """
 
     rates: Rates
+    many: Callable[..., Sequence[object]]
     slip: int
     slow: Callable[[Sequence[float]], float]
     pace: float
@@ -54,6 +57,10 @@ class Coordinates:
     angle: int | None = None
     grip: Callable[[Sequence[float]], float] | None = None
     edges: tuple[Edge, ...] = ()
+
+    def rates_at(self, unknowns: FloatArray) -> FloatArray:
+        """Return the rates at many ``unknowns``, shape (unknowns, k)."""
+        return np.array(self.many(unknowns))
 
     def speed(self, y: Sequence[float]) -> float:
         """Return the slip speed."""

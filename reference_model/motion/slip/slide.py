@@ -24,11 +24,7 @@ from reference_model.systems import FloatArray
 
 def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
     """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
-
-    def rates(_: float, y: FloatArray) -> Sequence[float]:
-        return motion.rates(y.tolist())
-
-    solver = Stepper(run, rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
+    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
     lost = None
     while t < run.end:
         before = t
@@ -41,12 +37,16 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
             y = solver.dense_output()(lost).tolist()
             break
         y = solver.y.tolist()
-        falling = float(np.dot(solver.y[-motion.slip :], solver.rates[-motion.slip :])) < 0.0
-        if (falling and motion.speed(y) < motion.slow(y)) or leave(y):
+        if (motion.speed(y) < motion.slow(y) and _falling(motion, solver)) or leave(y):
             break
         if solver.stiff and motion.speed(y) > 0.0:
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
+
+
+def _falling(motion: Coordinates, solver: Stepper) -> bool:
+    """Tell whether slip becomes slower."""
+    return float(np.dot(solver.y[-motion.slip :], solver.rates[-motion.slip :])) < 0.0
 
 
 def _standard(motion: Coordinates, dense: DenseOutput, times: FloatArray) -> FloatArray:
@@ -69,8 +69,8 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         s = math.exp(min(stretched[-2], 50.0))
         return stretched[:others] + [s * part for part in n], n, s
 
-    def rates(_: float, stretched: FloatArray) -> Sequence[float]:
-        y, n, s = unknowns(stretched.tolist())
+    def rates(stretched: list[float]) -> Sequence[float]:
+        y, n, s = unknowns(stretched)
         dy = motion.rates(y)
         growth = dy[others:]
         along = sum(a * b for a, b in zip(n, growth, strict=True))

@@ -10,7 +10,6 @@ takes steps as long as the motion allows.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -44,24 +43,19 @@ def slide_stiffly(
     d = motion.slip
     others = len(y) - d
 
-    def unknowns(polar: list[float]) -> tuple[list[float], list[float], float]:
-        """Return the unknowns, the direction n and the slip speed s."""
-        n = polar[others:-1]
-        size = math.hypot(*n) or 1.0
-        n = [part / size for part in n]
-        s = math.exp(max(min(polar[-1], 50.0), -500.0))  # a trial may overshoot wildly
-        return polar[:others] + [s * part for part in n], n, s
+    def unknowns(polar: list[float]) -> list[float]:
+        return list(_unknowns(others, np.array([polar]).T)[0][:, 0].tolist())
 
-    def rates(_: float, polar: FloatArray) -> Sequence[float]:
-        y, n, s = unknowns(polar.tolist())
-        dy = motion.rates(y)
+    def rates(polar: FloatArray) -> FloatArray:
+        y, n, s = _unknowns(others, polar)
+        dy = motion.rates_at(y)
         growth = dy[others:]
-        along = sum(a * b for a, b in zip(n, growth, strict=True))
-        return [
-            *dy[:others],
-            *[(a - along * b) / s for a, b in zip(growth, n, strict=True)],
-            along / s,
-        ]
+        along = (n * growth).sum(axis=0)
+        result = np.empty_like(polar)
+        result[:others] = dy[:others]
+        result[others:-1] = (growth - along * n) / s
+        result[-1] = along / s
+        return result
 
     tolerance = max(run.local_tolerance, TIGHTEST_IMPLICIT)
     relative = np.zeros(others + d + 1)
@@ -72,14 +66,11 @@ def slide_stiffly(
         result[-1] = min(tolerance / math.exp(polar[-1]), LOOSEST)  # the error of s itself counts
         return np.asarray(result)
 
-    def differences(polar: FloatArray) -> FloatArray:
-        return np.full(len(polar), DIFFERENCE)
-
     most = np.full(others + d + 1, math.inf)
     most[-1] = 1.0
     speed = motion.speed(y)
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed)]
-    edges = [edge.seen_by(lambda polar: unknowns(polar)[0]) for edge in motion.edges]
+    edges = [edge.seen_by(unknowns) for edge in motion.edges]
     solver = Stepper(
         run,
         rates,
@@ -87,7 +78,7 @@ def slide_stiffly(
         (start, run.end),
         relative,
         edges,
-        (Scales(tolerated, differences, most), 2.0 * step),
+        (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
     t = start
     while t < run.end:
@@ -96,11 +87,11 @@ def slide_stiffly(
         except StepError:
             run.patience *= 2
             break
-        lost = grip_lost(motion, solver, lambda polar: unknowns(polar)[0])
+        lost = grip_lost(motion, solver, unknowns)
         t = solver.t if lost is None else lost
         if run.pending(t):
             run.record(t, partial(_standard, motion, others, solver.dense_output()))
-        y = unknowns((solver.y if lost is None else solver.dense_output()(lost)).tolist())[0]
+        y = unknowns((solver.y if lost is None else solver.dense_output()(lost)).tolist())
         if lost is not None:
             return Outcome(t, y, let_go=True)
         if t >= run.end or leave(y):
@@ -116,6 +107,15 @@ def slide_stiffly(
 
 def _standard(motion: Coordinates, others: int, dense: DenseOutput, times: FloatArray) -> FloatArray:
     """Return the standard unknowns in a step."""
-    polar = dense(times)
+    return motion.standard(_unknowns(others, dense(times))[0])
+
+
+def _unknowns(others: int, polar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return unknowns, direction n and slip speed s, for ``polar`` ones of shape (n, k)."""
     n = polar[others:-1]
-    return motion.standard(np.vstack((polar[:others], np.exp(polar[-1]) * n / np.linalg.norm(n, axis=0))))
+    size = np.sqrt((n * n).sum(axis=0))
+    n = n / np.where(size > 0.0, size, 1.0)
+    s = np.exp(np.clip(polar[-1], -500.0, 50.0))  # a trial may overshoot wildly
+    y = polar[:-1].copy()
+    y[others:] = s * n
+    return y, n, s

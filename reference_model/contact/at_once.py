@@ -1,0 +1,128 @@
+"""Friction of many states at once, for implicit methods, whose nodes are solved for together.
+
+The laws are those of :mod:`reference_model.contact.contact_law`, with arrays for numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference_model.contact.contact_law import NONE, Contact, PointsOnRing, Ring
+from reference_model.contact.elliptic import mean_directions_at
+from reference_model.systems import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+
+class ContactAtOnce(Protocol):
+    """A law of friction for many states."""
+
+    def force_and_moment(
+        self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
+    ) -> tuple[ComplexArray, FloatArray]:
+        """Do as :meth:`Contact.force_and_moment` for arrays of shape (k,)."""
+        ...
+
+
+@dataclass(frozen=True)
+class PointsAtOnce:
+    """:class:`PointsOnRing` for many states.
+
+    Parameters
+    ----------
+    law : PointsOnRing
+        For one state.
+
+    """
+
+    law: PointsOnRing
+
+    @property
+    def points(self) -> int:
+        """Their number."""
+        return self.law.points
+
+    def arm(self, point: int, angle: FloatArray) -> ComplexArray:
+        """Do as :meth:`PointsOnRing.arm`."""
+        return np.asarray(self.law.arm(point, 0.0) * np.exp(1j * angle))
+
+    def force_and_moment(
+        self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
+    ) -> tuple[ComplexArray, FloatArray]:
+        """Do as :meth:`PointsOnRing.force_and_moment`."""
+        arms = self._arms(angle)
+        return _friction(arms, slip - 1j * relative_spin * arms)
+
+    def friction_of_others(
+        self, point: int, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
+    ) -> tuple[ComplexArray, FloatArray]:
+        """Do as :meth:`PointsOnRing.friction_of_others`."""
+        arms = self._arms(angle)
+        velocities = slip - 1j * relative_spin * (arms - arms[point])
+        velocities[point] = 0.0
+        return _friction(arms, velocities)
+
+    def _arms(self, angle: FloatArray) -> ComplexArray:
+        return np.asarray(np.multiply.outer(np.array(self.law.arms(0.0)), np.exp(1j * angle)))
+
+
+def _friction(arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    """Return force and moment of points with equal loads, for arrays of shape (points, k)."""
+    friction = velocities * (-1.0 / len(arms) / (abs(velocities) + NONE))
+    moments = arms.real * friction.imag - arms.imag * friction.real
+    return friction.sum(axis=0), moments.sum(axis=0)
+
+
+@dataclass(frozen=True)
+class RingAtOnce:
+    """:class:`Ring` for many states.
+
+    Parameters
+    ----------
+    law : Ring
+        For one state.
+
+    """
+
+    law: Ring
+
+    def force_and_moment(
+        self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
+    ) -> tuple[ComplexArray, FloatArray]:
+        """Do as :meth:`Ring.force_and_moment`."""
+        speed, rim = np.asarray(abs(slip), dtype=np.float64), self.law.radius * relative_spin
+        along_slip, along_rim = mean_directions_at(speed, abs(rim))
+        return -along_slip * slip / (speed + NONE), self.law.radius * along_rim * np.sign(rim)
+
+
+@dataclass(frozen=True)
+class OneByOne:
+    """Any law for many states, asked for one after the other.
+
+    Parameters
+    ----------
+    law : Contact
+        For one state.
+
+    """
+
+    law: Contact
+
+    def force_and_moment(
+        self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
+    ) -> tuple[ComplexArray, FloatArray]:
+        """Do as :meth:`Contact.force_and_moment`."""
+        states = zip(slip.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
+        forces, moments = zip(*(self.law.force_and_moment(*state) for state in states), strict=True)
+        return np.array(forces), np.array(moments)
+
+
+def at_once(contact: Contact) -> ContactAtOnce:
+    """Return the law for many states."""
+    if isinstance(contact, PointsOnRing):
+        return PointsAtOnce(contact)
+    return RingAtOnce(contact) if isinstance(contact, Ring) else OneByOne(contact)

@@ -1,0 +1,140 @@
+"""Dormand and Prince's explicit method of eighth order: SciPy's DOP853 for motions of few unknowns, in less time.
+
+A step of some twelve evaluations of four or six unknowns takes SciPy longer than the evaluations. Here every stage is
+one product of matrices, weights times what is known, and its unknowns go to the equations of motion as a list. The
+coefficients, the choice of the step and the interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary
+Differential Equations I, II.4 and II.5).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from reference_model.systems import FloatArray
+
+Rates = Callable[[list[float]], Sequence[float]]
+"""Takes the unknowns and returns their rates; nothing depends on the time."""
+
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
+"""Of a step over the one before."""
+
+STAGES = DOP853.n_stages
+_WEIGHTS = np.zeros((STAGES, STAGES + 1))
+"""Row s makes the unknowns of stage s + 1, of the last row those at the end, from y and h times the rates before."""
+_WEIGHTS[:-1, 1:] = DOP853.A[1:]
+_WEIGHTS[-1, 1:] = DOP853.B
+_ERRORS = np.vstack((DOP853.E5, DOP853.E3))
+
+
+class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
+    """Steps of the method, with the interface of SciPy's solvers.
+
+    Parameters
+    ----------
+    rates : callable
+        The right side.
+    t, y : float, array of shape (n,)
+        Where to begin.
+    end : float
+        When to end, after t.
+    first_step : float or None
+        The step to try first; None to have it chosen.
+    relative_tolerance : array of shape (n,)
+        Of each unknown.
+    tolerance : float
+        Absolute, of all.
+    most : float
+        The longest step.
+
+    """
+
+    t: float
+    y: FloatArray
+    f: FloatArray
+    h_abs: float
+    K_extended: FloatArray
+
+    def __init__(
+        self,
+        rates: Rates,
+        t: float,
+        y: FloatArray,
+        end: float,
+        first_step: float | None,
+        relative_tolerance: FloatArray,
+        tolerance: float,
+        most: float = math.inf,
+    ) -> None:
+        self._rates = rates
+        super().__init__(
+            lambda _, y: rates(y.tolist()),
+            t,
+            y,
+            end,
+            first_step=first_step,
+            max_step=most,
+            rtol=relative_tolerance,
+            atol=tolerance,
+        )
+        known = np.zeros((len(self.K_extended) + 1, self.n))  # y, then the rates at all stages
+        self._known, self.K_extended, self.K = known, known[1:], known[1 : STAGES + 2]
+        self._scaled = np.ones_like(_WEIGHTS)
+        self._stages = [(self._scaled[s, : s + 2], known[: s + 2], s + 2) for s in range(STAGES)]
+        self._last_two: tuple[list[float], Sequence[float]] = [], []
+
+    @property
+    def stiffness(self) -> float:
+        """The length of the last step times the largest rate of decay, by its last two stages, both at its end.
+
+        Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2.
+        """
+        unknowns, rates = self._last_two
+        apart = math.dist(self.y.tolist(), unknowns)
+        return float(self.h_previous * math.dist(self.f.tolist(), rates) / apart) if apart > 0.0 else 0.0
+
+    def _step_impl(self) -> tuple[bool, str | None]:
+        t, y, known = self.t, self.y, self._known
+        least = 10.0 * math.ulp(t)
+        h = max(min(self.h_abs, self.max_step), least)
+        most = LARGEST_FACTOR
+        known[0], known[1] = y, self.f
+        while True:
+            if h < least:
+                return False, self.TOO_SMALL_STEP
+            end = min(t + h, self.t_bound)
+            h = end - t
+            new = self._take(h)
+            scale = self.atol + np.maximum(abs(y), abs(new)) * self.rtol
+            error = self._size_of_error(h, scale)
+            if error < 1.0:
+                break
+            h *= max(LEAST_FACTOR, SAFETY * error**self.error_exponent)  # by the former if it is not a number
+            most = 1.0
+        self.h_previous, self.y_old = h, y
+        self.t, self.y, self.f = end, new, known[STAGES + 1].copy()
+        self.h_abs = h * (min(most, SAFETY * error**self.error_exponent) if error > 0.0 else most)
+        return True, None
+
+    def _take(self, h: float) -> FloatArray:
+        """Return the unknowns after a step of ``h``, and keep the rates at its stages."""
+        known, rates = self._known, self._rates
+        np.multiply(_WEIGHTS[:, 1:], h, out=self._scaled[:, 1:])
+        unknowns: list[float] = []
+        for weights, before, row in self._stages:
+            last, new = unknowns, weights @ before
+            unknowns = new.tolist()
+            known[row] = rates(unknowns)
+        self._last_two = last, known[STAGES].tolist()
+        self.nfev += STAGES
+        return np.asarray(new)
+
+    def _size_of_error(self, h: float, scale: FloatArray) -> float:
+        fifth, third = (_ERRORS @ self.K) / scale
+        fifth, third = float(fifth @ fifth), float(third @ third)
+        if fifth == 0.0:
+            return 0.0
+        return h * fifth / math.sqrt((fifth + 0.01 * third) * self.n)
