@@ -333,20 +333,29 @@ def one_of(kind: str, name: str, names: Iterable[str]) -> str:
     raise ValueError(f"unknown {kind} {name!r}: {hint}")
 
 
-def _simulate_by(module: str, function: str, *arguments: Any, **options: Any) -> Trajectory:
-    """Simulate by a package that is imported now: the command line must start without SciPy and Exudyn."""
-    trajectory: Trajectory = getattr(importlib.import_module(module), function)(*arguments, **options)
-    return trajectory
+@dataclass(frozen=True)
+class ByName:
+    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn."""
+
+    module: str
+    function: str
+
+    def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
+        """Call it."""
+        trajectory: Trajectory = getattr(importlib.import_module(self.module), self.function)(
+            *arguments, **options
+        )
+        return trajectory
 
 
-_simulate_reference = functools.partial(_simulate_by, "reference_model", "simulate")
+_simulate_reference = ByName("reference_model", "simulate")
 
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
-exudyn = register(Engine("exudyn", functools.partial(_simulate_by, "exudyn_models", "simulate"), EVERY_KIND))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
 exudyn_native = register(
     Engine(
         "exudyn-native",
-        functools.partial(_simulate_by, "exudyn_models", "simulate_with_native_contact"),
+        ByName("exudyn_models", "simulate_with_native_contact"),
         ("pin", "points"),
         kin="exudyn",
         contact_only=True,
@@ -369,7 +378,7 @@ compiled = register(
 plain = register(
     Engine(
         "plain",
-        functools.partial(_simulate_by, "reference_model.plain", "simulate"),
+        ByName("reference_model.plain", "simulate"),
         EVERY_KIND,
         sticks=False,
         about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "

@@ -3,19 +3,23 @@
 Imports are followed as they stand in the source, also those inside of functions. What can't be followed that way,
 an import by a name that is only known at run time or a program that is started, is told. What a file of data says
 when it is read can't be seen at all.
+
+Of packages that are trusted (this project's) less is asked: what they import by name is taken in where the name is
+known, see ``compare.engines.ByName``; files of data stand beside the modules that read them; and a package around a
+module that is imported is taken in by its file, not with all that it imports.
 """
 
 from __future__ import annotations
 
 import ast
+import functools
 import hashlib
 import importlib.util
 import json
 import re
 import sys
 import sysconfig
-from collections.abc import Collection, Iterator
-from functools import cached_property
+from collections.abc import Collection
 from importlib.machinery import SOURCE_SUFFIXES, PathFinder
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
@@ -49,14 +53,15 @@ class CodeFiles:
 
     Parameters
     ----------
-    covered : collection of str
-        Packages that are taken care of elsewhere.
+    trusted : collection of str
+        Packages that run nothing else than what they import.
 
     """
 
-    def __init__(self, covered: Collection[str] = ()) -> None:
-        self._covered = frozenset(covered)
+    def __init__(self, trusted: Collection[str] = ()) -> None:
+        self._trusted = frozenset(trusted)
         self._facts: dict[str, str] = {}
+        self._unfollowed: dict[str, tuple[str, ...]] = {}
 
     @property
     def facts(self) -> tuple[str, ...]:
@@ -75,25 +80,32 @@ class CodeFiles:
         waiting = [module]
         while waiting:
             name = waiting.pop()
-            if name in self._facts or self.covers(name):
-                continue
-            place = located(name)
-            if place is None:
-                self._facts[name] = "is not there"
-            elif _is_python(name, place):
-                self._facts["python"] = sys.version
-            elif not self._add_installed(name, place):
-                waiting += self._add_own(name, place)
+            waiting += self._unfollowed.pop(name, ())
+            waiting += self._add_module(name)
+            for package in _packages_around(name):
+                imports = self._add_module(package)
+                if not self.trusts(name):
+                    waiting += imports
+                elif imports:
+                    self._unfollowed[package] = imports
         return module in self._facts
 
-    @cached_property
-    def _packages(self) -> dict[str, list[str]]:
-        """The names of the distributions that brought each package that can be imported."""
-        return {package: sorted(set(names)) for package, names in packages_distributions().items()}
+    def _add_module(self, name: str) -> tuple[str, ...]:
+        """Take in a module by itself and return what it imports."""
+        if name in self._facts:
+            return ()
+        place = located(name)
+        if place is None:
+            self._facts[name] = "is not there"
+        elif _is_python(name, place):
+            self._facts["python"] = sys.version
+        elif not self._add_installed(name, place):
+            return self._add_own(name, place)
+        return ()
 
-    def covers(self, module: str) -> bool:
-        """Return whether a module is taken care of elsewhere."""
-        return module.partition(".")[0] in self._covered
+    def trusts(self, module: str) -> bool:
+        """Return whether a module is of a package that runs nothing else than what it imports."""
+        return module.partition(".")[0] in self._trusted
 
     def _add_own(self, name: str, place: Place) -> tuple[str, ...]:
         """Take in the file of a module and return the modules that it imports."""
@@ -109,14 +121,15 @@ class CodeFiles:
         self._facts[name] = hashlib.sha256(content).hexdigest()
         if place.file.suffix not in SOURCE_SUFFIXES:  # compiled
             return ()
-        return tuple(_imports(name, place, content))
+        if not self.trusts(name):
+            return _imports(name, place, content)
+        for data in sorted(place.file.parent.glob("*.json")):
+            self._facts[f"{name} {data.name}"] = hashlib.sha256(data.read_bytes()).hexdigest()
+        return _trusted_imports(name, place, content)
 
     def _add_installed(self, name: str, place: Place) -> bool:
         """Take in the distribution that a module came with, if it came with any."""
-        places = [*filter(None, [place.file]), *map(Path, place.submodules or ())]
-        if not any(SITES & set(one.parts) for one in places):
-            return False
-        distributions = self._packages.get(name.partition(".")[0], [])
+        distributions = _distributions(name, place)
         for one in distributions:
             self._add_distribution(one)
         return bool(distributions)
@@ -126,19 +139,55 @@ class CodeFiles:
         key = f"distribution {re.sub(r'[-_.]+', '-', name).lower()}"
         if key in self._facts:
             return
-        try:
-            found = distribution(name)
-        except PackageNotFoundError:
+        found = _installed(name)
+        if found is None:
             self._facts[key] = "is not there"
             return
-        # the list of its files has a checksum of each: a version may be installed once more with other contents
-        files = hashlib.sha256((found.read_text("RECORD") or "").encode()).hexdigest()
-        self._facts[key] = f"{found.version} {files}"
-        if json.loads(found.read_text("direct_url.json") or "{}").get("dir_info", {}).get("editable"):
-            for module in (one for one, names in self._packages.items() if name in names):
-                self.add(module)
-        for requirement in found.requires or ():
-            self._add_distribution(re.split(r"[^\w.-]", requirement, maxsplit=1)[0])
+        self._facts[key] = found.fact
+        for module in found.editable:
+            self.add(module)
+        for required in found.requires:
+            self._add_distribution(required)
+
+
+class Installed(NamedTuple):
+    """Version and contents of a distribution, what it requires, and its modules if they can be edited in place."""
+
+    fact: str
+    requires: tuple[str, ...]
+    editable: tuple[str, ...]
+
+
+@functools.cache
+def _installed(name: str) -> Installed | None:
+    """Return what is installed under the name of a distribution; None if nothing is."""
+    try:
+        found = distribution(name)
+    except PackageNotFoundError:
+        return None
+    # the list of its files has a checksum of each: a version may be installed once more with other contents
+    files = hashlib.sha256((found.read_text("RECORD") or "").encode()).hexdigest()
+    editable = json.loads(found.read_text("direct_url.json") or "{}").get("dir_info", {}).get("editable")
+    return Installed(
+        f"{found.version} {files}",
+        tuple(re.split(r"[^\w.-]", requirement, maxsplit=1)[0] for requirement in found.requires or ()),
+        tuple(one for one, names in _installed_packages().items() if name in names) if editable else (),
+    )
+
+
+@functools.cache
+def _distributions(name: str, place: Place) -> tuple[str, ...]:
+    """Return what a module came with; nothing for one's own."""
+    places = [*filter(None, [place.file]), *map(Path, place.submodules or ())]
+    if not any(SITES & set(one.parts) for one in places):
+        return ()
+    return _installed_packages().get(name.partition(".")[0], ())
+
+
+@functools.cache
+def _installed_packages() -> dict[str, tuple[str, ...]]:
+    """Return the names of the distributions that brought each package that can be imported."""
+    return {package: tuple(sorted(set(names))) for package, names in packages_distributions().items()}
 
 
 def located(name: str) -> Place | None:
@@ -165,35 +214,44 @@ def located(name: str) -> Place | None:
     return Place(None if file is None else Path(file), None if paths is None else tuple(paths))
 
 
+@functools.cache
 def _is_python(name: str, place: Place) -> bool:
     """Return whether a module belongs to Python itself, and is not one's own of the same name."""
     if name.partition(".")[0] not in sys.stdlib_module_names:
         return False
-    library = {Path(sysconfig.get_path(kind)).resolve() for kind in ("stdlib", "platstdlib")}
-    return place.file is None or bool(library & set(place.file.resolve().parents))
+    return place.file is None or bool(_standard_library() & set(place.file.resolve().parents))
 
 
-def _imports(name: str, place: Place, content: bytes) -> Iterator[str]:
-    """Yield the modules that the source of a module imports, with the packages that they are in."""
+@functools.cache
+def _standard_library() -> frozenset[Path]:
+    return frozenset(Path(sysconfig.get_path(kind)).resolve() for kind in ("stdlib", "platstdlib"))
+
+
+def _imports(name: str, place: Place, content: bytes, trusted: bool = False) -> tuple[str, ...]:
+    """Return the modules that the source of a module imports, without the packages around them."""
     file = place.file.name if place.file is not None else name
     try:
         tree = ast.parse(content)
     except (SyntaxError, ValueError):
         raise UnknownCodeError(f"{file} is no Python") from None
+    found: list[str] = []
     for node in ast.walk(tree):
-        hidden = _hides(node)
+        hidden = "" if trusted else _hides(node)
         if hidden:
             raise UnknownCodeError(f"{file}:{node.lineno} uses {hidden}, which may run any code")  # type: ignore[attr-defined]
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield from _with_packages(alias.name)
+            found += (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = _absolute(name, place, node)
-            yield from _with_packages(base)
-            for alias in node.names:  # which may be modules
-                within = f"{base}.{alias.name}"
-                if alias.name != "*" and located(within) is not None:
-                    yield within
+            inside = (
+                f"{base}.{alias.name}" for alias in node.names if alias.name != "*"
+            )  # which may be modules
+            found += (base, *(one for one in inside if located(one) is not None))
+    return tuple(found)
+
+
+_trusted_imports = functools.cache(functools.partial(_imports, trusted=True))
+"""As ``_imports``, for modules that don't change while the program runs."""
 
 
 def _hides(node: ast.AST) -> str:
@@ -204,11 +262,12 @@ def _hides(node: ast.AST) -> str:
         os_runs = isinstance(node.value, ast.Name) and node.value.id == "os" and node.attr in _OF_OS
         names = {f"os.{node.attr}"} if os_runs else {node.attr} & (HIDING_NAMES - {"eval", "exec"})
     elif isinstance(node, ast.Import):
-        names = {part for alias in node.names for part in _with_packages(alias.name)} & HIDING_MODULES
+        names = {part for alias in node.names for part in (alias.name, *_packages_around(alias.name))}
+        names &= HIDING_MODULES
     elif isinstance(node, ast.ImportFrom) and node.level == 0:
         module = node.module or ""
         inside = {alias.name for alias in node.names}
-        names = {*_with_packages(module), *(f"{module}.{one}" for one in inside)} & HIDING_MODULES
+        names = {module, *_packages_around(module), *(f"{module}.{one}" for one in inside)} & HIDING_MODULES
         names |= inside & (HIDING_NAMES | (_OF_OS if module == "os" else set()))
     else:
         return ""
@@ -232,7 +291,7 @@ def _package_of(module: ModuleType | None) -> str:
     return getattr(module, "__package__", None) or ""
 
 
-def _with_packages(name: str) -> tuple[str, ...]:
-    """Return "a", "a.b", "a.b.c" for "a.b.c"."""
+def _packages_around(name: str) -> tuple[str, ...]:
+    """Return "a", "a.b" for "a.b.c"."""
     parts = name.split(".")
-    return tuple(".".join(parts[: i + 1]) for i in range(len(parts)))
+    return tuple(".".join(parts[:i]) for i in range(1, len(parts)))

@@ -24,6 +24,7 @@ from types import (
 )
 from typing import Any
 
+from compare.engines import ByName
 from compare.run.code_files import CodeFiles, UnknownCodeError, located
 
 ATOMS = (NoneType, bool, int, float, complex, str, bytes, EllipsisType)
@@ -35,8 +36,8 @@ CODE = (
 """What a compiled function is, but for the names and numbers of its lines."""
 
 
-def fingerprint(thing: Any, covered: Collection[str] = ()) -> str:
-    """Return what ``thing`` depends on, but for the packages ``covered``, which are taken care of elsewhere.
+def fingerprint(thing: Any, trusted: Collection[str] = ()) -> str:
+    """Return what ``thing`` depends on; of packages that are ``trusted``, see :class:`CodeFiles`, by files alone.
 
     Raises
     ------
@@ -44,7 +45,7 @@ def fingerprint(thing: Any, covered: Collection[str] = ()) -> str:
         If that can't be seen; the message says why.
 
     """
-    code = CodeFiles(covered)
+    code = CodeFiles(trusted)
     contents = _Contents(code)
     contents.add(thing)
     return hashlib.sha256(repr((contents.written, code.facts)).encode()).hexdigest()
@@ -119,10 +120,10 @@ class _Contents:
             vars(function),
         ):
             self.add(part)
-        if self._code.covers(module):
-            return
         if not self._code.add(module):
             self.written.append(_of_file(function.__code__))
+            return
+        if self._code.trusts(module):
             return
         _require_file(function.__code__, module)
         names = sorted(set(_global_names(function.__code__)) & set(function.__globals__))
@@ -143,7 +144,7 @@ class _Contents:
         if not _is_global(kind, module, name):
             raise UnknownCodeError(f"the class {kind.__name__} is made when the program runs")
         self.written.append(("class", module, name))
-        if self._code.covers(module) or not self._code.add(module):
+        if not self._code.add(module) or self._code.trusts(module):
             return
         for base in kind.__bases__:
             self.add(base)
@@ -155,6 +156,8 @@ class _Contents:
 
     def _add_object(self, thing: Any) -> None:
         kind = type(thing)
+        if isinstance(thing, ByName):
+            self._code.add(thing.module)
         function = getattr(thing, "py_func", None)
         if kind.__module__.partition(".")[0] == "numba" and isinstance(function, FunctionType):
             self._code.add("numba")

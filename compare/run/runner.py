@@ -185,16 +185,12 @@ class _Runner:
 
     def _stamp(self, study: Study, engine: Engine | None) -> str | None:
         """Return what the findings depend on, None where that is not known."""
-        what = (
-            {study.name: study.measure_theory}
-            if engine is None
-            else {study.name: study.measure, engine.name: engine}
-        )
+        what = {study.name: study} if engine is None else {study.name: study, engine.name: engine}
         prints = [self._fingerprint(name, thing) for name, thing in what.items()]
         return None if None in prints else stamp(*filter(None, prints))
 
     def _fingerprint(self, name: str, thing: object) -> str | None:
-        """Return what ``thing`` depends on besides the packages; file why that is not known."""
+        """Return what ``thing`` depends on; file why that is not known."""
         if id(thing) not in self._prints:
             try:
                 self._prints[id(thing)] = fingerprint(thing, PACKAGES)

@@ -19,7 +19,7 @@ PACKAGES = ("reference_model", "exudyn_models", "compare")
 LIBRARIES = ("numpy", "scipy", "exudyn", "numba")
 
 
-def stamp(*fingerprints: str, code: Sequence[str] = PACKAGES, libraries: Sequence[str] = LIBRARIES) -> str:
+def stamp(*fingerprints: str, code: Sequence[str] = (), libraries: Sequence[str] = LIBRARIES) -> str:
     """Return what findings depend on: packages or modules ``code``, libraries, and what else has a fingerprint."""
     digest = hashlib.sha256("".join([_digest(ROOT, tuple(code)), *fingerprints]).encode())
     versions = " ".join(f"{name}-{version_of(name)}" for name in libraries)

@@ -3,6 +3,7 @@
 import functools
 import importlib
 import json
+import re
 import subprocess
 import sys
 import types
@@ -13,10 +14,13 @@ import pytest
 from processes import environment
 
 from compare.cli import app as cli
-from compare.engines import Engine, reference
+from compare.engines import ByName, Engine, reference
+from compare.run import code_files
+from compare.run.code_files import CodeFiles
 from compare.run.fingerprint import fingerprint
 from compare.run.runner import run
 from compare.run.stamp import PACKAGES
+from compare.studies import STUDIES
 
 HEAD = """
 from dataclasses import replace
@@ -63,6 +67,8 @@ def module(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
     def forget():
+        for known in (code_files._installed, code_files._installed_packages, code_files._distributions):
+            known.cache_clear()
         for name in list(sys.modules):
             where = (getattr(sys.modules[name], kind, "") for kind in ("__file__", "__path__"))
             if any(str(folder) in str(one) for one in where):
@@ -70,7 +76,7 @@ def module(tmp_path, monkeypatch):
         importlib.invalidate_caches()
 
     def of(**sources):
-        written = {name.replace("__", "/"): text for name, text in sources.items()}
+        written = {name if "/" in name else name.replace("__", "/"): text for name, text in sources.items()}
         for name, text in written.items():
             path = folder / f"{name}.py"
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -328,6 +334,68 @@ def test_a_compiled_function_is_known_by_its_code_in_every_process(module, tmp_p
 
 def printed(thing):
     return fingerprint(thing, PACKAGES)
+
+
+OURS = {
+    "ours__first": "import ours.common.helper",
+    "ours/__init__": "import ours.second",
+    "ours__common__helper": "",
+    "ours__second": "from ours.common import helper",
+    "ours__third": "import subprocess, ours",
+}
+"""Modules of a trusted package: the package itself imports one of them, as ours does to list its studies."""
+
+
+@pytest.mark.parametrize(
+    ("changed", "others"),
+    [
+        ("ours__first", {"ours.first"}),
+        ("ours__second", {"ours.second", "ours.third"}),
+        ("ours__common__helper", {"ours.first", "ours.second", "ours.third"}),
+        ("ours/__init__", {"ours.first", "ours.second", "ours.third"}),
+    ],
+)
+def test_what_depends_on_a_changed_file_of_ours_is_measured_anew_and_nothing_else(changed, others, module):
+    def facts():
+        found = {}
+        for name in ("ours.first", "ours.second", "ours.third"):
+            code = CodeFiles(["ours"])
+            assert code.add(name)
+            found[name] = code.facts
+        return found
+
+    module(**OURS)
+    before = facts()
+    module(**OURS | {changed: OURS[changed] + "\n# changed"})
+    after = facts()
+    assert {name for name in before if before[name] != after[name]} == others
+
+
+def test_a_study_depends_on_its_own_files_and_on_those_of_no_other_study():
+    """But for what they share: the toolkit, claims, reference, and Exudyn models where they are its subject."""
+    for study in STUDIES:
+        code = CodeFiles(PACKAGES)
+        for declared in study.declared:
+            code.add(declared.function.__module__)
+        package = sys.modules[(study.by_hand or study.declared[0].function).__module__].__package__
+        modules = {fact.split()[0] for fact in code.facts}
+        studies = {name for name in modules if re.match(r"compare\.studies\.(?!toolkit)\w+\.\w+", name)}
+        assert studies
+        assert all(name.startswith(package.removesuffix(".claims")) for name in studies), study.name
+        assert "reference_model.systems" in modules
+
+
+def test_recorded_engines_depend_on_the_files_of_records():
+    code = CodeFiles(PACKAGES)
+    code.add("compare.foreign.records")
+    assert any(fact.startswith("compare.foreign.records mujoco.json") for fact in code.facts)
+
+
+def test_an_engine_of_ours_depends_on_the_package_that_it_imports_when_it_is_called(monkeypatch):
+    added = []
+    monkeypatch.setattr(CodeFiles, "add", lambda _, module: added.append(module) or True)
+    fingerprint(ByName("exudyn_models", "simulate"), PACKAGES)
+    assert "exudyn_models" in added
 
 
 def test_what_is_measured_anew_is_told_on_the_command_line(module, tmp_path, monkeypatch, capsys):
