@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
-from compare.cli.options import Folder, Jobs, Resume, check_folder, cores, studies_of
+from compare.cli.options import Folder, Jobs, Resume, check_folder, chosen_from, cores, studies_of
 from compare.cli.progress import measurements
 
 if TYPE_CHECKING:
@@ -33,12 +33,21 @@ Engines = Annotated[
         show_default=False,
     ),
 ]
+Level = Annotated[
+    str,
+    typer.Option(
+        metavar="LEVEL",
+        help="quick takes only studies of seconds, with something of every kind of claim; full takes all.",
+        parser=chosen_from("level", ("quick", "full")),
+    ),
+]
 
 
 def report(
     context: typer.Context,
     names: Names = None,
     engine: Engines = None,
+    level: Level = "full",
     output: Folder = Path("report"),
     jobs: Jobs = None,
     resume: Resume = False,
@@ -52,12 +61,19 @@ def report(
     \b
     Examples:
       friction-discs report
+      friction-discs report --level quick
       friction-discs report fig03 fig05 --engine exudyn --output fig
     """
     from compare.engines import engines
 
     studies = studies_of(context, names or [])
     with refused():
+        if level == "quick":
+            if names:
+                raise ValueError(
+                    f"--level quick chooses the studies: leave out {', '.join(names)}, or the level"
+                )
+            studies = tuple(study for study in studies if study.quick)
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
 
@@ -66,6 +82,7 @@ def report(
     from compare.run.runner import run
     from compare.run.workers import interrupts_ignored
 
+    whole = context.obj is None and not names and level == "full"  # errata are part of the whole paper
     with measurements() as progress:
         result = run(
             studies,
@@ -73,7 +90,7 @@ def report(
             folder=output / "data",
             jobs=jobs or cores(),
             resume=resume,
-            errata=ERRATA if context.obj is None and not names else (),  # part of the whole paper only
+            errata=ERRATA if whole else (),
             progress=progress,
         )
     if resume:

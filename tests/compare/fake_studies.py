@@ -162,7 +162,7 @@ def draw_nothing(data):
     return {}
 
 
-AGREEMENT = Study("agreement", "A claim that holds", "One half.", measure_agreement, draw_nothing)
+AGREEMENT = Study("agreement", "A claim that holds", "One half.", measure_agreement, draw_nothing, quick=True)
 COUNTED = Study(
     "counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count, draw_nothing
 )

@@ -51,6 +51,25 @@ def test_list_names_studies_and_engines(capsys):
     assert "; on request compiled, plain\n" in out
 
 
+def test_the_quick_level_takes_the_studies_of_seconds_and_no_names(tmp_path, capsys):
+    quick = [
+        "report",
+        "--level",
+        "quick",
+        "--engine",
+        "fake_studies:straight",
+        "--jobs",
+        "1",
+        "--output",
+        str(tmp_path),
+    ]
+    assert cli.status(quick, fake_studies.ALL) == 0
+    results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert [study["name"] for study in results["studies"]] == ["agreement"]
+    assert cli.status([*quick, "verdicts"], fake_studies.ALL) == 2
+    assert "--level quick chooses the studies: leave out verdicts, or the level" in capsys.readouterr().err
+
+
 def test_help_starts_without_the_heavy_libraries():
     heavy = "numpy scipy matplotlib numba exudyn exudyn_models reference_model"
     loaded = f"[name for name in '{heavy}'.split() if name in sys.modules]"
