@@ -115,7 +115,7 @@ class Declared:
     @property
     def of_engine(self) -> bool:
         """Whether an engine takes part."""
-        return next(iter(inspect.signature(self.function).parameters), "") == "engine"
+        return _takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """Yield the name of each member of the family and what its function takes besides the engine."""
@@ -132,6 +132,10 @@ class Declared:
         """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
         parts = (study, self.function.__name__.strip("_"), case)
         return "/".join(_slug(part) for part in parts if part)
+
+
+def _takes_engine(function: Callable[..., Any]) -> bool:
+    return next(iter(inspect.signature(function).parameters), "") == "engine"
 
 
 def _slug(words: str) -> str:
@@ -260,7 +264,6 @@ class Study:
         """
 
         def declare(function: Measure) -> Measure:
-            of_engine = next(iter(inspect.signature(function).parameters), "") == "engine"
             declared = Declared(
                 function=function,
                 sentence=sentence,
@@ -269,7 +272,7 @@ class Study:
                 unit=unit,
                 resolution=resolution,
                 note=note,
-                basis=basis or usual_basis(kind, "" if of_engine else THEORY),
+                basis=basis or usual_basis(kind, "" if _takes_engine(function) else THEORY),
                 implied_by="" if implied_by is None else self._declared_by(implied_by).sentence,
                 named=dict(named or {}),
                 swept=tuple(swept),
@@ -302,7 +305,7 @@ class Study:
         few : mapping, optional
             Arguments of claims' functions by the functions' names, to measure less than all.
         only : collection of str
-            Names of the functions that are to be called; empty for all.
+            Names of the functions that are to be called, or "function/case" for one of a family; empty for all.
 
         """
         if self.by_hand is not None:
@@ -322,9 +325,11 @@ class Study:
         lacking: list[str] = []
         for declared in self.declared:
             name = declared.function.__name__
-            if declared.of_engine != (engine is not None) or (only and name not in only):
+            if declared.of_engine != (engine is not None):
                 continue
             for case, arguments in declared.cases():
+                if only and not {name, f"{name}/{case}"} & set(only):
+                    continue
                 given = arguments if engine is None else (engine, *arguments)
                 try:
                     measured = declared.function(*given, **few.get(name, {}))

@@ -2,15 +2,8 @@
 
 from dataclasses import replace
 
-import pytest
-from broken_engines import broken_engines
-
-from compare.engines import EVERY_KIND, Engine, engines
+from compare.engines import EVERY_KIND, Engine
 from reference_model import simulate
-
-for_every_sound_engine = pytest.mark.parametrize(
-    "engine", [*engines(["reference", "exudyn"]), broken_engines()["intact"]], ids=lambda engine: engine.name
-)
 
 
 def altered(**factors):
@@ -32,8 +25,3 @@ def verdicts(findings):
 def sentences(findings, verdict):
     """Return the sentences with a verdict."""
     return {sentence for sentence, found in verdicts(findings).items() if found is verdict}
-
-
-def findings_of(study, name, few):
-    """Measure a part of ``study`` with a registered engine."""
-    return study.measure(engines([name])[0], **few)

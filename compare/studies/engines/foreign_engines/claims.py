@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 import compare.studies.engines.foreign_engines.ladders as ladders
@@ -70,13 +72,16 @@ STUDY = Study.beside(
 )
 
 
-@STUDY.claim(
-    "Steps of order 1: the error of a sliding pin falls in proportion to the step",
-    kind="order",
-    basis="independent",
-    resolution=0.5,
-    note=ORDER,
+_of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
+"""Declares an order that steps of ever half the length show."""
+
+_of_law = functools.partial(
+    STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
 )
+"""Declares how far a law of friction leads off the exact motion."""
+
+
+@_of_order("Steps of order 1: the error of a sliding pin falls in proportion to the step")
 def slides() -> Measured:
     """Compare with order 1."""
     return _orders(1.0, FIRST_ORDER, ("slip",))
@@ -94,37 +99,21 @@ def sticks() -> Measured:
     return _orders(1.0, STICKING, ("stick-slip", "release"), scatters=True)
 
 
-@STUDY.claim(
-    "Steps of order 1: the error of a disc on six points falls in proportion to the step",
-    kind="order",
-    basis="independent",
-    resolution=0.5,
-    note=ORDER,
-)
+@_of_order("Steps of order 1: the error of a disc on six points falls in proportion to the step")
 def disc_slides() -> Measured:
     """Compare with order 1."""
     return _orders(1.0, tuple(name for name in FIRST_ORDER if name != "Bullet, cone"), ("disc",))
 
 
-@STUDY.claim(
-    "A pyramid or a box in place of the cone is another law: the errors of pin and disc do not fall with the step",
-    kind="order",
-    basis="independent",
-    resolution=0.5,
-    note=ORDER,
+@_of_order(
+    "A pyramid or a box in place of the cone is another law: the errors of pin and disc do not fall with the step"
 )
 def axes_stay_off() -> Measured:
     """Compare with order 0."""
     return _orders(0.0, BY_AXIS, ("slip", "disc"))
 
 
-@STUDY.claim(
-    "Bullet's cone is another law for a disc: the error does not fall with the step",
-    kind="order",
-    basis="independent",
-    resolution=0.5,
-    note=ORDER,
-)
+@_of_order("Bullet's cone is another law for a disc: the error does not fall with the step")
 def bullet_stays_off() -> Measured:
     """Compare with order 0."""
     return _orders(0.0, ("Bullet, cone",), ("disc",))
@@ -159,56 +148,36 @@ def _orders(
     )
 
 
-@STUDY.claim(
+@_of_law(
     "A pin whirls by Bullet's and DART's boxes as by friction for each axis of the world",
     equation=CASES["whirl"].equation,
-    kind="trajectory",
-    basis="independent",
-    unit="m",
-    resolution=2e-3,
-    note=LAW,
 )
 def box_whirls() -> Measured:
     """Compare with our integration of a box."""
     return _as_far_off_as(box, "whirl", BOXES)
 
 
-@STUDY.claim(
+@_of_law(
     "A pin whirls by MuJoCo's pyramid as by friction along the nearest axis of the world",
     equation=CASES["whirl"].equation,
-    kind="trajectory",
-    basis="independent",
-    unit="m",
-    resolution=2e-3,
-    note=LAW,
 )
 def pyramid_whirls() -> Measured:
     """Compare with our integration of a pyramid."""
     return _as_far_off_as(pyramid, "whirl", PYRAMIDS)
 
 
-@STUDY.claim(
+@_of_law(
     "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction for each axis does",
     equation=CASES["release"].equation,
-    kind="trajectory",
-    basis="independent",
-    unit="m",
-    resolution=2e-3,
-    note=LAW,
 )
 def box_releases() -> Measured:
     """Compare with our integration of a box."""
     return _as_far_off_as(box, "release", BOXES)
 
 
-@STUDY.claim(
+@_of_law(
     "MuJoCo's pyramid lets a stuck pin go too early, by as much as friction along the nearest axis does",
     equation=CASES["release"].equation,
-    kind="trajectory",
-    basis="independent",
-    unit="m",
-    resolution=2e-3,
-    note=LAW,
 )
 def pyramid_releases() -> Measured:
     """Compare with our integration of a pyramid."""

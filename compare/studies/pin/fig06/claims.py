@@ -27,9 +27,9 @@ from compare.studies.pin.fig06.theory import (
     UNIT_MULTIPLIER_ERROR,
     curves,
     cycle,
-    extent,
     load_of_unit_multiplier,
 )
+from compare.studies.toolkit.whirls import extent, whirl_of
 from reference_model import Orbit, last_whirl, simulate, sticking_radius, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.systems import FloatArray
@@ -80,10 +80,13 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     """Compare period and extent of the whirls with those of the reference."""
-    first = [whirl(engine, load, SHOOTING) for load in loads]
+    first = [whirl_of(engine, with_load(load), SHOOTING) for load in loads]
 
     def period_and_extent(tolerance: float) -> FloatArray:
-        orbits = [whirl(engine, load, tolerance, guess) for load, guess in zip(loads, first, strict=True)]
+        orbits = [
+            whirl_of(engine, with_load(load), tolerance, guess)
+            for load, guess in zip(loads, first, strict=True)
+        ]
         return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
 
     found = refined(period_and_extent, SHOOTING)
@@ -101,16 +104,9 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     )
 
 
-def whirl(engine: Engine, load: float, tolerance: float, guess: Orbit | None = None) -> Orbit:
-    """Return the whirl at ``load`` in N, found by shooting with ``engine``."""
-    return whirl_orbit(
-        with_load(load), simulate=engine.simulate, tolerance=tolerance, guess=guess, samples=64
-    )
-
-
 @functools.cache
 def _reference_whirl(load: float) -> Orbit:
-    return whirl(Engine("reference", simulate), load, 3e-13)
+    return whirl_of(Engine("reference", simulate), with_load(load), 3e-13)
 
 
 @STUDY.claim(

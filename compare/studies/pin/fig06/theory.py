@@ -19,6 +19,7 @@ from compare.studies.pin.fig06.parameters import (
     WHIRL_LOADS,
     with_load,
 )
+from compare.studies.toolkit.whirls import extent
 from reference_model import Orbit, PinOnDisc, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.formulas.pin import equilibrium_radius
 from reference_model.systems import FloatArray
@@ -46,12 +47,6 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
 
 def _along(loads: FloatArray, formula: Callable[[PinOnDisc], float]) -> FloatArray:
     return np.array([float(formula(with_load(load))) for load in loads])
-
-
-def extent(orbit: Orbit) -> FloatArray:
-    """Return the least and the greatest distance from the axis in m."""
-    radius = orbit.trajectory.radius
-    return np.array([np.min(radius), np.max(radius)])
 
 
 UNIT_MULTIPLIER_ERROR = 1e-5

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from study_harness import BLIND, LEFT_OUT, SEES, engine_named
-from wrong_parts import FamilyTests
+from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 import exudyn_models
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
@@ -96,7 +95,7 @@ def of_width(factor):
 SOLVERS_SEEN = {solver.name: SEES if solver.order != 2 else BLIND for solver in SOLVERS}
 
 
-class TestEngineConvergence(FamilyTests):
+class TestEngineConvergence(StudyTests):
     study = STUDY
     sound = BOTH
     not_claimed = {"reference": ("steps", "first_stick", "later_events", "state", "creep")}
@@ -141,14 +140,14 @@ class TestEngineConvergence(FamilyTests):
     }
 
     @classmethod
-    def measured_with(cls, fault, study, few):
+    def measured_with(cls, fault, few, only):
         """Measure with a wrong engine, or with a wrong function of Exudyn's models."""
         wrong = cls.faults[fault]
         if isinstance(wrong, Engine):
-            return study.measure(wrong, few)
+            return cls.study.measure(wrong, few, only)
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(exudyn_models, *wrong)
-            return study.measure(engine_named("exudyn"), few)
+            return cls.study.measure(engine_named("exudyn"), few, only)
 
     def test_study_is_part_of_the_report(self):
         assert STUDY in STUDIES

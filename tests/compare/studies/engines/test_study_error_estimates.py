@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from studies_under_test import altered
-from study_harness import BLIND, SEES, engine_named
-from wrong_parts import FamilyTests
+from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
@@ -38,7 +37,7 @@ def deaf(*arguments, tolerance):
     return simulate(*arguments, tolerance=1e-6)
 
 
-class TestErrorEstimates(FamilyTests):
+class TestErrorEstimates(StudyTests):
     study = STUDY
     sound = ("reference",)
     few = of(108)

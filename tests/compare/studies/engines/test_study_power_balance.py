@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from broken_engines import broken_engines, broken_on_discs
 from studies_under_test import altered, verdicts
-from study_harness import BLIND, LEFT_OUT, OPEN, SEES, engine_named
-from wrong_parts import FamilyTests
+from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
@@ -113,7 +112,7 @@ OF_DISC = {
 }
 
 
-class TestPowerBalance(FamilyTests):
+class TestPowerBalance(StudyTests):
     study = study.STUDY
     sound = ("reference",)
     few_of_faults = SHORT

@@ -9,8 +9,9 @@ from studies_under_test import altered
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.fig06 import parameters, theory
+from compare.studies.pin.fig06 import parameters
 from compare.studies.pin.fig06.claims import STUDY
+from compare.studies.toolkit.whirls import extent
 from reference_model import whirl_orbit
 from reference_model.formulas.pin import equilibrium_radius, sticking_radius
 
@@ -59,7 +60,7 @@ class TestFig06(StudyTests):
         assert found["branch sticks"][-1] == 1.0
         assert np.all(found["branch extent"][:, 0] < found["branch extent"][:, 1])
         outermost = whirl_orbit(parameters.with_load(parameters.WHIRL_LOADS[-1]))
-        assert found["branch extent"][0] == pytest.approx(theory.extent(outermost), abs=1e-4)
+        assert found["branch extent"][0] == pytest.approx(extent(outermost), abs=1e-4)
 
     def test_the_equilibrium_ends_where_sticking_begins(self):
         """(5): at μN = C·X0 the radius (3) is zero, and (9) starts from zero."""
