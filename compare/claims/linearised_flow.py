@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TIGHTEST, refined
 from compare.engines import Engine
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
@@ -17,8 +17,8 @@ ComplexArray = NDArray[np.complex128]
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
 
-FLOW_TOLERANCE = 1e-11
-"""Of the simulations that are subtracted from each other."""
+FLOW_TOLERANCE = 10.0 * TIGHTEST
+"""Of the simulations that are subtracted from each other: their differences are small."""
 
 
 def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import KroghInterpolator
 
-from compare.claims.error_estimates import ROUNDING, Measurement, refined
+from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING, Measurement, refined
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
@@ -22,7 +22,6 @@ from compare.studies.disc.fig08.parameters import (
     LOADS,
     OFFSETS,
     PAPER_LAW,
-    REFERENCE_TOLERANCE,
     RING,
     SIX,
     SOURCE,
@@ -139,7 +138,7 @@ def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = 
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
-            functools.partial(_decay, engine, with_load(RING, load), span), 1e-9
+            functools.partial(_decay, engine, with_load(RING, load), span), WORKING
         )
         measured.append(later)
         # What is not linear falls with the deviation, so that of the later half less is left than the change shows.
@@ -240,7 +239,7 @@ def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measure
     unit="m, rad/s",
     resolution=1e-9,
     note="Means over the motion that comes back after a sixth of a turn; predicted by the reference at tolerance "
-    f"{REFERENCE_TOLERANCE:g}.",
+    f"{TIGHTEST:g}.",
     swept=("friction_force",),
 )
 def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
@@ -262,9 +261,7 @@ def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.cache
 def _six_points_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(
-        _means(Engine("reference", simulate, ("points",)), with_load(SIX, load), REFERENCE_TOLERANCE)
-    )
+    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(SIX, load), TIGHTEST))
 
 
 @STUDY.claim(

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG9
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.systems import DiscOnDisc
@@ -53,9 +54,8 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4
 """Of a deviation at its start, in units of the distance from the axis."""
 
-SHOOTING = 1e-10
-REFERENCE_TOLERANCE = 1e-12
-"""Tolerance of periodic motions, and of those of the reference that they are compared with."""
+ORBIT_TOLERANCE = WORKING / 10
+"""Of periodic motions; those of the reference that they are compared with have a hundredth of it."""
 
 TOLERANCE = 3e-8
 """Of motions that stick: moderate, since a regularised law costs the more the closer it comes to Coulomb's."""

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import ROUNDING
+from compare.claims.error_estimates import ROUNDING, TIGHTEST
 from compare.claims.study import Data
 from compare.studies.disc.fig09.parameters import (
     BRANCH_END,
@@ -22,9 +22,9 @@ from compare.studies.disc.fig09.parameters import (
     FOLD_START,
     LARGEST_LOAD,
     OFFSETS,
+    ORBIT_TOLERANCE,
     OUTER_LOADS,
     PAPER_LAW,
-    REFERENCE_TOLERANCE,
     RING,
 )
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
@@ -60,9 +60,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
     """Return the reference's whirl with an offset, the outer one or the inner, unstable one."""
     disc = with_load(replace(RING, offset=offset), load)
-    return whirl_orbit(
-        disc, guess=inner_orbit(disc) if which else None, tolerance=REFERENCE_TOLERANCE, samples=64
-    )
+    return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
 
 def extent(orbit: Orbit) -> FloatArray:
@@ -104,7 +102,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 def to_inner_orbits(disc: DiscOnDisc) -> Iterator[Orbit]:
     """Yield whirls from the load of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
-    outermost = whirl_orbit(disc, tolerance=1e-10, samples=64)
+    outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=0.12)
 
 
@@ -201,7 +199,9 @@ def circles() -> Data:
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
     """Return whirls with offset by falling size, from the largest load through the fold to the equilibrium."""
-    outer = [whirl_orbit(with_load(RING, load), tolerance=1e-10, samples=64) for load in OUTER_LOADS]
+    outer = [
+        whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
+    ]
     return (*outer, *to_inner_orbits(with_load(RING, BRANCH_START * RING.stiffness * RING.offset)))
 
 

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import TRUTH, Measurement, refined
 from compare.claims.measured import Measured
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import (
-    EXACT,
     MOTIONS,
     PANEL,
     PINS,
@@ -44,7 +43,7 @@ from reference_model.systems import COLUMNS, FloatArray, System
 STUDY = Study.beside(
     __file__,
     "trajectories",
-    words={"exact": f"{EXACT:g}", "tolerance": f"{Motion.tolerance:g}"},
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
     draw=draw,
     seconds=6.0,
     quick=True,
@@ -110,7 +109,7 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
     of_discs="m, rad, m/s, rad/s",
     pins=SLIDING | STICKING,
     kind="trajectory",
-    note=f"Predicted: the reference at tolerance {EXACT:g}.",
+    note=f"Predicted: the reference at tolerance {TRUTH:g}.",
 )
 @together
 def moves(engine: Engine, motion: Motion) -> Measured:

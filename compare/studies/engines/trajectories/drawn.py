@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
+from compare.claims.error_estimates import WORKING
 from compare.studies.engines.trajectories.parameters import (
     LEAST_SAMPLES,
     LEAST_SLIP,
@@ -172,7 +173,7 @@ def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, floa
             kind.start(random, system),
             UNTIL,
             sticks,
-            tolerance=1e-9 if sticks else 1e-10,
+            tolerance=WORKING if sticks else WORKING / 10,
             resolution=1e-4 if sticks else 1e-7,
             source=f"assumption: parameters and start are random, with seed {SEED}",
         )

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from compare.claims.error_estimates import TRUTH
 from compare.claims.study import Data
 from compare.figures import axis, curve, engines_in, new_figure
-from compare.studies.engines.trajectories.parameters import EXACT, MOTIONS
+from compare.studies.engines.trajectories.parameters import MOTIONS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +23,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
         label = engine
         for name in MOTIONS:
             if f"{name}: times" in data[engine]:
-                error = np.maximum(data[engine][f"{name}: error"], EXACT)
+                error = np.maximum(data[engine][f"{name}: error"], TRUTH)
                 axes.semilogy(data[engine][f"{name}: times"], error, **curve(engine, label))
                 label = "_"
     axes.set(xlabel=axis("t", "s"), ylabel="largest difference of a component of the state")

@@ -28,8 +28,6 @@ CYCLE_TURNS = 5
 INNERMOST = 0.012
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""
 
-SHOOTING = 1e-9
-
 ON_THE_WAY = 1e-8
 """Tolerance of the branch that is drawn, and that leads to the cycle; its loads are right to 1e-10 N."""
 

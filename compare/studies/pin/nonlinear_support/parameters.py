@@ -67,8 +67,5 @@ GROWING_FROM = 0.3
 FOLLOWED_ON = 0.2
 """In s: after a pin without damping has stuck."""
 
-SHOOTING = 1e-9
-BALANCED = 1e-10
 GROWN = 1e-6
-EXACT = 1e-13
-"""Tolerances."""
+"""Tolerance of what grows to a motion of its own: only where that ends is asked."""

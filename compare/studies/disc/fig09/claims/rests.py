@@ -17,9 +17,9 @@ from compare.studies.disc.fig09.parameters import (
     DECAY,
     DISPLACED,
     GROWTHS,
+    ORBIT_TOLERANCE,
     REST_LOADS,
     RING,
-    SHOOTING,
 )
 from compare.studies.disc.fig09.theory import circle_of, rest_of
 from compare.studies.toolkit.self_centred import with_load
@@ -120,8 +120,8 @@ def _growth(
             ]
         )
 
-    found = refined(rates, SHOOTING)
+    found = refined(rates, ORBIT_TOLERANCE)
     # Two flows may be the same to within the tolerance: an error of the deviation of that size.
-    unseen = [[SHOOTING / (DISPLACED * duration)] for _, _, duration in motions]
-    with_larger = found.plus(np.abs(rates(SHOOTING, 2.0) - found.value))
+    unseen = [[ORBIT_TOLERANCE / (DISPLACED * duration)] for _, _, duration in motions]
+    with_larger = found.plus(np.abs(rates(ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)

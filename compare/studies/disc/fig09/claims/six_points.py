@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TIGHTEST, refined
 from compare.claims.linearised_flow import rotated
 from compare.claims.measured import Measured
 from compare.engines import Engine
@@ -18,7 +18,6 @@ from compare.studies.disc.fig09.parameters import (
     CENTRED,
     CIRCLES,
     OUTSIDE,
-    REFERENCE_TOLERANCE,
     REST_LOADS,
     RING,
     SOURCE_CENTRED,
@@ -33,7 +32,7 @@ from reference_model.systems import FloatArray
 
 REFERENCE = Engine("reference", simulate, ("points",))
 
-BY_REFERENCE = f"Predicted by the reference at tolerance {REFERENCE_TOLERANCE:g}."
+BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
 
 @STUDY.claim(
@@ -66,7 +65,7 @@ def six_circles(engine: Engine) -> Measured:
 
 @functools.cache
 def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
-    return tuple(circle(REFERENCE, on_six(CENTRED), load, which, REFERENCE_TOLERANCE))
+    return tuple(circle(REFERENCE, on_six(CENTRED), load, which, TIGHTEST))
 
 
 @STUDY.claim(
@@ -94,7 +93,7 @@ def six_rests(engine: Engine, loads: Sequence[float] = REST_LOADS) -> Measured:
 
 @functools.cache
 def _rest_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(rest(REFERENCE, on_six(RING), load, REFERENCE_TOLERANCE))
+    return tuple(rest(REFERENCE, on_six(RING), load, TIGHTEST))
 
 
 @STUDY.claim(
@@ -133,4 +132,4 @@ def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
 
 @functools.cache
 def _slipped_in_reference(load: float) -> tuple[float, ...]:
-    return tuple(_slipped(REFERENCE, load, REFERENCE_TOLERANCE))
+    return tuple(_slipped(REFERENCE, load, TIGHTEST))
