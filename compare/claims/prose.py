@@ -4,7 +4,7 @@ The first heading is the title; under it stands the section of the report, alone
 the paper says. "## Finding" and "## Figures" may follow, the latter with a heading for the name of each figure and
 its caption::
 
-    # Branches under increasing load
+    # Branches under increasing friction force
 
     *The friction pin*
 

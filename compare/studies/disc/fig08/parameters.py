@@ -1,4 +1,4 @@
-"""The disc of Fig. 8, the loads at which it is measured, and the offsets that the paper leaves open."""
+"""The disc of Fig. 8, the friction forces at which it is measured, and the offsets that the paper leaves open."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ SIX = replace(RING, contact_points=6)
 PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
 """(23)."""
 
-SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper leaves out; the loads are our choice"
+SOURCE = (
+    "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper leaves out; the friction forces are our choice"
+)
 
-SOURCE_OF_GRID = "Fig. 8; loads and X0 are our choice, the paper leaves out X0"
+SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper leaves out X0"
 
 LOADS = (0.01, 0.02, 0.035, 0.05, 0.065, 0.08, 0.095, 0.1, 0.104)
 """μN in N. The paper prints no range; the equilibrium ends a little above C·X0 = 0.1 N."""
@@ -31,7 +33,7 @@ END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """μN in N, near to where the equilibrium ends; there the distance from the axis falls to zero linearly."""
 
 STICKING_RATIOS = (0.98, 1.02, 1.05)
-"""Loads about the last one with an equilibrium, in units of it."""
+"""Friction forces about the last one with an equilibrium, in units of it."""
 
 STICKING_TIME = 80.0
 """In s: in that time friction takes a disc with 95 % of the speed of the master disc along, where it can."""

@@ -30,7 +30,7 @@ PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw radius and spin over the load, and the ends of the motions over the offset."""
+    """Draw radius and spin over the friction force, and the ends of the motions over the offset."""
     figures = {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)}
     if "theory" in data:
         figures["fig09-offset"] = draw_ends(data["theory"])

@@ -106,7 +106,7 @@ ENDING = np.geomspace(1e-3, 3e-2, 10)
 TOLERANCE = WORKING / 10
 """Ratios at the end are of what is left of a motion, down to a thousandth of it."""
 
-SOURCE = "assumption: the ring of Fig. 8 on a table at rest; load and starts are our choice"
+SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and starts are our choice"
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)

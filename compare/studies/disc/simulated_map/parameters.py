@@ -22,7 +22,7 @@ TOLERANCE = 10.0 * WORKING
 """Only where a motion ends is asked."""
 
 MARGIN = 0.05
-"""Of the load beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
+"""Of the friction force beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
 
 EVERY = 5
 """Each fifth disc in both directions is asked for the eigenvalues of its whirl."""

@@ -68,7 +68,7 @@ STATE_ROUNDING = 4.0 * np.finfo(float).eps
 """Relative, of the spin of a whirl that is given by its α."""
 
 UNSTABLE_LOADS = (0.3, 0.7)
-"""Loads between the fold and the Hopf point of (23), as fractions."""
+"""Friction forces between the fold and the Hopf point of (23), as fractions."""
 
 BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
 """Factors on the state of the larger whirl there."""

@@ -121,7 +121,7 @@ PANELS = {
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw what is there: the map in four planes, and the motions over the load at the speeds of Fig. 11."""
+    """Draw what is there: the map in four planes, and the motions over μN at the speeds of Fig. 11."""
     figures = {}
     if "theory" in data:
         figures["stability-map"] = draw_map(data)
@@ -258,7 +258,7 @@ def sticking(plane: str, x: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def draw_section(data: Mapping[str, Data]) -> Figure:
-    """Draw the radius of whirls and of long motions over the load."""
+    """Draw the radius of whirls and of long motions over the friction force."""
     figure, (axes,) = new_figure(width=8.4, height=4.6)
     if "theory" in data:
         for law, colour in COLOURS.items():

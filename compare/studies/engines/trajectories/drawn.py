@@ -112,7 +112,7 @@ def _slides(motion: Motion) -> bool:
 
 
 def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin whose load is about what holds it against the offset."""
+    """Draw a pin whose friction force is about what holds it against the offset."""
     pin = _pin(random, disc_speed)
     return replace(pin, friction_force=pin.stiffness * abs(pin.offset) * between(random, 0.5, 2.0))
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw the semicircle with the errors beside it, and the eigenvalues over the load."""
+    """Draw the semicircle with the errors beside it, and the eigenvalues over the friction force."""
     figures = {"fig03-semicircle": draw_semicircle(data)}
     if "theory" in data:
         figures["fig03-eigenvalues"] = draw_eigenvalues(data)
@@ -79,7 +79,7 @@ def _label(plane: Axes) -> None:
 
 
 def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
-    """Draw real and imaginary parts of the eigenvalues over the load."""
+    """Draw real and imaginary parts of the eigenvalues over the friction force."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]
     for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):

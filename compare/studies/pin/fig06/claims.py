@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, sticking and whirl under increasing load, and where each of them ends."""
+"""Fig. 6: equilibrium, sticking and whirl under increasing friction force, and where each of them ends."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ STUDY = Study.beside(__file__, "fig06", source=SOURCE, system=FIG6, draw=draw, c
 
 
 @STUDY.claim(
-    "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
+    "A pin started near to the equilibrium (3) comes to rest there, at every friction force up to C·X0",
     equation="(3), (5)",
     unit="m",
     resolution=1e-6 * FIG6.offset,
@@ -69,7 +69,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 
 
 @STUDY.claim(
-    "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
+    "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every friction force",
     equation="(17)",
     kind="trajectory",
     unit="s, m",
@@ -109,17 +109,17 @@ def _reference_whirl(load: float) -> Orbit:
 
 
 @STUDY.claim(
-    "The whirl ends at the load below which the branch of periodic orbits has none",
+    "The whirl ends at the friction force below which the branch of periodic orbits has none",
     kind="trajectory",
     unit="N",
     resolution=1e-8,
-    note="Not in the paper. Measured: the smallest load on the branch. Predicted: the load at which a second "
-    "multiplier of the reference's whirl passes 1 (the load is flat there, so an error δ in where it does changes "
-    "the load by δ²).",
+    note="Not in the paper. Measured: the smallest μN on the branch. Predicted: the μN at which a second "
+    "multiplier of the reference's whirl passes 1 (μN is flat there, so an error δ in where it does changes "
+    "μN by δ²).",
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest load of the branch with the load at which a multiplier is one."""
+    """Compare the smallest μN of the branch with the one at which a multiplier is one."""
     fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=WORKING)
 
     def least_load(tolerance: float) -> float:
@@ -161,7 +161,7 @@ def coexist(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Between C·X0 and the load where it ends, a small stick–slip cycle is one more motion",
+    "Between C·X0 and the friction force where it ends, a small stick–slip cycle is one more motion",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-4,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw the branches over the load, and those near the limit (5) enlarged."""
+    """Draw the branches over the friction force, and those near the limit (5) enlarged."""
     figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
     for panel in (whole, near):
         if "theory" in data:

@@ -65,7 +65,7 @@ SUPPORTS = {"support": tuple(PINS)}
 
 
 @STUDY.claim(
-    "Without offset the whirl is the circle on which support and damper balance friction, at every load",
+    "Without offset the whirl is the circle on which support and damper balance friction, at every friction force",
     equation="(11)",
     unit="m, rad/s",
     resolution=1e-7,

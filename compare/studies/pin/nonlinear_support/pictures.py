@@ -17,7 +17,7 @@ LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("w
 
 
 def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw radii of the whirl over the load, and growth without damping."""
+    """Draw radii of the whirl over the friction force, and growth without damping."""
     figure, (whirl, growing) = new_figure(ncols=2, width=10.0, height=4.0)
     if "theory" in data:
         found = data["theory"]

@@ -37,12 +37,12 @@ EXTRAPOLATED = (
     kind="trajectory",
     unit="s, m, rad/s",
     resolution=1e-6,
-    note="The second of the two at the same load is the unstable one. Found by shooting with the engine; predicted: "
+    note="The second of the two at the same μN is the unstable one. Found by shooting with the engine; predicted: "
     f"the reference at tolerance {TIGHTEST:g}.",
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Measured:
-    """Compare the engine's periodic orbits, by load in N and number, with those of the reference."""
+    """Compare the engine's periodic orbits, by μN in N and number, with those of the reference."""
     exact = [orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(

@@ -56,7 +56,7 @@ def rests(engine: Engine, loads: Sequence[float] = REST_LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "Small deviations from the equilibrium decay at a small load and grow at larger ones, as its eigenvalues say",
+    "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues say",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,

@@ -50,7 +50,7 @@ def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
 
 
 def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
-    """Return the same at one load, no numbers where no rest comes back."""
+    """Return the same at one friction force, no numbers where no rest comes back."""
     motion = steady_motion(engine, with_load(disc, load), rest_of(load).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)

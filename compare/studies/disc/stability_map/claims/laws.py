@@ -65,7 +65,7 @@ def _side(law: str, sign: float) -> Measured:
     "A pin has no such border: its whirl is stable for all damping wherever ω > k",
     equation="(16)",
     note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / K:g} and β from "
-    f"{LOW:g} to {HIGH:g} N s/m; the load and the torsion do not matter.",
+    f"{LOW:g} to {HIGH:g} N s/m; μN and the torsion do not matter.",
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:
