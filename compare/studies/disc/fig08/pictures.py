@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.parameters import RING
 from compare.studies.disc.fig08.theory import place_and_spin
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw Fig. 8 with distances and places, and how the spin depends on the offset."""
     figures = {"fig08-spin": draw_spin(data)} if data else {}
     if "theory" in data:
@@ -28,7 +27,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_spin(data: Mapping[str, Data]) -> Figure:
+def draw_spin(data: ByEngine) -> Figure:
     """Draw the spin over the friction force, how far all are from the continuous ring, and the places of rest."""
     figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
     own = f"{RING.offset:g}"
