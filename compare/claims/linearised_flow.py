@@ -34,6 +34,22 @@ def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
     return result
 
 
+def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArray]:
+    """Return the places in a state in which it may deviate, and the sizes beside which deviations are small.
+
+    Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
+    """
+    half, omega = len(state) // 2, system.disc_speed
+    (x, y), (vx, vy) = state[:2], state[half : half + 2]
+    slip = np.hypot(vx + omega * y, vy - omega * x)
+    moving = [0, 1, half, half + 1]
+    if not isinstance(system, DiscOnDisc):
+        return moving, np.array([slip / abs(omega)] * 2 + [slip] * 2)
+    slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
+    sizes = [slip / abs(omega)] * 2 + [slip] * 2 + [slip / system.contact_radius]
+    return [*moving, len(state) - 1], np.array(sizes)
+
+
 def measured_eigenvalues(
     engine: Engine, system: System, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
 ) -> tuple[ComplexArray, float]:
@@ -60,16 +76,7 @@ def measured_eigenvalues(
 
     """
     state = np.asarray(state, dtype=float)
-    half, omega = len(state) // 2, system.disc_speed
-    (x, y), (vx, vy) = state[:2], state[half : half + 2]
-    slip = np.hypot(vx + omega * y, vy - omega * x)
-    if isinstance(system, DiscOnDisc):
-        slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
-    # Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
-    size = np.array([slip / abs(omega)] * 2 + [slip] * 2)
-    moving = [0, 1, half, half + 1]
-    if isinstance(system, DiscOnDisc):
-        size, moving = np.append(size, slip / system.contact_radius), [*moving, len(state) - 1]
+    moving, size = _deviations(system, state)
 
     @functools.cache
     def differences(tolerance: float, step: float) -> FloatArray:
