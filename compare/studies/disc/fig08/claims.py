@@ -207,7 +207,7 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 
 
 @STUDY.claim(
-    "Above that friction force a disc on the axis sticks to the master disc, below it does not",
+    "A disc on the axis sticks to the master disc above the μN where the equilibrium ends, and not below",
     equation="(5)",
     note=f"Whether it sticks after {STICKING_TIME:g} s, or does not, at "
     f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of that μN. Starts on the axis with 95 % of the "

@@ -104,7 +104,7 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 
 @of_bodies(
-    "It moves state by state as the reference does: {}",
+    "A body moves state by state as the reference does: {}",
     of_pins="m, m/s",
     of_discs="m, rad, m/s, rad/s",
     pins=SLIDING | STICKING,
@@ -205,7 +205,7 @@ def balance(
 
 
 @STUDY.claim(
-    "It sticks and lets go when the reference does: {}",
+    "A body sticks and lets go when the reference does: {}",
     kind="trajectory",
     unit="s",
     resolution=STICK_RESOLUTION,
@@ -225,7 +225,7 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
 
 
 @STUDY.claim(
-    "What sticks half way through a stick phase is let go when (7) says so: {}",
+    "A body half way through a stick phase is let go when (7) says: {}",
     equation="(7)",
     unit="s",
     resolution=STICK_RESOLUTION,

@@ -95,7 +95,7 @@ def closes(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "That orbit has the period, the time of stick and the multiplier that its map of releases gives",
+    "The stick–slip orbit has the period, the time of stick and the multiplier that its map of releases gives",
     equation="(1), (6)",
     kind="trajectory",
     unit="s, 1",

@@ -193,7 +193,7 @@ def _bounded(error: float) -> float:
 
 
 @STUDY.claim(
-    "The critical initial velocity between the two motions of Fig. 5",
+    "The initial velocity that parts the two motions of Fig. 5 is that of exact Coulomb friction",
     kind="trajectory",
     unit="m/s",
     resolution=CAPTURE,

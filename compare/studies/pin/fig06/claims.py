@@ -185,7 +185,7 @@ def cycle_exists(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin started beside that cycle comes nearer to it in each turn by the cycle's multiplier",
+    "A pin started beside the small stick–slip cycle comes nearer to it in each turn by the cycle's multiplier",
     kind="trajectory",
     resolution=5e-3,
     note=f"Two pins start with all of the cycle's state larger and smaller by {CYCLE_DEVIATION:g}; the distance of "

@@ -23,7 +23,7 @@ NOTE = (
 
 
 @STUDY.claim(
-    "Period of the modulation on the continuous ring, and the turn about the axis within it",
+    "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s, rad",
@@ -44,7 +44,7 @@ def period_and_turn(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Least and greatest radius and spin of the modulated cycle on the continuous ring",
+    "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",

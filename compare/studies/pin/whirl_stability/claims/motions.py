@@ -79,7 +79,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 
 @STUDY.claim(
-    "A pin that starts beside it settles on a whirl with the radius μN/(βk) where ω > k",
+    "A pin that starts beside the whirl comes to its radius μN/(βk) where ω > k",
     equation="(11)",
     unit="m",
     resolution=1e-9 * whirl_radius(PIN),
@@ -98,7 +98,7 @@ def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
 
 @STUDY.claim(
-    "A pin that starts beside it settles on a whirl with the frequency k where ω > k",
+    "A pin that starts beside the whirl comes to its frequency k where ω > k",
     equation="(11)",
     unit="rad/s",
     resolution=1e-9 * K,
