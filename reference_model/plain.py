@@ -15,11 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
+from reference_model.contact.contact_law import Contact
 from reference_model.systems import DiscOnDisc, System, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
-
-FINEST = 1e-10
-"""Tolerance below which Radau no longer solves for the creep: slip is the difference of two velocities."""
 
 Friction = Callable[[Any, Any, Any, Any], "tuple[Any, Any, Any]"]
 """From slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex, to F_x, F_y (N) and M (N m)."""
@@ -43,18 +41,27 @@ def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
     return friction
 
 
+def by_law(load: float, law: Contact) -> Friction:
+    """Return the friction of a contact in closed form, or of another law than Coulomb's on a ring."""
+
+    def friction(slip_x: Any, slip_y: Any, relative_spin: Any, angle: Any) -> tuple[Any, Any, Any]:
+        force, moment = law.force_and_moment(complex(slip_x, slip_y), relative_spin, angle)
+        return load * force.real, load * force.imag, load * moment
+
+    return friction
+
+
 def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
     """Return C in N/m, and what a hardening and a stop, which the paper has not, add at the deflection w."""
     squared = w_x**2 + w_y**2
-    result = system.stiffness + system.hardening * squared
-    if system.stop_stiffness > 0.0 and squared.real > system.stop_gap**2:
-        result += system.stop_stiffness * (1.0 - system.stop_gap / np.sqrt(squared))
-    return result
+    d = np.sqrt(squared)
+    beyond = (d - system.stop_gap) / d if d.real > system.stop_gap else 0.0
+    return system.stiffness + system.hardening * squared + system.stop_stiffness * beyond
 
 
 def rates(system: System, friction: Friction, state: Any) -> list[Any]:
     """Return the time derivatives of a state, (4,) or (6,): (1) of a pin and (19) of a disc."""
-    (x, y, *angle), (vx, vy, *spin) = np.split(np.asarray(state), 2)
+    (x, y, *angle), (vx, vy, *spin) = np.reshape(state, (2, -1)).tolist()
     omega, C = system.disc_speed, stiffness(system, x - system.offset, y)
     turning = (omega - spin[0], angle[0]) if isinstance(system, DiscOnDisc) else (0.0, 0.0)
     force_x, force_y, moment = friction(vx + omega * y, vy - omega * x, *turning)
@@ -70,7 +77,8 @@ def simulate(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
     """Return the motion as :func:`reference_model.simulate` does, but that nothing is said to stick: it creeps."""
-    clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), FINEST)
+    # Any finer, and Radau no longer solves for the creep: slip is the difference of two velocities.
+    clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), 1e-10)
     start, times = checked_state(system, initial_state), checked_times(times)
     (x, y, *_), (vx, vy, *_) = np.split(start, 2)
     R, points = 0.0, 1

@@ -10,7 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import t as student
 
+from compare.engines import USUAL_TOLERANCE
 from reference_model.systems import FloatArray
+
+WORKING = USUAL_TOLERANCE
+"""Tolerance at which an engine is asked, unless a study says why by a factor."""
+
+TIGHTEST = 1e-12
+"""The smallest tolerance that is asked of an engine or of shooting: an eighth of it is near to rounding."""
+
+TRUTH = 1e-13
+"""Tolerance of the reference where it stands for the exact motion."""
 
 COARSENING = 8.0
 """Factor between the two tolerances of an estimate."""
@@ -51,7 +61,7 @@ class Measurement(NamedTuple):
 
 
 def refined(
-    quantity: Callable[[float], ArrayLike], tolerance: float = 1e-9, *, alike: bool = True
+    quantity: Callable[[float], ArrayLike], tolerance: float = WORKING, *, alike: bool = True
 ) -> Measurement:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 

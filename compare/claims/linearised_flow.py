@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TIGHTEST, refined
 from compare.engines import Engine
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
@@ -17,8 +17,8 @@ ComplexArray = NDArray[np.complex128]
 DIFFERENCE = 4e-3
 """Step of the differences that give the linearised flow, as a fraction of the slip."""
 
-FLOW_TOLERANCE = 1e-11
-"""Of the simulations that are subtracted from each other."""
+FLOW_TOLERANCE = 10.0 * TIGHTEST
+"""Of the simulations that are subtracted from each other: their differences are small."""
 
 
 def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
@@ -32,6 +32,22 @@ def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
     if half == ANGLE + 1:
         result[..., ANGLE] += angle
     return result
+
+
+def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArray]:
+    """Return the places in a state in which it may deviate, and the sizes beside which deviations are small.
+
+    Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
+    """
+    half, omega = len(state) // 2, system.disc_speed
+    (x, y), (vx, vy) = state[:2], state[half : half + 2]
+    slip = np.hypot(vx + omega * y, vy - omega * x)
+    moving = [0, 1, half, half + 1]
+    if not isinstance(system, DiscOnDisc):
+        return moving, np.array([slip / abs(omega)] * 2 + [slip] * 2)
+    slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
+    sizes = [slip / abs(omega)] * 2 + [slip] * 2 + [slip / system.contact_radius]
+    return [*moving, len(state) - 1], np.array(sizes)
 
 
 def measured_eigenvalues(
@@ -60,16 +76,7 @@ def measured_eigenvalues(
 
     """
     state = np.asarray(state, dtype=float)
-    half, omega = len(state) // 2, system.disc_speed
-    (x, y), (vx, vy) = state[:2], state[half : half + 2]
-    slip = np.hypot(vx + omega * y, vy - omega * x)
-    if isinstance(system, DiscOnDisc):
-        slip = np.hypot(slip, system.contact_radius * (omega - state[-1]))
-    # Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
-    size = np.array([slip / abs(omega)] * 2 + [slip] * 2)
-    moving = [0, 1, half, half + 1]
-    if isinstance(system, DiscOnDisc):
-        size, moving = np.append(size, slip / system.contact_radius), [*moving, len(state) - 1]
+    moving, size = _deviations(system, state)
 
     @functools.cache
     def differences(tolerance: float, step: float) -> FloatArray:

@@ -1,12 +1,9 @@
 """The prose of a study, which people read and edit as prose: ``study.md``.
 
-The first heading is the title; under it stands the section of the report, alone on a line between asterisks, and what
-the paper says. "## Finding" and "## Figures" may follow, the latter with a heading for the name of each figure and
-its caption::
+The first heading is the title; under it stands what the paper says. "## Finding" and "## Figures" may follow, the
+latter with a heading for the name of each figure and its caption::
 
-    # Branches under increasing load
-
-    *The friction pin*
+    # Branches under increasing friction force
 
     Fig. 6 shows the steady motions ...
 
@@ -25,6 +22,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 NAME = "study.md"
+
+SECTIONS = {
+    "pin": "The friction pin",
+    "disc": "The friction disc",
+    "drivetrain": "The drivetrain",
+    "engines": "The engines",
+}
+"""Of the report, by the folder in which a study's folder lies."""
 
 
 @dataclass(frozen=True)
@@ -55,15 +60,15 @@ class Prose:
             for depth, title, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True)
         ]
         (depth, title, paper), *others = sections
-        section = re.match(r"\*(.+?)\*\n\n", paper)
-        if depth != "#" or section is None:
+        group = path.parents[1].name
+        if depth != "#" or group not in SECTIONS:
             raise ValueError(
-                f"{path} must begin with a title, and the section of the report between asterisks"
+                f"{path} must begin with a title, and lie in {', '.join(SECTIONS)}, not {group!r}"
             )
         return cls(
             title,
-            section[1],
-            paper[section.end() :],
+            SECTIONS[group],
+            paper,
             next((body for depth, title, body in others if (depth, title) == ("##", "Finding")), ""),
             {title: body for depth, title, body in others if depth == "###"},
         )

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Data = dict[str, FloatArray]
+
+ByEngine = Mapping[str, Data]
+"""What figures are drawn from: data by the names of engines, of those that found any, and of "theory"."""
+
+Figures: TypeAlias = "dict[str, Figure]"
+"""Of matplotlib, by the names under which ``study.md`` has their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
 
@@ -142,7 +148,7 @@ def _slug(words: str) -> str:
     return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
 
 
-def nothing_drawn(data: Mapping[str, Data]) -> dict[str, Figure]:
+def nothing_drawn(data: ByEngine) -> Figures:
     """Draw nothing."""
     return {}
 
@@ -164,8 +170,7 @@ class Study:
     by_hand : callable, optional
         ``by_hand(engine) -> Findings`` in place of declared claims, where a study makes them by itself.
     draw : callable
-        ``draw(data) -> {figure name: matplotlib Figure}``, where ``data`` maps engine names (those that
-        found any, and "theory") to the ``Findings.data`` of each; must cope with a missing engine.
+        ``draw(data: ByEngine) -> Figures``; must cope with a missing engine.
     theory : callable, optional
         ``theory() -> Findings``: statements in which no simulation takes part, by hand.
     curves : callable, optional
@@ -208,12 +213,12 @@ class Study:
     title: str
     paper: str
     by_hand: Callable[[Engine], Findings] | None = None
-    draw: Callable[[Mapping[str, Data]], dict[str, Figure]] = nothing_drawn
+    draw: Callable[[ByEngine], Figures] = nothing_drawn
     theory: Callable[[], Findings] | None = None
     curves: Callable[..., Mapping[str, Any]] | None = None
     figures: Mapping[str, str] = field(default_factory=dict)
     only: tuple[str, ...] = ()
-    animations: Callable[[Mapping[str, Data]], dict[str, bytes]] | None = None
+    animations: Callable[[ByEngine], dict[str, bytes]] | None = None
     section: str = ""
     finding: str = ""
     source: str = ""
@@ -229,16 +234,18 @@ class Study:
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
         """Return the study whose prose is ``study.md`` beside ``file``, or in the folder above it.
 
-        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
+        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes. Where the prose has no
+        captions, a study that draws has one figure, with its own name and title.
         """
         prose = Prose.of(Path(file), words or {})
+        figures = prose.figures or ({name: prose.title} if "draw" in more else {})
         return cls(
             name=name,
             title=prose.title,
             paper=prose.paper,
             section=prose.section,
             finding=prose.finding,
-            figures=prose.figures,
+            figures=figures,
             **more,
         )
 

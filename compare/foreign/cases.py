@@ -10,15 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compare.claims.claim import Kind
+from compare.claims.error_estimates import TRUTH
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from reference_model import Trajectory, simulate
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
 Quantity = NDArray[np.complex128]
-
-TRUTH = 1e-13
-"""Tolerance of the reference where it stands for the exact motion."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.random import Generator
 
+from compare.claims.error_estimates import TRUTH, WORKING
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.claims import measure
-from compare.studies.engines.trajectories.parameters import EXACT, Motion
+from compare.studies.engines.trajectories.parameters import Motion
 from compare.studies.toolkit.random_systems import any_disc, any_pin, any_start
 from reference_model import simulate
 from reference_model.systems import System
@@ -21,8 +22,6 @@ SEED = 50
 
 UNTIL = 10.0
 """In s: three to thirty radians of the support's own oscillation."""
-
-TOLERANCE = 1e-9
 
 RESOLUTION = 1e-4
 """Of a claim, as a part of the largest number in the start."""
@@ -42,13 +41,13 @@ def random_motions(repetitions: int = REPETITIONS) -> dict[str, Motion]:
         kind = list(SYSTEMS)[i % len(SYSTEMS)]
         system = SYSTEMS[kind](random)
         start = any_start(random, system)
-        phases = simulate(system, start, [0.0, UNTIL], tolerance=EXACT).phases
+        phases = simulate(system, start, [0.0, UNTIL], tolerance=TRUTH).phases
         motions[f"{kind}, parameters {i + 1}"] = Motion(
             system,
             tuple(start.tolist()),
             UNTIL,
             sticks=any(phase.kind != "slip" for phase in phases),
-            tolerance=TOLERANCE,
+            tolerance=WORKING,
             resolution=RESOLUTION * float(np.max(np.abs(start))),
             source=f"assumption: parameters and start are random, with seed {SEED}",
         )

@@ -20,7 +20,11 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 
 def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction) -> Any:
-    """Add a connector over ``nodes``; return its ``ObjectIndex``."""
+    """Add a connector over ``nodes``; return its ``ObjectIndex``.
+
+    ``force`` returns what acts on all their coordinates; ``jacobian`` the derivatives of the *negative* of that by
+    coordinates and by velocities, each times the factor that it is handed, added up.
+    """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(
         items.ObjectGenericODE2(

@@ -4,8 +4,10 @@ A grid tells where they are. Each is followed from point to point with no more t
 function: the next point is the zero on an arc ahead of the last one. So the function need not be smooth, and away
 from its zeros it may be as good as constant.
 
-Libraries of contours interpolate between values on a grid. That takes a function that is smooth there, and gives
-points as exact as the grid is fine; here a value costs a simulation, and each point is on the curve to 1e-13.
+Libraries of contours interpolate between values on a grid, and a value costs a simulation here. For a circle
+contourpy is wrong by 6e-4 of the rectangle with 1,100 values, and by 1e-5 with 66,000; for a function of which only
+the sign says anything, by 1e-2 with 66,000. Here 1,800 values put each point on the circle to 6e-16, and 3,400 on the
+latter to 5e-13.
 """
 
 from __future__ import annotations

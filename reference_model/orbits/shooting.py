@@ -3,9 +3,10 @@
 The angle of a disc drops out on an isotropic contact: what comes back after a period are place, velocity and
 spin. Without offset everything looks the same from all directions, and a motion may come back turned about the axis.
 
-Newton's method is written out here. A general solver (``scipy.optimize.root``) takes other steps, and so ends at
-numbers that differ in their last digits; besides, it neither goes on until rounding stops it, nor
-stays near to the guess, which is needed because rest on the axis is a root as well.
+Newton's method is written out here. ``scipy.optimize.root`` (hybr, in the same units) finds the whirls of Figs. 4, 6
+and 11 to the same 2e-15 with as many return maps, 17 to 20 in place of 14 to 20; but where there is no orbit near the
+guess it takes 51 to 63 of them to say so, in place of 10 to 16, since it knows nothing of what is far from the guess
+or has collapsed onto the axis, and each is a simulation.
 """
 
 from __future__ import annotations

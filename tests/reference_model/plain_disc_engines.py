@@ -3,12 +3,12 @@
 import cmath
 
 import numpy as np
+from plain_slip import slide
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
+from reference_model import plain
 from reference_model.contact.contact_law import contact_of
-
-TIGHTEST = 3e-14
 
 
 def stuck_disc(disc, z, angle):
@@ -18,37 +18,17 @@ def stuck_disc(disc, z, angle):
 
 def forces_of_support(disc, z, v, spin):
     """Force of springs and dampers in N, and moment of the shaft in N m."""
-    w = z - disc.offset
-    beyond = max(abs(w) - disc.stop_gap, 0.0)
-    springs = disc.stiffness * w + disc.hardening * abs(w) ** 2 * w
-    if beyond > 0.0:
-        springs += disc.stop_stiffness * beyond * w / abs(w)
-    return -springs - disc.damping * v, -disc.shaft_damping * (spin - disc.shaft_speed)
+    *_, ax, ay, turning = plain.rates(
+        disc, lambda *_: (0.0, 0.0, 0.0), [z.real, z.imag, 0.0, v.real, v.imag, spin]
+    )
+    return disc.mass * complex(ax, ay), disc.polar_inertia * turning
 
 
 def slide_disc(disc, state, times, contact=None, **options):
     """States at ``times`` of pure slip."""
-    law = contact_of(disc, contact)
-
-    def rates(_, y):
-        z, v = complex(y[0], y[1]), complex(y[3], y[4])
-        force, moment = law.force_and_moment(v - 1j * disc.disc_speed * z, disc.disc_speed - y[5], y[2])
-        support, shaft = forces_of_support(disc, z, v, y[5])
-        a = (support + disc.friction_force * force) / disc.mass
-        return (
-            v.real,
-            v.imag,
-            y[5],
-            a.real,
-            a.imag,
-            (shaft + disc.friction_force * moment) / disc.polar_inertia,
-        )
-
     # Steps small enough that the kinks of points and the logarithm of the ring, where U = R|S|, do no harm.
-    options = {"method": "DOP853", "rtol": TIGHTEST, "atol": 1e-15, "max_step": 0.01} | options
-    run = solve_ivp(rates, (times[0], times[-1]), state, t_eval=times, **options)
-    assert run.success, run.message
-    return run.y.T
+    friction = plain.by_law(disc.friction_force, contact_of(disc, contact))
+    return slide(disc, state, times, friction, **{"max_step": 0.01} | options).y.T
 
 
 def smoothed_disc(disc, state, times, epsilon):

@@ -3,9 +3,11 @@
 import math
 
 import numpy as np
+from plain_slip import slide
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from reference_model import plain
 from reference_model.systems import PinOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
@@ -19,15 +21,7 @@ def slip_velocity(pin, state):
 
 def support_force(pin, state):
     """Force of springs, stop and dampers on the pin."""
-    x, y, vx, vy = state
-    deflection = np.array([x - pin.offset, y])
-    springs = -pin.stiffness * deflection
-    if not pin.linear_support:
-        d = math.hypot(*deflection)
-        springs -= pin.hardening * d**2 * deflection
-        if d > pin.stop_gap:
-            springs -= pin.stop_stiffness * (d - pin.stop_gap) * deflection / d
-    return springs - pin.damping * np.array([vx, vy])
+    return pin.mass * rates(pin, state, np.zeros_like)[2:]
 
 
 def stuck_state(pin, x, y):
@@ -48,40 +42,16 @@ def pull_on_stuck_pin(pin, state):
 
 def rates(pin, state, friction):
     """Right side of (1) with the friction force ``friction(slip_velocity)`` in N."""
-    force = support_force(pin, state) + friction(slip_velocity(pin, state))
-    return np.concatenate((state[2:], force / pin.mass))
+    return np.array(plain.rates(pin, of_vector(friction), state))
+
+
+def of_vector(friction):
+    """Friction as ``plain`` has it, of a force that is a function of the slip velocity in m/s, shape (2,)."""
+    return lambda slip_x, slip_y, *_: (*friction(np.array([slip_x, slip_y])), 0.0)
 
 
 def coulomb(pin):
     return lambda slip: -pin.friction_force * slip / math.hypot(*slip)
-
-
-def slide(pin, state, times, **options):
-    """States at ``times`` of pure slip, and the solution."""
-    law = coulomb(pin)
-    options = {"method": "DOP853", "rtol": TIGHTEST, "atol": 1e-15, "t_eval": times} | options
-    solution = solve_ivp(lambda _, s: rates(pin, s, law), (times[0], times[-1]), state, **options)
-    assert solution.status >= 0, solution.message
-    return solution
-
-
-def slide_past_stop(pin, state, times):
-    """States at ``times`` of pure slip, integrated from each time at which the stop begins or ends to act."""
-
-    def beyond(_, s):
-        return math.hypot(s[0] - pin.offset, s[1]) - pin.stop_gap
-
-    beyond.terminal = True
-    states, t, state = [np.array(state)], times[0], np.array(state)
-    while t < times[-1]:
-        # The first of it without looking: on the edge rounding would end it at once.
-        for events, end in ((None, min(t + 1e-4, times[-1])), (beyond, times[-1])):
-            if end > t:
-                run = slide(pin, state, [t, end], events=events, t_eval=None, max_step=0.2, dense_output=True)
-                inside = times[(times > t) & (times <= run.t[-1])]
-                states.extend(run.sol(inside).T if len(inside) else [])
-                t, state = float(run.t[-1]), run.y[:, -1]
-    return np.array(states)
 
 
 def stick_time_bounds(pin, state, start, longest, slip=2e-10):
@@ -135,11 +105,7 @@ def as_trajectory(pin, times, states, regularisation=0.0):
 
 def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", tolerance=1e-12):
     """Trajectory under any friction law, judged as one of ``pin``."""
-    run = solve_ivp(
-        lambda _, s: rates(pin, s, friction), (times[0], times[-1]), state,
-        method=method, t_eval=times, rtol=tolerance, atol=tolerance * 1e-2,
-    )  # fmt: skip
-    assert run.success, run.message
+    run = slide(pin, state, times, of_vector(friction), method=method, rtol=tolerance, atol=tolerance * 1e-2)
     return as_trajectory(pin, times, run.y.T, regularisation)
 
 

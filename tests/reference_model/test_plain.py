@@ -8,6 +8,7 @@ import pytest
 
 from compare.claims.paper_parameters import FIG5, FIG11
 from reference_model import SimulationError, plain, self_centred_equilibria, simulate, whirls
+from reference_model.contact.contact_law import Ring
 
 STUCK_DISC = replace(FIG11, friction_force=0.3, disc_speed=0.7, shaft_speed=0.6, offset=0.05)
 MOTIONS = {
@@ -72,6 +73,13 @@ def test_a_whirl_circles_by_19_to_21():
     x, vy, spin = whirl.radius, whirl.radius * whirl.frequency, whirl.spin
     expected = [0.0, vy, spin, -x * whirl.frequency**2, 0.0, 0.0]
     assert plain.rates(FIG11, friction, whirl.state) == pytest.approx(expected, abs=1e-14)
+
+
+@pytest.mark.parametrize("slip", [(0.01, 0.02, 0.5, 0.3), (0.3, -0.1, -0.5, 2.0)])
+def test_the_law_of_a_ring_is_the_limit_of_points(slip):
+    R = FIG11.contact_radius
+    law, points = plain.by_law(0.5, Ring(R)), plain.on_ring(0.5, R, 2000, 0.0)
+    assert law(*slip) == pytest.approx(points(*slip), abs=1e-13)
 
 
 def test_a_single_time_is_the_start():

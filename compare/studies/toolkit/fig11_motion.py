@@ -9,7 +9,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from compare.claims.paper_parameters import FIG11
-from reference_model.contact.contact_law import Contact, contact_of
+from reference_model import plain
+from reference_model.contact.contact_law import contact_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 RING = FIG11
@@ -24,20 +25,9 @@ START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
 SOURCE = "Fig. 11, which leaves out X0"
 
 
-def rates(disc: DiscOnDisc, state: FloatArray, contact: Contact | None = None) -> list[float]:
-    """Return the right side of (19) at ``state``, shape (6,), with (20) or another law of ``contact``."""
-    x, y, angle, vx, vy, spin = state.tolist()
-    omega, load = disc.disc_speed, disc.friction_force
-    law = contact_of(disc, contact)
-    force, moment = law.force_and_moment(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
-    return [
-        vx,
-        vy,
-        spin,
-        (load * force.real - disc.damping * vx - disc.stiffness * (x - disc.offset)) / disc.mass,
-        (load * force.imag - disc.damping * vy - disc.stiffness * y) / disc.mass,
-        (load * moment - disc.shaft_damping * (spin - disc.shaft_speed)) / disc.polar_inertia,
-    ]
+def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
+    """Return the right side of (19) with (20) or (21) at ``state``, shape (6,)."""
+    return plain.rates(disc, plain.by_law(disc.friction_force, contact_of(disc)), state)
 
 
 @functools.cache
@@ -48,9 +38,9 @@ def integrated(
 
     For a disc that slides all the time. Nothing of ``simulate`` is used.
     """
-    law = contact_of(disc)
+    friction = plain.by_law(disc.friction_force, contact_of(disc))
     run = solve_ivp(
-        lambda _, state: rates(disc, state, law),
+        lambda _, state: plain.rates(disc, friction, state),
         (0.0, until),
         start,
         method="DOP853",

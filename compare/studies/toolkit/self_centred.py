@@ -1,4 +1,4 @@
-"""The self-centred equilibrium of a disc over the load, and the load at which it ends."""
+"""The self-centred equilibrium of a disc over the friction force, and where it ends."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from reference_model.systems import DiscOnDisc
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:
-    """Return ``disc`` under the load μN in N."""
+    """Return ``disc`` under the friction force μN in N."""
     return replace(disc, friction_force=float(load))
 
 

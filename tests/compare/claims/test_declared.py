@@ -10,7 +10,7 @@ from compare.claims.claim import THEORY, Verdict
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5
 from compare.claims.prose import Prose
-from compare.claims.study import Study
+from compare.claims.study import Study, nothing_drawn
 from compare.engines import Engine, UnsupportedSystemError
 from compare.report.worst import worst
 from reference_model import simulate
@@ -163,8 +163,6 @@ def test_a_study_goes_to_another_process():
 
 PROSE = """# A title
 
-*The friction pin*
-
 What the paper
 says of {range}.
 
@@ -182,20 +180,41 @@ A caption.
 """
 
 
-def test_prose_is_read(tmp_path):
-    (tmp_path / "study.md").write_text(PROSE, encoding="utf-8")
-    prose = Prose.of(tmp_path / "claims.py", {"range": "0 to 1 N"})
+@pytest.fixture
+def folder(tmp_path):
+    """Of a study of the group pin."""
+    result = tmp_path / "pin" / "title"
+    result.mkdir(parents=True)
+    (result / "study.md").write_text(PROSE, encoding="utf-8")
+    return result
+
+
+def test_prose_is_read(folder):
+    prose = Prose.of(folder / "claims.py", {"range": "0 to 1 N"})
     assert (prose.title, prose.section) == ("A title", "The friction pin")
     assert prose.paper == "What the paper says of 0 to 1 N.\n\nMore of it."
     assert prose.finding == "{share, 3 digits} % of them."
     assert prose.figures == {"branches": "A caption."}
-    assert Prose.of(tmp_path / "claims" / "rest.py", {"range": ""}).title == "A title"
+    assert Prose.of(folder / "claims" / "rest.py", {"range": ""}).title == "A title"
 
 
-def test_prose_without_title_or_word_is_refused(tmp_path):
-    (tmp_path / "study.md").write_text(PROSE, encoding="utf-8")
+def test_a_study_without_captions_has_one_figure_with_its_own_name_and_title(folder):
+    def beside(**more):
+        return Study.beside(str(folder / "claims.py"), "title", words={"range": "any"}, **more)
+
+    assert beside(draw=nothing_drawn).figures == {"branches": "A caption."}
+    (folder / "study.md").write_text("# A title\n\nWhat the paper says of {range}.\n", encoding="utf-8")
+    assert beside(draw=nothing_drawn).figures == {"title": "A title"}
+    assert beside().figures == {}
+
+
+def test_prose_without_title_word_or_group_is_refused(folder):
     with pytest.raises(ValueError, match=r"has no \{loads\}"):
-        Prose.of(tmp_path / "claims.py", {"loads": "0"})
-    (tmp_path / "study.md").write_text(PROSE.replace("*", ""), encoding="utf-8")
+        Prose.of(folder / "claims.py", {"loads": "0"})
+    (folder / "study.md").write_text(PROSE.replace("# A title", "## A title"), encoding="utf-8")
     with pytest.raises(ValueError, match="must begin with a title"):
-        Prose.of(tmp_path / "claims.py", {})
+        Prose.of(folder / "claims.py", {})
+    elsewhere = folder.parents[1] / "elsewhere"
+    folder.parent.rename(elsewhere)
+    with pytest.raises(ValueError, match="not 'elsewhere'"):
+        Prose.of(elsewhere / "title" / "claims.py", {})

@@ -14,11 +14,14 @@ from scipy.special import ellipe, ellipkm1
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import BadTrajectoryError
 from compare.judge.faults import FAULTS, RIGHT
+from compare.judge.faults.equations import carried, rates
 from compare.judge.faults.friction import mean_slip, on_polygon
 from compare.judge.faults.make import RIGHT as MADE_RIGHT
-from compare.judge.faults.make import Make
+from compare.judge.faults.make import Make, Numbers
 from compare.judge.faults.plain import simulate
 from reference_model import DiscOnDisc, PinOnDisc
+from reference_model.plain import on_ring
+from reference_model.plain import rates as printed_rates
 from reference_model.trajectory import SimulationError
 
 REFERENCE, PLAIN = RIGHT
@@ -83,6 +86,20 @@ def test_mean_slip_is_that_of_the_elliptic_integrals_of_scipy(ratio):
     )
     # P is homogeneous of degree one (Euler), here without cancelling.
     assert u * by_slip + w * by_rim == pytest.approx(speed, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("system", "start", "points"), [(PIN, (0.2, 0.1, 0.3, 0.1), 1), (POINTS, MOVING, 6), (RING, MOVING, 4000)]
+)
+def test_its_equations_are_those_printed(system, start, points):
+    width, half = 1e-9, len(start) // 2
+    friction = on_ring(system.friction_force, getattr(system, "contact_radius", 0.0), points, width)
+    expected = np.array(printed_rates(system, friction, start))
+    expected[half : half + 2] -= carried(expected[:2], system.disc_speed)  # of z, seen from the master disc
+    y = np.array(start)
+    y[half:] -= carried(y[:half], system.disc_speed)
+    found = rates(0.0, y, width, 1.0, Numbers.of(system), MADE_RIGHT)
+    assert found == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", MOTIONS)

@@ -7,7 +7,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import coordinates, items, momenta, planar_body, rotor, run_explicitly
-from scipy.integrate import solve_ivp
+from plain_slip import slide
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
@@ -15,6 +15,7 @@ from exudyn_models import add_native_friction, simulate_with_native_contact
 from exudyn_models.forces.friction_laws import point_regularisation
 from exudyn_models.paper.models import build as models
 from exudyn_models.parts import native_contact
+from reference_model import plain
 from reference_model.systems import DiscOnDisc
 
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
@@ -43,22 +44,9 @@ SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 
 
-def rates(disc, smallest=0.0):
-    """Eq. 19 to 21, with friction that is viscous where a point slips with less than ``smallest``."""
-    around = np.exp(2j * np.pi * np.arange(disc.contact_points) / disc.contact_points)
-
-    def of(t, state):
-        x, y, angle, vx, vy, spin = state
-        arms = disc.contact_radius * around * cmath.exp(1j * angle)
-        slip = complex(vx + disc.disc_speed * y, vy - disc.disc_speed * x)
-        velocities = slip + 1j * (spin - disc.disc_speed) * arms
-        friction = -disc.friction_force * velocities / np.maximum(abs(velocities), smallest)
-        friction /= disc.contact_points
-        force = friction.sum() - disc.damping * complex(vx, vy) - disc.stiffness * complex(x - disc.offset, y)
-        moment = (arms.conj() * friction).imag.sum() + disc.shaft_damping * (disc.shaft_speed - spin)
-        return [vx, vy, spin, force.real / disc.mass, force.imag / disc.mass, moment / disc.polar_inertia]
-
-    return of
+def viscous(disc, smallest):
+    """Friction that is viscous where a point slips with less than ``smallest`` m/s."""
+    return plain.on_ring(disc.friction_force, disc.contact_radius, disc.contact_points, smallest)
 
 
 def errors_over_tolerances(system, start, times, expected):
@@ -200,7 +188,7 @@ def test_error_of_a_slipping_pin_falls_with_the_tolerance_and_stays_below_it():
 
 
 def test_error_of_a_slipping_disc_on_six_points_falls_with_the_tolerance_and_stays_below_it():
-    exact = solve_ivp(rates(DISC), (0.0, 100.0), SLIPPING_DISC, "DOP853", rtol=3e-14, atol=1e-15).y[:, -1]
+    exact = slide(DISC, SLIPPING_DISC, [0.0, 100.0]).y[:, -1]
     errors = errors_over_tolerances(DISC, SLIPPING_DISC, [0.0, 100.0], exact)
     assert np.all(errors < TOLERANCES), errors
     assert observed_order(errors) == pytest.approx(1.0, abs=0.1), errors
@@ -225,9 +213,9 @@ def test_stick_phases_of_a_pin_have_errors_of_first_order_in_the_regularisation(
 def test_resting_points_of_a_disc_creep_as_an_integrator_for_stiff_equations_has_it(disc, start, tolerance):
     found = simulate_with_native_contact(disc, start, [0.0, 5.0], tolerance=tolerance)
     epsilon = found.solution.regularisation
-    creeping = solve_ivp(
-        rates(disc, point_regularisation(epsilon, 6)), (0.0, 5.0), start, "Radau", rtol=1e-10, atol=1e-12
-    ).y[:, -1]
+    friction = viscous(disc, point_regularisation(epsilon, 6))
+    run = slide(disc, start, [0.0, 5.0], friction, method="Radau", rtol=1e-10, atol=1e-12)
+    creeping = run.y[:, -1]
     # The steps make an error of one per cent of the creep, which is ε·t.
     assert found.at_end == pytest.approx(creeping, abs=0.01 * epsilon * 5.0)
 

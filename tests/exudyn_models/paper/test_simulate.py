@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from plain_slip import slide
 from scipy.linalg import expm
 
 import reference_model
@@ -21,18 +21,8 @@ SLIPPING_START = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
 
 
 def slip_motion(pin, start, times):
-    """Eq. 1 while the pin slips, by an integrator that has nothing to do with Exudyn."""
-    omega = pin.disc_speed
-
-    def rates(t, state):
-        x, y, vx, vy = state
-        ux, uy = vx + omega * y, vy - omega * x
-        share = pin.friction_force / np.hypot(ux, uy)
-        ax = -pin.damping * vx - pin.stiffness * (x - pin.offset) - share * ux
-        ay = -pin.damping * vy - pin.stiffness * y - share * uy
-        return [vx, vy, ax / pin.mass, ay / pin.mass]
-
-    return solve_ivp(rates, (times[0], times[-1]), start, "DOP853", t_eval=times, rtol=3e-14, atol=1e-15).y.T
+    """States while the pin slips, by an integrator that has nothing to do with Exudyn."""
+    return slide(pin, start, times).y.T
 
 
 def free_motion(pin, start, times):

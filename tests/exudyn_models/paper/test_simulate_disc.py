@@ -2,13 +2,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from plain_slip import slide
 
 import exudyn_models
 import reference_model
 from compare.claims.paper_parameters import FIG11
 from exudyn_models import simulate, simulate_fixed_step
-from reference_model.contact.contact_law import contact_of
 
 START = [0.05, 0.0, 0.4, 0.0, 0.05, 1.3]
 RING = replace(  # of J = mR², on a table at rest
@@ -27,18 +26,8 @@ STICKING_START = [0.1, 0.0, 0.0, 0.03, 0.0, 1.2]
 
 
 def slip_motion(disc, start, times):
-    """Eq. 19 to 21 while the disc slips, by an integrator that has nothing to do with Exudyn."""
-    law, omega = contact_of(disc), disc.disc_speed
-
-    def rates(t, state):
-        x, y, angle, vx, vy, spin = state
-        force, moment = law.force_and_moment(complex(vx + omega * y, vy - omega * x), omega - spin, angle)
-        ax = -disc.damping * vx - disc.stiffness * (x - disc.offset) + disc.friction_force * force.real
-        ay = -disc.damping * vy - disc.stiffness * y + disc.friction_force * force.imag
-        turning = disc.friction_force * moment + disc.shaft_damping * (disc.shaft_speed - spin)
-        return [vx, vy, spin, ax / disc.mass, ay / disc.mass, turning / disc.polar_inertia]
-
-    return solve_ivp(rates, (times[0], times[-1]), start, "DOP853", t_eval=times, rtol=3e-14, atol=1e-15).y.T
+    """States while the disc slips, by an integrator that has nothing to do with Exudyn."""
+    return slide(disc, start, times).y.T
 
 
 def kinds(trajectory):

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from plain_slip import slide_past_stop
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from exudyn_models import simulate, simulate_fixed_step, simulate_with_native_contact
@@ -25,38 +26,10 @@ def spring_force(system, d):
     return system.stiffness * d + system.hardening * d**3 + stop
 
 
-def slip_motion(pin, start, times):
-    """While the pin slips, by an integrator that has nothing to do with Exudyn and starts anew at the stop."""
-
-    def rates(_, state):
-        z, v = complex(*state[:2]), complex(*state[2:])
-        slip, w = v - 1j * pin.disc_speed * z, z - pin.offset
-        force = (
-            -pin.damping * v - pin.friction_force * slip / abs(slip) - spring_force(pin, abs(w)) * w / abs(w)
-        )
-        return [v.real, v.imag, force.real / pin.mass, force.imag / pin.mass]
-
-    def crossing(_, state):
-        return abs(complex(*state[:2]) - pin.offset) - pin.stop_gap
-
-    crossing.terminal = True
-    options = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-15}
-    found, t, state = [np.array(start)], times[0], np.array(start)
-    for end in times[1:]:
-        while t < end:
-            run = solve_ivp(rates, (t, end), state, events=crossing, **options)
-            t, state = run.t[-1], run.y[:, -1]
-            if t < end:  # away from the stop's bend, that it is not found once more
-                run = solve_ivp(rates, (t, min(t + 1e-6, end)), state, **options)
-                t, state = run.t[-1], run.y[:, -1]
-        found.append(state)
-    return np.array(found)
-
-
 @LAWS
 def test_the_error_of_a_slipping_pin_is_near_the_tolerance(law):
     pin, start, times = replace(PIN, **law), [0.3, 0.0, 0.0, 0.2], np.linspace(0.0, 50.0, 26)
-    exact = slip_motion(pin, start, times)
+    exact = slide_past_stop(pin, start, times)
     deflections = abs(exact[:, 0] - pin.offset + 1j * exact[:, 1])
     assert deflections.min() < STOP["stop_gap"] < deflections.max()
     for tolerance in (1e-5, 1e-7, 1e-9):
@@ -71,7 +44,7 @@ def test_the_error_of_a_slipping_pin_is_near_the_tolerance(law):
 @pytest.mark.parametrize(("integrator", "order"), [("RK67", 6), ("GeneralizedAlpha", 2)])
 def test_integrators_converge_at_their_order_in_the_hardening_support(integrator, order):
     pin, start, times = replace(PIN, **HARDENING), [0.3, 0.0, 0.0, 0.2], np.linspace(0.0, 20.0, 2)
-    exact = slip_motion(pin, start, times)[-1]
+    exact = slide_past_stop(pin, start, times)[-1]
     steps = (0.1, 0.05) if order == 6 else (0.02, 0.01)
     errors = [
         np.abs(simulate_fixed_step(pin, start, times, integrator=integrator, step=step).at_end - exact).max()

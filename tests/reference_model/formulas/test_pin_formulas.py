@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from plain_engines import in_units
 from scipy.optimize import brentq, minimize_scalar, root
 
+from reference_model import plain
 from reference_model.formulas import pin as formulas
 from reference_model.systems import PinOnDisc
 
@@ -22,16 +23,11 @@ HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc
 
 
 def residual_of_eq_1(pin, x, y, vx, vy, ax, ay):
-    """Left side minus right side of (1)."""
-    slip_x, slip_y = vx + pin.disc_speed * y, vy - pin.disc_speed * x
-    slip_speed = np.hypot(slip_x, slip_y)
-    return np.array(
-        [
-            pin.mass * ax + pin.damping * vx + pin.stiffness * (x - pin.offset)
-            + pin.friction_force * slip_x / slip_speed,
-            pin.mass * ay + pin.damping * vy + pin.stiffness * y + pin.friction_force * slip_y / slip_speed,
-        ]
-    )  # fmt: skip
+    """Left side minus right side of (1), in N."""
+    friction = plain.on_ring(pin.friction_force, 0.0, 1, 0.0)
+    states = np.array(np.broadcast_arrays(x, y, vx, vy))
+    right = np.apply_along_axis(lambda state: plain.rates(pin, friction, state)[2:], 0, states)
+    return pin.mass * (np.array([ax, ay]) - right)
 
 
 def residual_of_eq_1_on(pin, amplitudes, frequency, samples=64):

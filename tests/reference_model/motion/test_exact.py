@@ -14,11 +14,11 @@ from plain_engines import (
     just_released,
     pull_on_stuck_pin,
     release_after,
-    slide,
     stick_time_bounds,
     stuck_state,
     turned_with_disc,
 )
+from plain_slip import slide
 
 from reference_model import PinOnDisc, SimulationError, simulate
 from reference_model.formulas import pin as formulas

@@ -16,12 +16,11 @@ from plain_engines import (
     just_released,
     pull_on_stuck_pin,
     release_after,
-    slide,
-    slide_past_stop,
     stick_time_bounds,
     stuck_state,
     turned_with_disc,
 )
+from plain_slip import slide, slide_past_stop
 
 from reference_model import Annulus, DiscOnDisc, PinOnDisc, PointsOnRing, power_balance, simulate
 from reference_model.formulas.disc import held_pin, pin_of

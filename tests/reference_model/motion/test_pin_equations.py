@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_engines import coulomb, rates, slide, slip_velocity
+from plain_engines import coulomb, rates, slip_velocity
+from plain_slip import slide
 
 from reference_model import PinOnDisc
 from reference_model.formulas.pin import whirl_radius

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from plain_engines import in_units
 
 from compare.claims.paper_parameters import FIG8, FIG11
+from reference_model import plain
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
 from reference_model.formulas import pin as formulas
@@ -44,17 +45,7 @@ COMPLEX_STEP = 1e-20
 
 def rates_of_eq_1(pin, state):
     """Right side of (1) as a first-order system; takes complex arguments."""
-    x, y, vx, vy = state
-    slip_x, slip_y = vx + pin.disc_speed * y, vy - pin.disc_speed * x
-    friction = pin.friction_force / np.sqrt(slip_x**2 + slip_y**2)
-    return np.array(
-        [
-            vx,
-            vy,
-            -(pin.damping * vx + pin.stiffness * (x - pin.offset) + friction * slip_x) / pin.mass,
-            -(pin.damping * vy + pin.stiffness * y + friction * slip_y) / pin.mass,
-        ]
-    )
+    return np.array(plain.rates(pin, plain.on_ring(pin.friction_force, 0.0, 1, 0.0), state))
 
 
 def pin_rates_in_turning_axes(pin, frequency, state):

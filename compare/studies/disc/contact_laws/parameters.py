@@ -34,8 +34,6 @@ DIFFERENCES = (
 )
 """Weights of the first derivative at the first of five times, of fourth and of third order."""
 
-TOLERANCE = 1e-12
-
 R = FIG11.contact_radius
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import (
     BLACK,
     GREEN,
@@ -36,12 +35,12 @@ NEAR = (0.2, 5.0)
 """U/W where there is an error to be seen."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw force and moment of all laws over U/W, and how far they are from the ring."""
     return {"contact-laws": laws(data), "contact-errors": errors(data)}
 
 
-def laws(data: Mapping[str, Data]) -> Figure:
+def laws(data: ByEngine) -> Figure:
     """Draw force and moment of the laws."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
@@ -75,7 +74,7 @@ def laws(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def errors(data: Mapping[str, Data]) -> Figure:
+def errors(data: ByEngine) -> Figure:
     """Draw the distance of the laws from the ring, and mark where it is the largest."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):

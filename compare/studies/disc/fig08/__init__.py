@@ -1,4 +1,4 @@
-"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the load, and where it ends."""
+"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the friction force, and where it ends."""
 
 from compare.studies.disc.fig08.claims import STUDY
 

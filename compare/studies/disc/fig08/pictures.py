@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.parameters import RING
 from compare.studies.disc.fig08.theory import place_and_spin
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw Fig. 8 with distances and places, and how the spin depends on the offset."""
     figures = {"fig08-spin": draw_spin(data)} if data else {}
     if "theory" in data:
@@ -28,8 +27,8 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_spin(data: Mapping[str, Data]) -> Figure:
-    """Draw the spin over the load, how far all are from the continuous ring, and the places of rest."""
+def draw_spin(data: ByEngine) -> Figure:
+    """Draw the spin over the friction force, how far all are from the continuous ring, and the places of rest."""
     figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
     own = f"{RING.offset:g}"
     if "theory" in data:
@@ -96,7 +95,7 @@ def _draw_theory(spin: Axes, distance: Axes, plane: Axes, found: Data) -> None:
 
 
 def draw_offsets(theory: Data) -> Figure:
-    """Draw the spin for several offsets, and the load at which the equilibrium ends over the offset."""
+    """Draw the spin for several offsets, and the friction force at which the equilibrium ends over the offset."""
     figure, (spin, end) = new_figure(ncols=2, width=9.8, height=3.9)
     for offset, colour in zip(theory["offset"], PALETTE, strict=False):
         ring, ring_load = theory[f"ring {offset:g}"], theory[f"ring load {offset:g}"]
@@ -115,6 +114,10 @@ def draw_offsets(theory: Data) -> Figure:
     end.loglog(offsets, theory["end"], **curve("theory", "disc"))
     end.loglog(offsets, RING.stiffness * offsets, color=GREY, linewidth=1.0, label=r"pin (5), $C X_0$")
     end.axhline(moment, color=GREY, linewidth=1.0, linestyle=":", label=r"$b(\omega-\Omega)/R$")
-    end.set(xlabel=axis("X_0", "m"), ylabel=axis(r"\mu N", "N"), title="Largest load with an equilibrium")
+    end.set(
+        xlabel=axis("X_0", "m"),
+        ylabel=axis(r"\mu N", "N"),
+        title="Largest friction force with an equilibrium",
+    )
     end.legend(loc="upper left")
     return figure

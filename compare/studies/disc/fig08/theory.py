@@ -30,7 +30,7 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs on which (26) is tried: all of ``OFFSETS`` under loads up to the last one by (23)."""
+    """Return discs on which (26) is tried: all of ``OFFSETS`` under friction forces up to the last one by (23)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))
@@ -54,7 +54,7 @@ def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
 
 
 def last_load_by_26(disc: DiscOnDisc) -> float:
-    """Return the load in N at which A of (26) becomes zero."""
+    """Return the friction force in N at which A of (26) becomes zero."""
     difference = reduced_parameters(disc).speed_difference
 
     def miss(unknowns: FloatArray) -> FloatArray:
@@ -68,7 +68,7 @@ def last_load_by_26(disc: DiscOnDisc) -> float:
 
 
 def curves(count: int = 121) -> Data:
-    """Return spins and places over ``count`` loads, for Fig. 8 and for all offsets, and the ends over the offset."""
+    """Return spins and places over ``count`` values of μN, for Fig. 8 and all offsets, and their ends over X0."""
     data: Data = {"offset": np.array(OFFSETS)}
     for offset in OFFSETS:
         disc = replace(RING, offset=offset)

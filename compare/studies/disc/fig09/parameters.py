@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG9
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.systems import DiscOnDisc
@@ -18,7 +19,7 @@ PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
 """(23)."""
 
 SOURCE = (
-    'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and loads '
+    'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
     "are our choice, the paper leaves them out"
 )
 
@@ -28,7 +29,7 @@ CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3
 """μN in N, and which of the whirls without offset, the largest first: the second one is unstable."""
 
 ORDERS = slice(2, 5)
-"""Those among them whose load doubles, far from the fold."""
+"""Those among them whose friction force doubles, far from the fold."""
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -41,7 +42,7 @@ OFFSET_LOAD = 0.02
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Loads in N and radii, in units of (9), of discs that stick at the start."""
+"""μN in N and radii, in units of (9), of discs that stick at the start."""
 
 LATEST = 1.1
 """How long a disc outside is watched, in units of the time that (7) predicts."""
@@ -53,25 +54,24 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4
 """Of a deviation at its start, in units of the distance from the axis."""
 
-SHOOTING = 1e-10
-REFERENCE_TOLERANCE = 1e-12
-"""Tolerance of periodic motions, and of those of the reference that they are compared with."""
+ORBIT_TOLERANCE = WORKING / 10
+"""Of periodic motions; those of the reference that they are compared with have a hundredth of it."""
 
 TOLERANCE = 3e-8
 """Of motions that stick: moderate, since a regularised law costs the more the closer it comes to Coulomb's."""
 
 LARGEST_LOAD = 0.2
-"""End of the axis in N: twice the load C·X0 about which sticking begins. The paper prints no range."""
+"""End of the axis in N: twice the friction force C·X0 about which sticking begins. The paper prints no range."""
 
 BRANCH_START = 0.1
 BRANCH_END = 1.0
-"""Load of the first whirl of the branch in units of C·X0, and its last crossing of the x axis in those of X0."""
+"""μN of the first whirl of the branch in units of C·X0, and its last crossing of the x axis in those of X0."""
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
-"""Loads in N of whirls before the branch."""
+"""μN in N of whirls before the branch."""
 
 FOLD_START = 0.016
-"""Load a little above that of the fold, in units of C·X0."""
+"""Friction force a little above that of the fold, in units of C·X0."""
 
 FOLD_OFFSETS = (0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
@@ -80,6 +80,6 @@ OFFSETS = np.geomspace(0.004, 0.25, 40)
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
-def on_six(disc: DiscOnDisc) -> DiscOnDisc:
+def on_six_points(disc: DiscOnDisc) -> DiscOnDisc:
     """Return ``disc`` on six points, as the paper simulated it."""
     return replace(disc, contact_points=6)

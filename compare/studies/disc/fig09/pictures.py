@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
 from compare.studies.disc.fig09.theory import radius_of_pin, spin_of_large_whirl
@@ -29,15 +28,15 @@ SIX: dict[str, dict[str, Any]] = {
 PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw radius and spin over the load, and the ends of the motions over the offset."""
+def draw(data: ByEngine) -> Figures:
+    """Draw radius and spin over the friction force, and the ends of the motions over the offset."""
     figures = {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)}
     if "theory" in data:
         figures["fig09-offset"] = draw_ends(data["theory"])
     return figures
 
 
-def draw_radius(data: Mapping[str, Data]) -> Figure:
+def draw_radius(data: ByEngine) -> Figure:
     """Fig. 9 over logarithmic axes, and what lies near to the axis over linear ones."""
     figure, (whole, near) = new_figure(ncols=2, width=11.0, height=5.0)
     if "theory" in data:
@@ -100,7 +99,7 @@ def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
     return [(prefix, style) for prefix, style in both if f"{prefix}circle" in found]
 
 
-def draw_spin(data: Mapping[str, Data]) -> Figure:
+def draw_spin(data: ByEngine) -> Figure:
     """Fig. 10, and the distance of the whirl's spin from its limit."""
     figure, (whole, distance) = new_figure(ncols=2, width=11.0, height=4.8)
     limit = spin_of_large_whirl(RING)

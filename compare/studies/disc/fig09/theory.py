@@ -1,4 +1,4 @@
-"""Formulas for Figs. 9 and 10: the branches of all motions over the load, and where each of them ends."""
+"""Formulas for Figs. 9 and 10: the branches of all motions over the friction force, and where each of them ends."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import ROUNDING
+from compare.claims.error_estimates import ROUNDING, TIGHTEST
 from compare.claims.study import Data
 from compare.studies.disc.fig09.parameters import (
     BRANCH_END,
@@ -22,9 +22,9 @@ from compare.studies.disc.fig09.parameters import (
     FOLD_START,
     LARGEST_LOAD,
     OFFSETS,
+    ORBIT_TOLERANCE,
     OUTER_LOADS,
     PAPER_LAW,
-    REFERENCE_TOLERANCE,
     RING,
 )
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
@@ -60,9 +60,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
     """Return the reference's whirl with an offset, the outer one or the inner, unstable one."""
     disc = with_load(replace(RING, offset=offset), load)
-    return whirl_orbit(
-        disc, guess=inner_orbit(disc) if which else None, tolerance=REFERENCE_TOLERANCE, samples=64
-    )
+    return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
 
 def extent(orbit: Orbit) -> FloatArray:
@@ -77,9 +75,9 @@ def radius_of_pin(load: float) -> float:
 
 
 def spin_of_large_whirl(disc: DiscOnDisc) -> float:
-    """Return the spin in rad/s to which that of the whirl tends for large loads, where the rim slips by little.
+    """Return the spin in rad/s to which that of the whirl tends for a large μN, where the rim slips by little.
 
-    Then F = 1 and M = R²S/(2U), and U = (ω − k)·μN/(βk) grows with the load as the moment does: the torsional balance
+    Then F = 1 and M = R²S/(2U), and U = (ω − k)·μN/(βk) grows with μN as the moment does: the torsional balance
     b(ω − Ω − S) = μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
     """
     k = disc.natural_frequency
@@ -103,13 +101,13 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc) -> Iterator[Orbit]:
-    """Yield whirls from the load of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
-    outermost = whirl_orbit(disc, tolerance=1e-10, samples=64)
+    """Yield whirls from the μN of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
+    outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=0.12)
 
 
 def inner_orbit(disc: DiscOnDisc) -> Orbit:
-    """Return the first orbit beyond the fold at a larger load than that of ``disc``."""
+    """Return the first orbit beyond the fold at a larger friction force than that of ``disc``."""
     orbits = to_inner_orbits(disc)
     next(orbits)
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
@@ -119,7 +117,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
-    """Return the load in N up to which the self-centred equilibrium is stable; that of its end if it always is."""
+    """Return μN in N up to which the self-centred equilibrium is stable; that of its end if it always is."""
     end = last_load(disc)
 
     def growth(logarithm: float) -> float:
@@ -133,7 +131,7 @@ def last_stable_load(disc: DiscOnDisc) -> float:
 
 
 def smallest_load(disc: DiscOnDisc) -> float:
-    """Return the load in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
+    """Return μN in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
     sizes: list[float] = []
     loads: list[float] = []
     for orbit in to_inner_orbits(with_load(disc, FOLD_START * disc.stiffness * disc.offset)):
@@ -146,7 +144,7 @@ def smallest_load(disc: DiscOnDisc) -> float:
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
-    """Return the load in N at which the equilibrium loses its stability, in first order of β.
+    """Return the friction force in N at which the equilibrium loses its stability, in first order of β.
 
     Small loads leave the centre at X0, where the master disc slips by U = ωX0 below it and S = ω − Ω. Friction
     resists slip across it with μN·F/U and along it with μN·F', F' = ∂F/∂U, and slip is u = ż − iωz. A motion ~
@@ -184,12 +182,12 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves() -> Data:
-    """Return the branches of all motions over the load, and over the offset where they end."""
+    """Return the branches of all motions over the friction force, and over the offset where they end."""
     return circles() | smooth(orbits()) | rests() | sticking() | ends()
 
 
 def circles() -> Data:
-    """Return load, radius, spin of whirls without offset by the ring and by (23), from the largest on."""
+    """Return friction force, radius, spin of whirls without offset by the ring and by (23), from the largest on."""
     angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
     data: Data = {}
     laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}
@@ -200,13 +198,15 @@ def circles() -> Data:
 
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
-    """Return whirls with offset by falling size, from the largest load through the fold to the equilibrium."""
-    outer = [whirl_orbit(with_load(RING, load), tolerance=1e-10, samples=64) for load in OUTER_LOADS]
+    """Return whirls with offset by falling size, from the largest μN through the fold to the equilibrium."""
+    outer = [
+        whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
+    ]
     return (*outer, *to_inner_orbits(with_load(RING, BRANCH_START * RING.stiffness * RING.offset)))
 
 
 def smooth(found: Sequence[Orbit]) -> Data:
-    """Return load, least and greatest radius, and mean spin of the ``found`` orbits and of those between them.
+    """Return μN, least and greatest radius, and mean spin of the ``found`` orbits and of those between them.
 
     Interpolated are the places, which change smoothly where the extremes do not because the orbit passes the axis.
     Beyond the last orbit its shape shrinks onto the equilibrium, its square linear in the load.
@@ -247,7 +247,7 @@ def smooth(found: Sequence[Orbit]) -> Data:
 
 
 def rests() -> Data:
-    """Return load, radius and spin of the equilibria, and the load from which on they are unstable."""
+    """Return μN, radius and spin of the equilibria, and μN from which on they are unstable."""
     end = last_load(RING)
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
@@ -260,7 +260,7 @@ def rests() -> Data:
 
 
 def sticking() -> Data:
-    """Return loads from where sticking begins, and the radius (9)."""
+    """Return friction forces from where sticking begins, and the radius (9)."""
     loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
     return {
         "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import (
     BLACK,
     GREEN,
@@ -45,7 +44,7 @@ SETTLED = 230.0
 X0_AXIS = 0.025
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw what is there."""
     figures = {"fig11-history": draw_histories(data)} if data else {}
     if any(words in data[engine] for engine in engines_in(data) for words in DISCS):
@@ -56,12 +55,12 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def histories(data: Mapping[str, Data], words: str) -> dict[str, FloatArray]:
+def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
     """Return the states of the disc on that contact by who computed them."""
     return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
 
 
-def draw_histories(data: Mapping[str, Data]) -> Figure:
+def draw_histories(data: ByEngine) -> Figure:
     """Draw spin and position over time as in the paper's figure, and the spin alone enlarged."""
     figure, panels = new_figure(
         ncols=3, nrows=2, width=13.0, height=6.0, sharex=True, sharey="row", height_ratios=(3, 2)
@@ -94,7 +93,7 @@ def draw_histories(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def draw_section(data: Mapping[str, Data]) -> Figure:
+def draw_section(data: ByEngine) -> Figure:
     """Draw the spectrum of the motion of the centre, and radius and spin once a turn."""
     figure, (lines, sections) = new_figure(ncols=2, width=13.0, height=4.2)
     draw_spectrum(lines, data)
@@ -131,7 +130,7 @@ def draw_section(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def draw_spectrum(panel: Axes, data: Mapping[str, Data]) -> None:
+def draw_spectrum(panel: Axes, data: ByEngine) -> None:
     """Draw the lines of the cycle on the ring over the spectrum of six points."""
     floor = 1e-4
     for name, states in histories(data, "six points").items():
@@ -218,7 +217,7 @@ def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, Flo
     return x(crossings), spin(crossings)
 
 
-def draw_growth(data: Mapping[str, Data]) -> Figure:
+def draw_growth(data: ByEngine) -> Figure:
     """Draw how a deviation grows until it is the modulated cycle, beside the exponential of the eigenvalue."""
     figure, panels = new_figure(ncols=2, width=10.5, height=3.8, sharey=True)
     for row, (panel, words) in enumerate(zip(panels, DISCS, strict=True)):
@@ -247,7 +246,7 @@ def draw_growth(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def draw_offsets(data: Mapping[str, Data]) -> Figure:
+def draw_offsets(data: ByEngine) -> Figure:
     """Draw radius and spin in the end over the offset, with the branches of whirl and equilibrium."""
     figure, panels = new_figure(ncols=2, width=11.5, height=4.2)
     theory = data["theory"]

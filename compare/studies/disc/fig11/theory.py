@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from compare.claims.error_estimates import TRUTH
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.paper_parameters import FIG11
 from compare.claims.study import Data
@@ -25,7 +26,6 @@ from compare.studies.disc.fig11.parameters import (
     TIMES,
     TRIED,
     UNTIL,
-    WHIRL_TOLERANCE,
     WITHOUT_ANGLE,
 )
 from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated, rates
@@ -107,13 +107,13 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
 def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     """Return the whirl on points near to the state ``guess``, with its linearised return map by differences."""
     reference = Engine("reference", simulate, ("points",))
-    motion = steady_motion(reference, disc, guess, WHIRL_TOLERANCE)
+    motion = steady_motion(reference, disc, guess, TRUTH)
     if motion is None:
         raise RuntimeError(f"no whirl on {disc.contact_points} points near the circle of the ring")
     period, turn = motion.period, motion.frequency * motion.period
 
     def returned(state: FloatArray) -> FloatArray:
-        return rotated(simulate(disc, state, [0.0, period], tolerance=WHIRL_TOLERANCE).at_end, -turn)
+        return rotated(simulate(disc, state, [0.0, period], tolerance=TRUTH).at_end, -turn)
 
     step = STEP * guess[0]
     columns = [

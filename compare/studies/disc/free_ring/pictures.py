@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import GREY, curve, engines_in, new_figure, points
 from compare.studies.disc.free_ring.theory import deviation
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 LEAST_DEVIATION = 1e-8
 """|ln U/W| below which an engine's tolerance is drawn and not the motion."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the phase plane, the approach to the ratio 1, and the ratio over the moment of inertia."""
     if not data:
         return {}

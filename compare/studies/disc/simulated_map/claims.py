@@ -38,9 +38,9 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "Motions that begin beside the axis come back to it where the load is below the onset, and leave it above",
+    "Motions that begin beside the axis come back to it where μN is below the onset, and leave it above",
     equation="(19)–(21)",
-    note=f"Those within {MARGIN:g} of the onset's load and those that stick are left out. By the compiled ensemble "
+    note=f"Those within {MARGIN:g} of the onset's μN and those that stick are left out. By the compiled ensemble "
     f"to t = {UNTIL:g} s, which may leave one in a thousand undecided.",
     basis="reference",
     swept=("damping", "shaft_damping"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
+
 SIDE = 80
 """Discs along each side of the plane."""
 
@@ -13,11 +15,14 @@ DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, 
 START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 """Beside the axis: x, y, angle, vx, vy, spin."""
 
-UNTIL, TOLERANCE = 12000.0, 1e-8
+UNTIL = 12000.0
 """When the slowest have settled, in s."""
 
+TOLERANCE = 10.0 * WORKING
+"""Only where a motion ends is asked."""
+
 MARGIN = 0.05
-"""Of the load beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
+"""Of the friction force beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
 
 EVERY = 5
 """Each fifth disc in both directions is asked for the eigenvalues of its whirl."""

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from compare.claims.paper_parameters import FIG11
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.disc.simulated_map.parameters import DAMPING, SHAFT_DAMPING
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LOOKS = {
     "UNDECIDED": ("undecided", "#ffffff"),
@@ -31,7 +27,7 @@ CURVES: dict[str, tuple[str, Any]] = {
 }
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the ends under the curves."""
     if "theory" not in data:
         return {}

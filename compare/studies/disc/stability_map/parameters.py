@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG11
 from reference_model.systems import DiscOnDisc
 
@@ -33,7 +34,8 @@ ASIDE = 0.01
 DEVIATION = 0.02
 """Of the whirl at the start, in units of the distance to where a point of the ring rests."""
 
-FLOW_TOLERANCE = 1e-10
+FLOW_TOLERANCE = WORKING / 10
+"""Of the simulations that are subtracted from each other: their differences are small."""
 
 STUCK = 60.0
 """In s, for which a disc that sticks on the axis is watched: nothing changes there, but for an engine's creep."""
@@ -66,7 +68,7 @@ STATE_ROUNDING = 4.0 * np.finfo(float).eps
 """Relative, of the spin of a whirl that is given by its α."""
 
 UNSTABLE_LOADS = (0.3, 0.7)
-"""Loads between the fold and the Hopf point of (23), as fractions."""
+"""Friction forces between the fold and the Hopf point of (23), as fractions."""
 
 BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
 """Factors on the state of the larger whirl there."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from compare.claims.paper_parameters import FIG11
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import (
     BLACK,
     GREEN,
@@ -120,8 +120,8 @@ PANELS = {
 }
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw what is there: the map in four planes, and the motions over the load at the speeds of Fig. 11."""
+def draw(data: ByEngine) -> Figures:
+    """Draw what is there: the map in four planes, and the motions over μN at the speeds of Fig. 11."""
     figures = {}
     if "theory" in data:
         figures["stability-map"] = draw_map(data)
@@ -130,7 +130,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_map(data: Mapping[str, Data]) -> Figure:
+def draw_map(data: ByEngine) -> Figure:
     """Draw the four planes with the boundaries of both laws, and the motions that engines simulated."""
     from matplotlib.lines import Line2D
 
@@ -151,7 +151,7 @@ def draw_map(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def draw_plane(axes: Axes, name: str, panel: Panel, data: Mapping[str, Data]) -> None:
+def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     """Draw one plane."""
     theory = data["theory"]
     x = np.linspace(*panel.x, 800)
@@ -257,8 +257,8 @@ def sticking(plane: str, x: FloatArray) -> tuple[FloatArray, FloatArray]:
     return x, np.full_like(x, torque / (FIG11.disc_speed - FIG11.shaft_speed))
 
 
-def draw_section(data: Mapping[str, Data]) -> Figure:
-    """Draw the radius of whirls and of long motions over the load."""
+def draw_section(data: ByEngine) -> Figure:
+    """Draw the radius of whirls and of long motions over the friction force."""
     figure, (axes,) = new_figure(width=8.4, height=4.6)
     if "theory" in data:
         for law, colour in COLOURS.items():

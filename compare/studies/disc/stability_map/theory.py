@@ -143,7 +143,7 @@ def curves() -> Data:
 
 
 def section() -> Data:
-    """Return load, radius and largest real part of the whirls of Fig. 11 over their α, for each law."""
+    """Return friction force, radius and largest real part of the whirls of Fig. 11 over their α, for each law."""
     data: Data = {}
     alphas = np.linspace(0.45, np.pi / 2.0 - 1e-3, 240)
     for name, law in LAWS.items():

@@ -18,8 +18,6 @@ def balanced_car() -> Drivetrain:
     return replace(passenger_car(), unbalance=0.0)
 
 
-TOLERANCE = 1e-9
-
 FINER = 24
 """Rings of the reference's annulus, in place of 16, which show their error."""
 

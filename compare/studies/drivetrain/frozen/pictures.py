@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import expm
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.drivetrain.frozen.parameters import MODULATED, PUSH, SPEED, SURPLUS
 from compare.studies.drivetrain.frozen.theory import in_turning_axes, state_matrix_of, whirls_of
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 MM = 1e3
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw what is there."""
     figures = {}
     if engines_in(data):
@@ -32,7 +31,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_steady(data: Mapping[str, Data]) -> Figure:
+def draw_steady(data: ByEngine) -> Figure:
     """Draw where the disc rests below the onset, and radius and frequency of its whirl above."""
     figure, (place, radius, frequency) = new_figure(ncols=3, width=13.0, height=4.0, width_ratios=(1.1, 1, 1))
     car = passenger_car()
@@ -122,7 +121,7 @@ def draw_maps(theory: Data) -> Figure:
     return figure
 
 
-def draw_modulated(data: Mapping[str, Data]) -> Figure:
+def draw_modulated(data: ByEngine) -> Figure:
     """Draw radius and slip of the modulated whirl, as they grow into a cycle on the stop."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=4.6, sharex=True)
     car = passenger_car()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.error_estimates import COARSENING, observed_exponent, refined
+from compare.claims.error_estimates import COARSENING, WORKING, observed_exponent, refined
 from compare.claims.measured import Measured
 from compare.claims.parameters import at_each
 from compare.claims.study import Study
@@ -110,7 +110,7 @@ def momentum(engine: Engine) -> Measured:
         )
         return float(moment + car.disc_inertia * spin + sum(inertia * speed for inertia, speed in turning))
 
-    found = refined(at_end, 1e-9)
+    found = refined(at_end, WORKING)
     return Measured(
         predicted=car.engine_inertia * ENGINE_SPEED + MEAN * until,
         value=found.value,
@@ -131,7 +131,7 @@ def full_slip(engine: Engine) -> Measured:
     until = theory.time_of(SLIP)
     scale = np.array([ENGINE_SPEED, ENGINE_SPEED, ENGINE_SPEED, theory.heat(until)])
     found = refined(
-        lambda tolerance: _speeds_and_heat(slipping(car, tolerance=tolerance, until=until)) / scale, 1e-9
+        lambda tolerance: _speeds_and_heat(slipping(car, tolerance=tolerance, until=until)) / scale, WORKING
     )
     return Measured(
         predicted=np.array([*theory.speeds(until), theory.heat(until)]) / scale,

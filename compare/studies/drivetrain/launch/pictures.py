@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, BLUE, GREEN, GREY, ORANGE, axis, curve, new_figure, points
 from compare.studies.toolkit.drivetrain_bench import RPM
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the launch over time, and what creep in stick does."""
     found = data.get("exudyn", {})
     if "t" not in found or "epsilon" not in found:

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, BLUE, GREEN, ORANGE, axis, new_figure
 from compare.studies.drivetrain.momentum.parameters import BODIES, SOLVERS
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw what the three bodies exchange, and how far their sum drifts."""
     found = next((values for values in data.values() if "each" in values), None)
     if found is None:

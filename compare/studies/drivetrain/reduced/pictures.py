@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, axis, curve, new_figure, points
 from compare.studies.drivetrain.reduced.parameters import CASES, UNTIL
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the radial motion of three cases in both engines, and the influence of the inertias."""
     found = data.get("exudyn", {})
     drawn = [name for name in list(CASES)[1:] if f"{name}: t" in found]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, BLUE, GREY, ORANGE, axis, curve, engine_style, engines_in, new_figure
 from compare.report.animation import gif
 from compare.studies.drivetrain.run_up.spectrum import order_spectrum
@@ -40,7 +39,7 @@ STEP = math.radians(48.0)
 """By which the engine turns from one frame to the next."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw what is there."""
     figures: dict[str, Figure] = {}
     if engines_in(data):
@@ -50,7 +49,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_run_up(data: Mapping[str, Data]) -> Figure:
+def draw_run_up(data: ByEngine) -> Figure:
     """Draw radius and slip over the engine's speed, with what the reference predicts at frozen speeds."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=6.0, sharex=True, height_ratios=(3, 1))
     car = passenger_car()
@@ -101,7 +100,7 @@ def envelope(found: Data, values: FloatArray) -> tuple[FloatArray, FloatArray, F
     return middle / RPM, np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
 
 
-def draw_waterfall(data: Mapping[str, Data]) -> Figure:
+def draw_waterfall(data: ByEngine) -> Figure:
     """Draw the spectrum of x + iy over the engine's speed; what circles backwards has a negative frequency."""
     engine = engines_in(data)[0]
     figure, (panel,) = new_figure(width=9.5, height=5.4)
@@ -147,7 +146,7 @@ def draw_waterfall(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def draw_pictures(data: Mapping[str, Data]) -> Figure:
+def draw_pictures(data: ByEngine) -> Figure:
     """Draw flywheel, disc and shaft below the onset, near it and in the whirl."""
     from exudyn_models.drivetrain.picture import draw_drivetrain
 
@@ -184,7 +183,7 @@ def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
     return angle, np.asarray(CubicSpline(times, found["disc"][near])(time))
 
 
-def animations(data: Mapping[str, Data]) -> dict[str, bytes]:
+def animations(data: ByEngine) -> dict[str, bytes]:
     """Draw slow motions of some turns at three speeds: the drivetrain, and the orbit of the disc's centre."""
     if not engines_in(data):
         return {}

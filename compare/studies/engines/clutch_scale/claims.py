@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import WORKING, refined
 from compare.claims.measured import Measured
 from compare.claims.paper_parameters import FIG5, FIG8
 from compare.claims.study import Study
@@ -83,7 +83,7 @@ def rests(engine: Engine) -> Measured:
     places, error = refined(lambda tolerance: states(tolerance)[:, :2] / FIG5.offset)
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(places[:40], places[-1], rate, 20.0)
-    motion = at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), 1e-9)
+    motion = at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), WORKING)
     return Measured(
         predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
         value=places[-1],

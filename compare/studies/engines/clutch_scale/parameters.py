@@ -15,7 +15,7 @@ UNTIL, SAMPLES = 240.0, 481
 """Time of the paper's scale, in s, in which that pin comes to rest, and how often its state is asked for."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
-"""Fig. 6 at the load 0.12 N."""
+"""Fig. 6 at the friction force 0.12 N."""
 
 REST_OF_DISC = 40.0
 """Time of the paper's scale, in s, for which the disc of Fig. 8 is left where (19) and (20) let it spin."""

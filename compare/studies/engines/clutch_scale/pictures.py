@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from compare.claims.paper_parameters import FIG5
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.engines.clutch_scale.parameters import SAMPLES, UNTIL
 from compare.studies.engines.clutch_scale.units import CLUTCH
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the way to rest at both scales, and how far they are apart over time."""
     figure, (plane, history) = new_figure(ncols=2, width=11.0)
     exact = data.get("theory", {})

@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 
+from compare.claims.error_estimates import TRUTH
 from compare.claims.paper_parameters import FIG5
 from compare.claims.study import Data
 from compare.studies.engines.clutch_scale.parameters import SAMPLES, TO_REST, UNTIL, WHIRLING
@@ -16,7 +17,7 @@ from reference_model.formulas.pin import equilibrium_position
 @functools.cache
 def exact_motion() -> Trajectory:
     """Return the motion to rest, from the reference at its tightest."""
-    return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=1e-13)
+    return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH)
 
 
 @functools.cache

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import axis, curve, engines_in, new_figure
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the angular momenta of both discs, and the drift of their momenta."""
     found = {engine: data[engine] for engine in engines_in(data) if "six points: t" in data[engine]}
     if not found:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, extrapolated_order, observed_exponent
+from compare.claims.error_estimates import COARSENING, TRUTH, extrapolated_order, observed_exponent
 from compare.claims.measured import Measured
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.claims.parameters import at_each
@@ -24,7 +24,7 @@ from compare.studies.engines.engine_convergence.parameters import (
     SLIDING_SOURCE,
     STICKING_STARTS,
     STICKING_UNTIL,
-    TIGHT,
+    TOLERANCE,
     WORK_STEPS,
     smallest_regularisation,
 )
@@ -85,7 +85,7 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     kind="order",
     resolution=0.2,
     note="Root mean square over the first stick and release of every start, against the reference at tolerance "
-    "1e-13. Exponent and errors as for the sliding pin.",
+    f"{TRUTH:g}. Exponent and errors as for the sliding pin.",
     basis="reference",
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
@@ -98,7 +98,7 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
             [run(FIG5, start, times, tolerance=tolerance).stick_times for start in STICKING_STARTS]
         )
 
-    exact = events(simulate, 1e-13)
+    exact = events(simulate, TRUTH)
     errors = np.array(
         [root_mean_square(gap(events(engine.simulate, t), exact)) for t in scan.sticking.tolist()]
     )
@@ -106,7 +106,7 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
         scan.sticking,
         errors,
         next_term=scan.sticking_term,
-        noise=root_mean_square(events(simulate, COARSENING * 1e-13) - exact),
+        noise=root_mean_square(events(simulate, COARSENING * TRUTH) - exact),
     )
     data: Data = {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
     if with_work:
@@ -176,8 +176,8 @@ def steps(engine: Engine, solver: Solver, with_work: bool = True) -> Measured | 
 # ---------------------------------------------------------------- in the slip speed that smooths friction
 
 HOW = (
-    "Against the reference at tolerance 1e-13. Least squares with a term smaller by ε; numerical error: 95 % "
-    f"interval from the scatter, and the change at tolerance {COARSENING * TIGHT:g}; model error: what the term "
+    f"Against the reference at tolerance {TRUTH:g}. Least squares with a term smaller by ε; numerical error: 95 % "
+    f"interval from the scatter, and the change at tolerance {COARSENING * TOLERANCE:g}; model error: what the term "
     "changes."
 )
 
@@ -197,22 +197,22 @@ def first_stick(engine: Engine) -> Measured | None:
     import exudyn_models
 
     start = FIG5_STARTS["equilibrium"]
-    first = simulate(FIG5, start, (0.0, 8.0), tolerance=1e-13).stick_times[:1]
+    first = simulate(FIG5, start, (0.0, 8.0), tolerance=TRUTH).stick_times[:1]
 
     def error(epsilon: float, tolerance: float) -> float:
         found = exudyn_models.simulate(FIG5, start, (0.0, 5.0), tolerance=tolerance, regularisation=epsilon)
         return float(gap(found.stick_times[:1], first)[0])
 
-    errors = np.array([error(epsilon, TIGHT) for epsilon in FIRST_REGULARISATIONS.tolist()])
+    errors = np.array([error(epsilon, TOLERANCE) for epsilon in FIRST_REGULARISATIONS.tolist()])
     # The tolerance weighs most at the smallest ε.
-    noise = abs(error(float(FIRST_REGULARISATIONS[-1]), COARSENING * TIGHT) - float(errors[-1]))
+    noise = abs(error(float(FIRST_REGULARISATIONS[-1]), COARSENING * TOLERANCE) - float(errors[-1]))
     exponent, numerical, model = observed_exponent(FIRST_REGULARISATIONS, errors, next_term=1.0, noise=noise)
     return Measured(
         predicted=2.0,
         value=exponent,
         error=numerical,
         model=model,
-        parameters={"tolerance": TIGHT},
+        parameters={"tolerance": TOLERANCE},
         source="Fig. 5, first start; " + _range_of(FIRST_REGULARISATIONS, "ε", "m/s"),
         data={"first regularisations": FIRST_REGULARISATIONS, "first stick": errors},
     )
@@ -248,7 +248,7 @@ def later_events(engine: Engine) -> Measured | None:
         error=found.numerical[:-1],
         model=float(np.max(found.model[:-1])),
         components=[f"{('release', 'stick')[i % 2]} {(i + 1) // 2 + 1}" for i in range(events)],
-        parameters={"tolerance": TIGHT},
+        parameters={"tolerance": TOLERANCE},
         source="Fig. 5, second start to 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
         data={"regularisations": REGULARISATIONS, "later events and state": found.errors},
     )
@@ -273,7 +273,7 @@ def state(engine: Engine) -> Measured | None:
         value=found.exponents[-1],
         error=found.numerical[-1],
         model=float(found.model[-1]),
-        parameters={"tolerance": TIGHT},
+        parameters={"tolerance": TOLERANCE},
         source="Fig. 5, second start at 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
     )
 
@@ -282,16 +282,16 @@ def state(engine: Engine) -> Measured | None:
 def smoothing(simulate_smoothed: Simulate) -> Smoothing:
     """Return the errors of events and state over ε, which two claims share; takes the simulation to be measured."""
     start, until = FIG5_STARTS["whirl"], (0.0, 20.0)
-    exact = simulate(FIG5, start, until, tolerance=1e-13)
+    exact = simulate(FIG5, start, until, tolerance=TRUTH)
 
     def errors(epsilon: float, tolerance: float) -> FloatArray:
         found = simulate_smoothed(FIG5, start, until, tolerance=tolerance, regularisation=epsilon)
         state = root_mean_square(found.at_end - exact.at_end)
         return np.append(gap(found.stick_times, exact.stick_times), state)[1:]  # the first stick falls faster
 
-    by_epsilon = np.array([errors(epsilon, TIGHT) for epsilon in REGULARISATIONS.tolist()])
+    by_epsilon = np.array([errors(epsilon, TOLERANCE) for epsilon in REGULARISATIONS.tolist()])
     # The tolerance weighs most at the smallest ε.
-    noise = np.abs(errors(float(REGULARISATIONS[-1]), COARSENING * TIGHT) - by_epsilon[-1])
+    noise = np.abs(errors(float(REGULARISATIONS[-1]), COARSENING * TOLERANCE) - by_epsilon[-1])
     exponents, numerical, model = np.transpose(
         [
             observed_exponent(REGULARISATIONS, column, next_term=1.0, noise=part)
@@ -316,7 +316,7 @@ def creep(engine: Engine) -> Measured | None:
     import exudyn_models
 
     starts, until = list(FIG5_STARTS.values()), (0.0, 6.0)
-    exact = [simulate(FIG5, start, until, tolerance=1e-13).stick_phases[0] for start in starts]
+    exact = [simulate(FIG5, start, until, tolerance=TRUTH).stick_phases[0] for start in starts]
 
     def shifts(epsilon: float, steps: float) -> FloatArray:
         step = FIG5.mass * epsilon / FIG5.friction_force / steps

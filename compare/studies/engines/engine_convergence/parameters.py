@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG5
 from reference_model.systems import FloatArray
 
@@ -77,7 +78,7 @@ FIRST_REGULARISATIONS = np.geomspace(1e-3, 10**-5.5, 11)
 CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
 """ε in m/s for the first release by RK44, whose step must be below 2.8·mε/μN = 31 s²/m·ε."""
 
-TIGHT = 1e-10
+TOLERANCE = WORKING / 10
 """Tolerance at which ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)

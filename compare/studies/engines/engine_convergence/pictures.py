@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure
 from compare.studies.engines.engine_convergence.solvers import SOLVERS
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw error over step and ε, over tolerance, and over work."""
     figures = {
         "engine-convergence-tolerance": _draw_tolerance(data),
@@ -76,7 +76,7 @@ def _draw_orders(found: Data) -> Figure:
     return figure
 
 
-def _draw_tolerance(data: Mapping[str, Data]) -> Figure:
+def _draw_tolerance(data: ByEngine) -> Figure:
     figure, panels = new_figure(ncols=2, width=9.6, height=4.0)
     for panel, kind, title, unit in zip(
         panels,
@@ -96,7 +96,7 @@ def _draw_tolerance(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def _draw_work(data: Mapping[str, Data]) -> Figure:
+def _draw_work(data: ByEngine) -> Figure:
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     figure, panels = new_figure(ncols=2, nrows=2, width=9.6, height=7.0, sharey="col")

@@ -7,6 +7,7 @@ import functools
 
 import numpy as np
 
+from compare.claims.error_estimates import TRUTH
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.studies.engines.engine_convergence.parameters import (
     SLIDING_STARTS,
@@ -42,7 +43,7 @@ def sliding_truth() -> tuple[FloatArray, float]:
 @functools.cache
 def stick_slip_truth() -> FloatArray:
     """Return the states on Fig. 5's way to the whirl by the reference at its tightest, shape (time, 4)."""
-    return simulate(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, tolerance=1e-13).states
+    return simulate(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, tolerance=TRUTH).states
 
 
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:

@@ -6,13 +6,12 @@ import functools
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
+from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY, TRUTH
 from compare.claims.measured import Measured
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.engines.error_estimates.calibration import Calibration, calibrated
 from compare.studies.engines.error_estimates.parameters import (
-    EXACT,
     KNOWN,
     LEAST_COVERAGE,
     MOST_OVER_ESTIMATE,
@@ -30,7 +29,7 @@ PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
 
 KNOWN_FROM = (
     "Every number with the estimate that all claims take. True errors are against closed forms, or the reference at "
-    f"tolerance {EXACT:g}."
+    f"tolerance {TRUTH:g}."
 )
 
 STUDY = Study.beside(

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, curve, engines_in, new_figure, points
 from compare.studies.engines.error_estimates.parameters import LEAST_COVERAGE, MOST_OVER_ESTIMATE
 from compare.studies.engines.error_estimates.problems import PROBLEMS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SMALLEST, LARGEST = 1e-1, 1e4
 """Ratios of estimate and true error that the figure shows."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw estimates over true errors, and for each kind of motion how far they lie above."""
     figure, (scatter, spread) = new_figure(ncols=2, width=10.6, height=4.4)
     ends = np.array([1e-16, 1.0])

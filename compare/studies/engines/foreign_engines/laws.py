@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import refined
 from compare.foreign.cases import CASES, Case
-from reference_model import Phase, Solution, Trajectory
+from reference_model import Phase, Solution, Trajectory, plain
 
 Law = Callable[[complex, float], complex]
 """Friction against a slip in m/s, as a fraction of μN, smoothed over a slip speed ε in m/s."""
@@ -43,11 +43,12 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
     """Return what ``solve_ivp`` makes of ``case`` under ``law``, smoothed over a slip of ``epsilon`` m/s."""
     pin = case.system
 
-    def motion(_: float, state: np.ndarray) -> tuple[float, ...]:
-        z, v = complex(*state[:2]), complex(*state[2:])
-        friction = pin.friction_force * law(v - 1j * pin.disc_speed * z, epsilon)
-        a = (friction - pin.damping * v - pin.stiffness * (z - pin.offset)) / pin.mass
-        return v.real, v.imag, a.real, a.imag
+    def friction(slip_x: float, slip_y: float, *_: float) -> tuple[float, float, float]:
+        force = pin.friction_force * law(complex(slip_x, slip_y), epsilon)
+        return force.real, force.imag, 0.0
+
+    def motion(_: float, state: np.ndarray) -> list[float]:
+        return plain.rates(pin, friction, state)
 
     span, accuracy = (case.times[0], case.times[-1]), 1e-3 * epsilon
     return solve_ivp(

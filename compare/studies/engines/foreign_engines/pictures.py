@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, GREY, PURPLE, SKY, engine_style, new_figure
 
 if TYPE_CHECKING:
@@ -18,7 +17,7 @@ MARKERS = "os^Dv"
 """Of an engine's settings; our force, the last one of each, has a dotted line and a cross."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw error over time for the pin, sliding and sticking, and for the disc."""
     if "theory" not in data:
         return {}

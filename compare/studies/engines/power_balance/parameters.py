@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
 from reference_model import sticking_radius
 from reference_model.formulas.pin import whirl_radius
@@ -39,7 +40,7 @@ class Motion:
     start: tuple[float, ...]
     until: float
     source: str
-    tolerance: float = 1e-9
+    tolerance: float = WORKING
     step: float = SAMPLE_DISTANCE
     drawn: bool = False
     contact_alone: bool = False
@@ -75,7 +76,7 @@ def motions_of_the_pin() -> dict[str, Motion]:
             (stuck, 0.0, 0.0, turning * stuck),
             10.0,
             "Fig. 4, at 0.98 of the radius (9)",
-            tolerance=5e-11,
+            tolerance=WORKING / 20,
         ),
         "a pin on a resting disc": Motion(
             replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, start by choice"

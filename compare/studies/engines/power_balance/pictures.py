@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from compare.studies.engines.power_balance.parameters import RESOLUTION
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw where the energy goes on the way to the whirl, and what is left over."""
     figure, (energies, residuals) = new_figure(ncols=2)
     looks: dict[str, dict[str, Any]] = {

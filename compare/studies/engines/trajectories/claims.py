@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import TRUTH, Measurement, refined
 from compare.claims.measured import Measured
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import (
-    EXACT,
     MOTIONS,
     PANEL,
     PINS,
@@ -44,7 +43,7 @@ from reference_model.systems import COLUMNS, FloatArray, System
 STUDY = Study.beside(
     __file__,
     "trajectories",
-    words={"exact": f"{EXACT:g}", "tolerance": f"{Motion.tolerance:g}"},
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
     draw=draw,
     seconds=6.0,
     quick=True,
@@ -105,12 +104,12 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 
 @of_bodies(
-    "It moves state by state as the reference does: {}",
+    "A body moves state by state as the reference does: {}",
     of_pins="m, m/s",
     of_discs="m, rad, m/s, rad/s",
     pins=SLIDING | STICKING,
     kind="trajectory",
-    note=f"Predicted: the reference at tolerance {EXACT:g}.",
+    note=f"Predicted: the reference at tolerance {TRUTH:g}.",
 )
 @together
 def moves(engine: Engine, motion: Motion) -> Measured:
@@ -206,7 +205,7 @@ def balance(
 
 
 @STUDY.claim(
-    "It sticks and lets go when the reference does: {}",
+    "A body sticks and lets go when the reference does: {}",
     kind="trajectory",
     unit="s",
     resolution=STICK_RESOLUTION,
@@ -226,7 +225,7 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
 
 
 @STUDY.claim(
-    "What sticks half way through a stick phase is let go when (7) says so: {}",
+    "A body half way through a stick phase is let go when (7) says: {}",
     equation="(7)",
     unit="s",
     resolution=STICK_RESOLUTION,

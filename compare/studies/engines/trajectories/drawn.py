@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
+from compare.claims.error_estimates import WORKING
 from compare.studies.engines.trajectories.parameters import (
     LEAST_SAMPLES,
     LEAST_SLIP,
@@ -111,7 +112,7 @@ def _slides(motion: Motion) -> bool:
 
 
 def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin whose load is about what holds it against the offset."""
+    """Draw a pin whose friction force is about what holds it against the offset."""
     pin = _pin(random, disc_speed)
     return replace(pin, friction_force=pin.stiffness * abs(pin.offset) * between(random, 0.5, 2.0))
 
@@ -172,7 +173,7 @@ def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, floa
             kind.start(random, system),
             UNTIL,
             sticks,
-            tolerance=1e-9 if sticks else 1e-10,
+            tolerance=WORKING if sticks else WORKING / 10,
             resolution=1e-4 if sticks else 1e-7,
             source=f"assumption: parameters and start are random, with seed {SEED}",
         )

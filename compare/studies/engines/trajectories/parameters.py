@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.systems import System
-
-EXACT = 1e-13
-"""Tolerance of the reference."""
 
 PANEL = 0.25
 """Length in s of the pieces of time over which forces are integrated."""
@@ -55,7 +53,7 @@ class Motion:
     start: tuple[float, ...]
     until: float
     sticks: bool = False
-    tolerance: float = 1e-10
+    tolerance: float = WORKING / 10
     resolution: float = 1e-7
     source: str = (
         "parameters of which no two are equal, and a start from which nothing sticks, are our choice"
@@ -80,7 +78,7 @@ PINS_THAT_STICK = {
         FIG5_STARTS["whirl"],
         15.0,
         sticks=True,
-        tolerance=1e-9,
+        tolerance=WORKING,
         resolution=1e-5,
         source="Fig. 5, second start",
     )

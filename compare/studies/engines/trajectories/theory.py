@@ -7,8 +7,8 @@ import functools
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
-from compare.claims.error_estimates import SAFETY
-from compare.studies.engines.trajectories.parameters import EXACT, PANEL, Motion
+from compare.claims.error_estimates import SAFETY, TRUTH
+from compare.studies.engines.trajectories.parameters import PANEL, Motion
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory, simulate
 from reference_model.contact.contact_law import contact_of
 from reference_model.support import Support
@@ -31,7 +31,7 @@ def times_of(motion: Motion) -> FloatArray:
 @functools.cache
 def by_reference(motion: Motion) -> Trajectory:
     """Return the motion at ``times_of(motion)`` by the reference at its tightest."""
-    return simulate(motion.system, motion.start, times_of(motion), tolerance=EXACT)
+    return simulate(motion.system, motion.start, times_of(motion), tolerance=TRUTH)
 
 
 def at_bounds(states: FloatArray) -> FloatArray:

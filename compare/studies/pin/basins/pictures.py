@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compare.claims.paper_parameters import FIG5_STARTS
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
 from compare.studies.pin.basins.parameters import PLANE
 from reference_model.ensemble import EndState
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw ends and boundary in the plane of starts, the saddle, and shares over the speed."""
     if "theory" not in data:
         return {}

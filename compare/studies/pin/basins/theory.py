@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from compare.claims.error_estimates import TIGHTEST
 from compare.claims.paper_parameters import FIG5
 from compare.claims.shares import Ends, of_sample
 from compare.claims.study import Data
@@ -46,7 +47,7 @@ def curves(
 
 
 @functools.cache
-def saddle(tolerance: float = 1e-12, pin: PinOnDisc = FIG5) -> StickSlipOrbit:
+def saddle(tolerance: float = TIGHTEST, pin: PinOnDisc = FIG5) -> StickSlipOrbit:
     """Return the orbit of ``pin`` whose stable set is the boundary."""
     (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable)
     return orbit

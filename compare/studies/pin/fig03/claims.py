@@ -41,7 +41,7 @@ from reference_model.systems import FloatArray
 
 STUDY = Study.beside(__file__, "fig03", source=SOURCE, system=PIN, draw=draw, curves=curves, seconds=2.0)
 
-DECAYS = "No small deviation from the position of rest grows, whatever the load within (5)"
+DECAYS = "No small deviation from the position of rest grows, whatever the friction force within (5)"
 
 
 @STUDY.claim(
@@ -114,11 +114,11 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "The distance of the position of rest from the axis goes to zero at the load C·X0",
+    "The distance of the position of rest from the axis goes to zero at the friction force C·X0",
     equation="(5)",
     unit="N",
     resolution=1e-9 * LIMIT,
-    note="The squared distance, linear in the squared load, is extrapolated to zero from the two largest loads.",
+    note="The squared distance, linear in (μN)², is extrapolated to zero from the two largest μN.",
     implied_by=rests,
     swept=("friction_force",),
 )
@@ -129,7 +129,7 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "Below the load C·X0 the pin rests in space, above it there is no such rest and it turns with the disc",
+    "Below the friction force C·X0 the pin rests in space, above it there is no such rest and it turns with the disc",
     equation="(5)",
     resolution=1e-3,
     note="Mean speed at which the pin turns about the axis in the last revolution, over ω. Starts at rest beside the "
@@ -230,5 +230,5 @@ def stable_on_a_grid() -> Measured:
         -values.real,
         rounding,
         may_be_open=values.size // 1000,
-        source="assumption: a grid of loads, disc speeds and dampings",
+        source="assumption: a grid of friction forces, disc speeds and dampings",
     )

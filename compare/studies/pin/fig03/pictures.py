@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig03.parameters import LOADS, PIN, with_load
 from compare.studies.pin.fig03.theory import positions
@@ -18,15 +17,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw the semicircle with the errors beside it, and the eigenvalues over the load."""
+def draw(data: ByEngine) -> Figures:
+    """Draw the semicircle with the errors beside it, and the eigenvalues over the friction force."""
     figures = {"fig03-semicircle": draw_semicircle(data)}
     if "theory" in data:
         figures["fig03-eigenvalues"] = draw_eigenvalues(data)
     return figures
 
 
-def draw_semicircle(data: Mapping[str, Data]) -> Figure:
+def draw_semicircle(data: ByEngine) -> Figure:
     """Draw the positions of rest on the semicircle, and their distance from (3) over μN."""
     figure, (plane, distance) = new_figure(ncols=2, width=9.6, height=3.9)
     if "theory" in data:
@@ -78,8 +77,8 @@ def _label(plane: Axes) -> None:
     )
 
 
-def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
-    """Draw real and imaginary parts of the eigenvalues over the load."""
+def draw_eigenvalues(data: ByEngine) -> Figure:
+    """Draw real and imaginary parts of the eigenvalues over the friction force."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]
     for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import WORKING, Measurement, refined
 from compare.claims.measured import Measured
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.fig04.parameters import (
     CLAIM_SPEEDS,
     OFFSETS,
-    SHOOTING,
     SOURCE,
     SOURCE_OF_OFFSETS,
     SPEEDS,
@@ -169,7 +168,7 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
     """Return the means of the whirls in m, shape (n, 2), following the branch from high speed down."""
     found, guess = [], None
     for speed in reversed(speeds):
-        guess = whirl_of(engine, pin_at(speed), SHOOTING, guess)
+        guess = whirl_of(engine, pin_at(speed), WORKING, guess)
         found.append(harmonics(engine, pin_at(speed), guess))
     return Measurement(*(np.array(each)[::-1, :2] for each in zip(*found, strict=True)))
 
@@ -186,7 +185,7 @@ def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Mea
 
     The second harmonic is that of a time at which the first one is real.
     """
-    first_orbit = guess or whirl_of(engine, pin, SHOOTING)
+    first_orbit = guess or whirl_of(engine, pin, WORKING)
 
     def found(tolerance: float) -> FloatArray:
         orbit = whirl_of(engine, pin, tolerance, first_orbit)
@@ -196,7 +195,7 @@ def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Mea
         return np.array([*orbit.mean, second.real, second.imag])
 
     # A miss of the orbit shifts its mean by about as much.
-    return refined(found, SHOOTING).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
+    return refined(found, WORKING).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
 
 
 def _complex(point: FloatArray) -> complex:

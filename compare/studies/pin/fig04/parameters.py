@@ -16,9 +16,6 @@ CLAIM_SPEEDS = (1.2, 1.5, 3.0)
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m for the orders, each half of the one before and far below the whirl's radius of 1.2 m."""
 
-SHOOTING = 1e-9
-"""Tolerance handed to the engine when an orbit is shot for."""
-
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig04.parameters import CLAIM_SPEEDS, OFFSETS, pin_at
 from reference_model.formulas.pin import first_order_whirl_shift, whirl_shift
@@ -15,7 +15,6 @@ from reference_model.systems import PinOnDisc
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (
@@ -25,7 +24,7 @@ FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (
 MARKERS = dict(zip(CLAIM_SPEEDS, "os^", strict=True))
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the mean of the whirl over the speed, and its distance from both formulas over the offset."""
     figure, (left, right) = new_figure(ncols=2)
     _draw_shift(left, data)
@@ -33,7 +32,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return {"fig04-shift": figure}
 
 
-def _draw_shift(panel: Axes, data: Mapping[str, Data]) -> None:
+def _draw_shift(panel: Axes, data: ByEngine) -> None:
     if "theory" in data:
         theory = data["theory"]
         for i, symbol in enumerate(("x_s", "y_s")):
@@ -49,7 +48,7 @@ def _draw_shift(panel: Axes, data: Mapping[str, Data]) -> None:
     panel.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("x_s,\\ y_s", "m"), ylim=(0.0, None))
 
 
-def _draw_gaps(panel: Axes, data: Mapping[str, Data]) -> None:
+def _draw_gaps(panel: Axes, data: ByEngine) -> None:
     for engine in engines_in(data):
         for speed, marker in MARKERS.items():
             if f"means at {speed:g}" not in data[engine]:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import WORKING, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.claims.study import Study
@@ -86,7 +86,7 @@ def slides(engine: Engine) -> Measured:
 def rests(engine: Engine) -> Measured:
     """Compare the end of the first run with (3)."""
     found = refined(lambda tolerance: run_of(engine, "equilibrium", tolerance).at_end[:2])
-    states = run_of(engine, "equilibrium", 1e-9).states
+    states = run_of(engine, "equilibrium", WORKING).states
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(states[-700:-300, :2], states[-1, :2], rate, 30.0)
     return Measured(
@@ -164,7 +164,7 @@ def all_sticks(engine: Engine, name: str) -> Measured:
     """Compare all stick and release times with those of the reference."""
     predicted = reference_events(name)
     found = refined(lambda tolerance: _padded(run_of(engine, name, tolerance).stick_times, len(predicted)))
-    run = run_of(engine, name, 1e-9)
+    run = run_of(engine, name, WORKING)
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -193,7 +193,7 @@ def _bounded(error: float) -> float:
 
 
 @STUDY.claim(
-    "The critical initial velocity between the two motions of Fig. 5",
+    "The initial velocity that parts the two motions of Fig. 5 is that of exact Coulomb friction",
     kind="trajectory",
     unit="m/s",
     resolution=CAPTURE,
@@ -204,7 +204,7 @@ def _bounded(error: float) -> float:
 )
 def critical(engine: Engine) -> Measured:
     """Find the initial velocity that divides both motions."""
-    found = refined(functools.partial(critical_velocity, engine), 1e-10)
+    found = refined(functools.partial(critical_velocity, engine), WORKING / 10)
     return Measured(
         predicted=predicted_critical_velocity(),
         value=found.value,

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compare.claims.paper_parameters import FIG5
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 LOOKS: dict[str, dict[str, Any]] = {
     "equilibrium": {"color": BLACK},
@@ -26,7 +24,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 STUCK = PURPLE
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw both motions in the plane and over time, and the errors of their stick and release times."""
     figure, (plane, history, errors) = new_figure(ncols=3, width=13.0)
     for rank, engine in enumerate(engines_in(data)):
@@ -63,7 +61,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return {"fig05-motions": figure}
 
 
-def animate(data: Mapping[str, Data], until: float = 80.0) -> dict[str, bytes]:
+def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
     """Show the first ``until`` s of both motions on the turning disc: stick phases, equilibrium and whirl."""
     from compare.report.animation import gif
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from compare.claims.error_estimates import TIGHTEST, TRUTH
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine
 from compare.studies.pin.fig05.parameters import AFTERWARDS, SLIDING_START, SLIDING_TIMES, UNTIL
@@ -33,7 +34,7 @@ def whirl() -> Orbit:
 @functools.cache
 def reference_events(name: str) -> FloatArray:
     """Return all times in s at which the pin sticks and lets go, from the reference at its tightest."""
-    return simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=1e-13).stick_times
+    return simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=TRUTH).stick_times
 
 
 @functools.cache
@@ -94,8 +95,8 @@ def critical_velocity(engine: Engine, tolerance: float) -> float:
 
 @functools.cache
 def predicted_critical_velocity() -> float:
-    """Return ``critical_velocity`` by the reference at tolerance 1e-12."""
-    return critical_velocity(Engine("reference", simulate), 1e-12)
+    """Return ``critical_velocity`` by the reference."""
+    return critical_velocity(Engine("reference", simulate), TIGHTEST)
 
 
 def outside_at_end(engine: Engine, velocity: float, tolerance: float) -> float:

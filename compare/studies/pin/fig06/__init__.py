@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, sticking and whirl under increasing load, and where each of them ends."""
+"""Fig. 6: equilibrium, sticking and whirl under increasing friction force, and where each of them ends."""
 
 from compare.studies.pin.fig06.claims import STUDY
 

@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, sticking and whirl under increasing load, and where each of them ends."""
+"""Fig. 6: equilibrium, sticking and whirl under increasing friction force, and where each of them ends."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TRUTH, WORKING, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
-from compare.engines import USUAL_TOLERANCE, Engine
+from compare.engines import Engine
 from compare.studies.pin.fig06.parameters import (
     CYCLE_DEVIATION,
     CYCLE_TURNS,
     EQUILIBRIUM_LOADS,
     FIG6,
-    SHOOTING,
     SOURCE,
     WHIRL_LOADS,
     with_load,
@@ -38,7 +37,7 @@ STUDY = Study.beside(__file__, "fig06", source=SOURCE, system=FIG6, draw=draw, c
 
 
 @STUDY.claim(
-    "A pin started near to the equilibrium (3) comes to rest there, at every load up to C·X0",
+    "A pin started near to the equilibrium (3) comes to rest there, at every friction force up to C·X0",
     equation="(3), (5)",
     unit="m",
     resolution=1e-6 * FIG6.offset,
@@ -70,7 +69,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 
 
 @STUDY.claim(
-    "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every load",
+    "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every friction force",
     equation="(17)",
     kind="trajectory",
     unit="s, m",
@@ -80,7 +79,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     """Compare period and extent of the whirls with those of the reference."""
-    first = [whirl_of(engine, with_load(load), SHOOTING) for load in loads]
+    first = [whirl_of(engine, with_load(load), WORKING) for load in loads]
 
     def period_and_extent(tolerance: float) -> FloatArray:
         orbits = [
@@ -89,7 +88,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
         ]
         return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
 
-    found = refined(period_and_extent, SHOOTING)
+    found = refined(period_and_extent, WORKING)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
     # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
@@ -110,25 +109,25 @@ def _reference_whirl(load: float) -> Orbit:
 
 
 @STUDY.claim(
-    "The whirl ends at the load below which the branch of periodic orbits has none",
+    "The whirl ends at the friction force below which the branch of periodic orbits has none",
     kind="trajectory",
     unit="N",
     resolution=1e-8,
-    note="Not in the paper. Measured: the smallest load on the branch. Predicted: the load at which a second "
-    "multiplier of the reference's whirl passes 1 (the load is flat there, so an error δ in where it does changes "
-    "the load by δ²).",
+    note="Not in the paper. Measured: the smallest μN on the branch. Predicted: the μN at which a second "
+    "multiplier of the reference's whirl passes 1 (μN is flat there, so an error δ in where it does changes "
+    "μN by δ²).",
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest load of the branch with the load at which a multiplier is one."""
-    fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=SHOOTING)
+    """Compare the smallest μN of the branch with the one at which a multiplier is one."""
+    fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=WORKING)
 
     def least_load(tolerance: float) -> float:
         return last_whirl(
             FIG6, simulate=engine.simulate, guess=fold, tolerance=tolerance
         ).system.friction_force
 
-    found = refined(least_load, SHOOTING)
+    found = refined(least_load, WORKING)
     return Measured(
         predicted=load_of_unit_multiplier(),
         value=found.value,
@@ -158,11 +157,11 @@ def coexist(engine: Engine) -> Measured:
         )
         return [len(stays.phases) == 1 and bool(stays.stick_phases), not whirls.stick_phases]
 
-    return answers_of(*asked(sticks_and_slides, USUAL_TOLERANCE))
+    return answers_of(*asked(sticks_and_slides, WORKING))
 
 
 @STUDY.claim(
-    "Between C·X0 and the load where it ends, a small stick–slip cycle is one more motion",
+    "Between C·X0 and the friction force where it ends, a small stick–slip cycle is one more motion",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-4,
@@ -176,7 +175,7 @@ def cycle_exists(engine: Engine) -> Measured:
         lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
     )
     return Measured(
-        predicted=simulate(orbit.system, orbit.state, times, tolerance=1e-13).states,
+        predicted=simulate(orbit.system, orbit.state, times, tolerance=TRUTH).states,
         value=found.value,
         error=found.largest + orbit.residual,
         at={"t in s": times},
@@ -186,7 +185,7 @@ def cycle_exists(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin started beside that cycle comes nearer to it in each turn by the cycle's multiplier",
+    "A pin started beside the small stick–slip cycle comes nearer to it in each turn by the cycle's multiplier",
     kind="trajectory",
     resolution=5e-3,
     note=f"Two pins start with all of the cycle's state larger and smaller by {CYCLE_DEVIATION:g}; the distance of "
@@ -198,7 +197,7 @@ def cycle_attracts(engine: Engine) -> Measured:
     orbit = cycle()
     found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION))
     # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
-    wide = _decay_in_a_turn(engine, orbit, 1e-9, 2.0 * CYCLE_DEVIATION)
+    wide = _decay_in_a_turn(engine, orbit, WORKING, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
     return Measured(
         predicted=abs(orbit.multipliers[1]),

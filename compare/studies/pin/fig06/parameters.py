@@ -10,7 +10,7 @@ from reference_model.formulas.pin import largest_load_with_equilibrium
 
 FIG6 = replace(FIG4, disc_speed=1.2)
 
-SOURCE = "Fig. 6: Fig. 4 with ω = 1.2 rad/s; the loads are our choice, the paper prints no range"
+SOURCE = "Fig. 6: Fig. 4 with ω = 1.2 rad/s; the friction forces are our choice, the paper prints no range"
 
 LIMIT = largest_load_with_equilibrium(FIG6)
 
@@ -19,7 +19,7 @@ EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N. The paper does not print the range of its axis; 2·C·X0 shows all that happens."""
 
 CYCLE_LOAD = 0.102
-"""Between C·X0 and the load at which the stick–slip cycle ends."""
+"""Between C·X0 and the friction force at which the stick–slip cycle ends."""
 
 CYCLE_DEVIATION = 0.01
 CYCLE_TURNS = 5
@@ -28,10 +28,8 @@ CYCLE_TURNS = 5
 INNERMOST = 0.012
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""
 
-SHOOTING = 1e-9
-
 ON_THE_WAY = 1e-8
-"""Tolerance of the branch that is drawn, and that leads to the cycle; its loads are right to 1e-10 N."""
+"""Tolerance of the branch that is drawn, and that leads to the cycle; its friction forces are right to 1e-10 N."""
 
 
 def with_load(load: float) -> PinOnDisc:

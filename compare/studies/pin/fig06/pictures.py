@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig06.parameters import WHIRL_LOADS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw the branches over the load, and those near the limit (5) enlarged."""
+def draw(data: ByEngine) -> Figures:
+    """Draw the branches over the friction force, and those near the limit (5) enlarged."""
     figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
     for panel in (whole, near):
         if "theory" in data:

@@ -58,7 +58,7 @@ There two multipliers meet, so that it is the root of that of the return map: 3e
 
 @functools.cache
 def load_of_unit_multiplier() -> float:
-    """Return the load in N at which a second multiplier of the reference's whirl passes 1."""
+    """Return the friction force in N at which a second multiplier of the reference's whirl passes 1."""
     orbit = whirl_orbit(with_load(0.08))
 
     def excess(x: float) -> float:

@@ -11,7 +11,7 @@ from compare.claims.paper_parameters import CENTRED, FIG5, FIG9
 HARDENING = replace(CENTRED, hardening=0.5)
 STOP = replace(CENTRED, stop_gap=0.6, stop_stiffness=2.0)
 PINS = {"hardening": HARDENING, "stop": STOP}
-"""Fig. 4 without its offset. The circle of each turns slower than the disc at all loads below."""
+"""Fig. 4 without its offset. The circle of each turns slower than the disc at all friction forces below."""
 
 LAWS = (
     f"C₃ = {HARDENING.hardening:g} N/m³ without a stop, and C_s = {STOP.stop_stiffness:g} N/m beyond "
@@ -62,13 +62,10 @@ AMPLIFIED = 6.0
 """Sum of the sizes of the weights 1/3, −2 and 8/3 of the parabola through the radii for them at 0, rounded up."""
 
 GROWING_FROM = 0.3
-"""In m: further in, the largest of these loads holds a pin on the disc."""
+"""In m: further in, the largest of these friction forces holds a pin on the disc."""
 
 FOLLOWED_ON = 0.2
 """In s: after a pin without damping has stuck."""
 
-SHOOTING = 1e-9
-BALANCED = 1e-10
 GROWN = 1e-6
-EXACT = 1e-13
-"""Tolerances."""
+"""Tolerance of what grows to a motion of its own: only where that ends is asked."""

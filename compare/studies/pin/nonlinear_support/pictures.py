@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Figures
 from compare.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.pin.nonlinear_support.parameters import PINS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}
 """Label and dashes of each support."""
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
-    """Draw radii of the whirl over the load, and growth without damping."""
+def draw(data: ByEngine) -> Figures:
+    """Draw radii of the whirl over the friction force, and growth without damping."""
     figure, (whirl, growing) = new_figure(ncols=2, width=10.0, height=4.0)
     if "theory" in data:
         found = data["theory"]

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from compare.claims.error_estimates import TRUTH
 from compare.claims.paper_parameters import CENTRED
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.pin.nonlinear_support.parameters import (
-    EXACT,
     FOLLOWED_ON,
     GROWING_FROM,
     GROWING_LOADS,
@@ -44,7 +44,7 @@ def curves() -> Data:
 @functools.cache
 def exact_whirl(pin: PinOnDisc) -> Orbit:
     """Return the whirl of ``pin``, found by shooting with the reference."""
-    return whirl_of(Engine("reference", simulate), pin, 3.0 * EXACT)
+    return whirl_of(Engine("reference", simulate), pin, 3.0 * TRUTH)
 
 
 def radius_and_frequency(orbit: Orbit) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from reference_model.formulas.pin import resonant_disc_speed
 from reference_model.systems import PinOnDisc
 
 PIN = FIG4
-SOURCE = "Fig. 4, whose load is above C·X0; the values of ω are ours"
+SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are ours"
 RESONANCE = resonant_disc_speed(PIN)
 
 SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.sticking_domain.parameters import OUTSIDE, RESONANCE
 from compare.studies.pin.sticking_domain.theory import predicted_turns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw the radius over the speed of the disc, the time until release, and how far it is from (7)."""
     figure, (domain, time, error) = new_figure(ncols=3, width=12.6, height=3.7)
     if "theory" in data:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import Data
+from compare.claims.study import ByEngine, Data, Figures
 from compare.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.whirl_stability.parameters import DEVIATION_TIMES, PIN, K
 from reference_model.formulas.pin import variational_matrix
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
+def draw(data: ByEngine) -> Figures:
     """Draw what is there: the start on the circle and the deviation, the eigenvalues, and the map."""
     figures = {"whirl-motions": draw_motions(data)} if engines_in(data) else {}
     if "theory" in data:
@@ -26,7 +25,7 @@ def draw(data: Mapping[str, Data]) -> dict[str, Figure]:
     return figures
 
 
-def draw_motions(data: Mapping[str, Data]) -> Figure:
+def draw_motions(data: ByEngine) -> Figure:
     """Draw the radius after a start on the circle (11), and a small deviation that decays."""
     figure, (leaving, decay) = new_figure(ncols=2, width=9.8, height=3.6)
     _draw_leaving(leaving, data)
@@ -34,7 +33,7 @@ def draw_motions(data: Mapping[str, Data]) -> Figure:
     return figure
 
 
-def _draw_leaving(panel: Axes, data: Mapping[str, Data]) -> None:
+def _draw_leaving(panel: Axes, data: ByEngine) -> None:
     last = 0.0
     for engine in engines_in(data):
         found = data[engine]
@@ -67,7 +66,7 @@ def _draw_leaving(panel: Axes, data: Mapping[str, Data]) -> None:
     panel.legend(loc="lower left")
 
 
-def _draw_decay(panel: Axes, data: Mapping[str, Data]) -> None:
+def _draw_decay(panel: Axes, data: ByEngine) -> None:
     """Draw the deviation inside of the envelope of its modes."""
     for engine in engines_in(data):
         panel.plot(data[engine]["history_time"], data[engine]["history"], **curve(engine))
@@ -96,7 +95,7 @@ def _draw_decay(panel: Axes, data: Mapping[str, Data]) -> None:
     panel.legend(loc="upper right", fontsize=9.0)
 
 
-def draw_eigenvalues(data: Mapping[str, Data]) -> Figure:
+def draw_eigenvalues(data: ByEngine) -> Figure:
     """Draw decay rates and frequencies of the eigenvalues over the speed of the disc."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]

@@ -116,7 +116,8 @@ class TestStabilityMap(StudyTests):
             damping / disc.damping,
             load / disc.friction_force,
         )
-        words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, or {} % of load"
+        words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, "
+        words += "or {} % of friction force"
         assert words.format(*(percent(ratio, 1.0, 3) for ratio in remedies)) in text
 
         three = LAWS["(23)"]

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TIGHTEST, refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.contact_laws.claims.study import STUDY
@@ -23,7 +23,6 @@ from compare.studies.disc.contact_laws.parameters import (
     SIX,
     SPEED,
     STEP,
-    TOLERANCE,
 )
 from reference_model.systems import DiscOnDisc, FloatArray
 
@@ -86,7 +85,7 @@ def friction_on(
             found.append(inertia * (np.array(DIFFERENCES) @ velocities) / STEP + resisted)
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
-    found, error = refined(friction, TOLERANCE)
+    found, error = refined(friction, TIGHTEST)
     # One number alone may be right by chance: of the noise the largest of all counts, of the differences' own error
     # the largest in a motion.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)

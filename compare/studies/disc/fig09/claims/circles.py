@@ -19,7 +19,7 @@ LOADS = [load for load, _ in CIRCLES]
 OBSERVED = (
     "Orders of the distance in radius and spin, extrapolated; model error: the extrapolation's own step. The limit "
     "of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
-    f"{spin_of_large_whirl(RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Loads: "
+    f"{spin_of_large_whirl(RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
     f"{', '.join(f'{load:g}' for load in LOADS[ORDERS])} N."
 )
 
@@ -28,7 +28,7 @@ OBSERVED = (
     "Without offset the whirl has radius, frequency and spin of the three balances, stable or not",
     equation="(19), (20)",
     resolution=1e-6,
-    note="In units of μN/(βk), k and ω; the second of the two at the same load is unstable. Measured: the state that "
+    note="In units of μN/(βk), k and ω; the second of the two at the same μN is unstable. Measured: the state that "
     "the engine itself brings back, turned about the axis. Predicted: radial, tangential and torsional balance on "
     "the continuous ring.",
     basis="reference",
@@ -58,7 +58,7 @@ def circles(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "(23) has the whirl's radius right but for an error like load⁻⁴, its spin but for one like load⁻²",
+    "(23) has the whirl's radius right but for an error like (μN)⁻⁴, its spin but for one like (μN)⁻²",
     equation="(23)",
     kind="order",
     resolution=0.1,
@@ -67,7 +67,7 @@ def circles(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def error_of_23(engine: Engine) -> Measured:
-    """Observe how the whirl differs from that of (23), at loads each twice the one before."""
+    """Observe how the whirl differs from that of (23), at friction forces each twice the one before."""
     by_23 = [(load, whirls(with_load(CENTRED, load), PAPER_LAW)[0]) for load in LOADS[ORDERS]]
     return _orders(
         engine,
@@ -77,7 +77,7 @@ def error_of_23(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Like load⁻² the radius tends to the pin's μN/(βk), the spin to a limit that does not depend on the load",
+    "Like (μN)⁻² the radius tends to the pin's μN/(βk), the spin to a limit that does not depend on μN",
     equation="(11)",
     kind="order",
     resolution=0.1,
@@ -86,13 +86,13 @@ def error_of_23(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def limit_of_large_loads(engine: Engine) -> Measured:
-    """Observe how the whirl tends to its limit, at loads each twice the one before."""
+    """Observe how the whirl tends to its limit, at friction forces each twice the one before."""
     limit = (1.0, spin_of_large_whirl(RING) / RING.disc_speed)
     return _orders(engine, [limit] * len(LOADS[ORDERS]), (-2.0, -2.0))
 
 
 def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
-    """Compare ``orders`` in the load with those in which radius and spin come near to ``others``."""
+    """Compare ``orders`` in the friction force with those in which radius and spin come near to ``others``."""
     found = circles_of(engine, CENTRED)
     gaps: FloatArray = np.abs(found.value[ORDERS][:, [0, 2]] - others)
     observed, numerical, model = extrapolated(gaps, found.error[ORDERS][:, :1])

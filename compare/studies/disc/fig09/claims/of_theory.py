@@ -24,15 +24,15 @@ from reference_model.formulas.disc import whirl_at
 
 
 @STUDY.claim(
-    "Without offset the whirl ends in a fold: at its smallest load an eigenvalue of it passes zero",
+    "Without offset the whirl ends in a fold: at its smallest friction force an eigenvalue of it passes zero",
     equation="(20), (23)",
     unit="N",
-    note="Predicted: the minimum of the load over the ratio of the slip speeds of rim and centre. Measured: the load "
-    "where the eigenvalue is zero, to 1e-6 of that ratio; the load is flat there.",
+    note="Predicted: the minimum of μN over the ratio of the slip speeds of rim and centre. Measured: μN "
+    "where the eigenvalue is zero, to 1e-6 of that ratio; μN is flat there.",
     swept=("friction_force",),
 )
 def fold() -> Measured:
-    """Compare the loads at which an eigenvalue passes zero with the smallest ones of the balances."""
+    """Compare the friction forces at which an eigenvalue passes zero with the smallest ones of the balances."""
     laws: Sequence[IsotropicContact | None] = (None, PAPER_LAW)
     measured = [whirl_at(CENTRED, marginal_ratio(law), law).load for law in laws]
     return Measured(
@@ -69,10 +69,10 @@ def weak_damping() -> Measured:
 
 
 @STUDY.claim(
-    "The inner, unstable whirl shrinks onto the equilibrium at the load where that loses its stability",
+    "The inner, unstable whirl shrinks onto the equilibrium at the μN where the equilibrium loses its stability",
     unit="N",
     note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. Measured: "
-    "the load of the reference's inner whirls, found by shooting, as a polynomial in the square of their size (root "
+    "μN of the reference's inner whirls, found by shooting, as a polynomial in the square of their size (root "
     "of the mean square distance from the centre), at zero. Model error: the change with one orbit less. So the "
     "basin of the equilibrium shrinks to nothing there.",
     basis="reference",
@@ -80,7 +80,7 @@ def weak_damping() -> Measured:
     swept=("friction_force",),
 )
 def merges() -> Measured:
-    """Extrapolate the load of the last orbits to one of no size."""
+    """Extrapolate the friction force of the last orbits to one of no size."""
     load = np.array([orbit.system.friction_force for orbit in orbits()])
     square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in orbits()])
     near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import TIGHTEST, Measurement, refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.searches import extrapolated, with_tolerance
@@ -16,10 +16,9 @@ from compare.studies.disc.fig09.claims.study import STUDY
 from compare.studies.disc.fig09.parameters import (
     HALVED_OFFSETS,
     OFFSET_LOAD,
+    ORBIT_TOLERANCE,
     ORBITS,
-    REFERENCE_TOLERANCE,
     RING,
-    SHOOTING,
 )
 from compare.studies.disc.fig09.theory import circle_of, extent, first_order_shift, orbit_of_reference
 from compare.studies.toolkit.self_centred import with_load
@@ -38,16 +37,16 @@ EXTRAPOLATED = (
     kind="trajectory",
     unit="s, m, rad/s",
     resolution=1e-6,
-    note="The second of the two at the same load is the unstable one. Found by shooting with the engine; predicted: "
-    f"the reference at tolerance {REFERENCE_TOLERANCE:g}.",
+    note="The second of the two at the same μN is the unstable one. Found by shooting with the engine; predicted: "
+    f"the reference at tolerance {TIGHTEST:g}.",
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Measured:
-    """Compare the engine's periodic orbits, by load in N and number, with those of the reference."""
+    """Compare the engine's periodic orbits, by μN in N and number, with those of the reference."""
     exact = [orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
-        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls], SHOOTING
+        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls], ORBIT_TOLERANCE
     )
     # The multiplier of a shift in time is 1; the one next to it tells by how much an error of the flow is amplified.
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
@@ -83,7 +82,7 @@ def parts(engine: Engine) -> Measurement:
         whirls = [orbit_of(engine, OFFSET_LOAD, 0, tolerance, offset) for offset in HALVED_OFFSETS]
         return np.array([(*orbit.mean, *circle_in(orbit)) for orbit in whirls])
 
-    return refined(found, SHOOTING, alike=False)
+    return refined(found, ORBIT_TOLERANCE, alike=False)
 
 
 def circle_in(orbit: Orbit) -> tuple[float, float]:

@@ -17,9 +17,9 @@ from compare.studies.disc.fig09.parameters import (
     DECAY,
     DISPLACED,
     GROWTHS,
+    ORBIT_TOLERANCE,
     REST_LOADS,
     RING,
-    SHOOTING,
 )
 from compare.studies.disc.fig09.theory import circle_of, rest_of
 from compare.studies.toolkit.self_centred import with_load
@@ -56,7 +56,7 @@ def rests(engine: Engine, loads: Sequence[float] = REST_LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "Small deviations from the equilibrium decay at a small load and grow at larger ones, as its eigenvalues say",
+    "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues say",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,
@@ -120,8 +120,8 @@ def _growth(
             ]
         )
 
-    found = refined(rates, SHOOTING)
+    found = refined(rates, ORBIT_TOLERANCE)
     # Two flows may be the same to within the tolerance: an error of the deviation of that size.
-    unseen = [[SHOOTING / (DISPLACED * duration)] for _, _, duration in motions]
-    with_larger = found.plus(np.abs(rates(SHOOTING, 2.0) - found.value))
+    unseen = [[ORBIT_TOLERANCE / (DISPLACED * duration)] for _, _, duration in motions]
+    with_larger = found.plus(np.abs(rates(ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import Measurement, refined
 from compare.engines import Engine
-from compare.studies.disc.fig09.parameters import CIRCLES, SHOOTING
+from compare.studies.disc.fig09.parameters import CIRCLES, ORBIT_TOLERANCE
 from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, rest_of
 from compare.studies.toolkit.self_centred import with_load
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion
@@ -21,7 +21,9 @@ from reference_model.systems import DiscOnDisc, FloatArray
 @functools.lru_cache(maxsize=4)
 def circles_of(engine: Engine, disc: DiscOnDisc) -> Measurement:
     """Return mean radius, frequency and spin of ``CIRCLES`` in units of μN/(βk), k and ω, shape (n, 3)."""
-    found = refined(lambda tolerance: [circle(engine, disc, *one, tolerance) for one in CIRCLES], SHOOTING)
+    found = refined(
+        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in CIRCLES], ORBIT_TOLERANCE
+    )
     return with_tolerance(found, [sharpness(disc, circle_of(*one)) for one in CIRCLES])
 
 
@@ -41,12 +43,14 @@ def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance:
 
 def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
     """Return the means of x, y and spin at rest in units of X0 and ω, shape (n, 3)."""
-    found = refined(lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], SHOOTING)
+    found = refined(
+        lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], ORBIT_TOLERANCE
+    )
     return with_tolerance(found, [sharpness(disc, rest_of(load)) for load in loads])
 
 
 def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
-    """Return the same at one load, no numbers where no rest comes back."""
+    """Return the same at one friction force, no numbers where no rest comes back."""
     motion = steady_motion(engine, with_load(disc, load), rest_of(load).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
@@ -59,7 +63,7 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     One number alone may be right by chance, and two flows may be the same to within the tolerance, which the motion
     shows ``amplified``.
     """
-    return Measurement(found.value, found.rows + SHOOTING * np.asarray(amplified)[:, np.newaxis])
+    return Measurement(found.value, found.rows + ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis])
 
 
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:

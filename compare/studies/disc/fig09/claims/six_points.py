@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import TIGHTEST, refined
 from compare.claims.linearised_flow import rotated
 from compare.claims.measured import Measured
 from compare.engines import Engine
@@ -18,13 +18,12 @@ from compare.studies.disc.fig09.parameters import (
     CENTRED,
     CIRCLES,
     OUTSIDE,
-    REFERENCE_TOLERANCE,
     REST_LOADS,
     RING,
     SOURCE_CENTRED,
     STICK_LOADS,
     TOLERANCE,
-    on_six,
+    on_six_points,
 )
 from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, stuck_at
 from compare.studies.toolkit.self_centred import with_load
@@ -33,7 +32,7 @@ from reference_model.systems import FloatArray
 
 REFERENCE = Engine("reference", simulate, ("points",))
 
-BY_REFERENCE = f"Predicted by the reference at tolerance {REFERENCE_TOLERANCE:g}."
+BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
 
 @STUDY.claim(
@@ -46,7 +45,7 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {REFERENCE_TOLERANCE:g}
 )
 def six_circles(engine: Engine) -> Measured:
     """Compare the whirls on six points with those of the reference."""
-    found = circles_of(engine, on_six(CENTRED))
+    found = circles_of(engine, on_six_points(CENTRED))
     predicted = np.array([_circle_of_reference(*one) for one in CIRCLES])
     beside = np.abs(predicted[:, 0] - [circle_of(*one).radius / radius_of_pin(one[0]) for one in CIRCLES])
     loads = [load for load, _ in CIRCLES]
@@ -56,7 +55,7 @@ def six_circles(engine: Engine) -> Measured:
         error=found.error,
         at={"μN in N": loads},
         components=("radius", "frequency", "spin"),
-        system=on_six(CENTRED),
+        system=on_six_points(CENTRED),
         source=SOURCE_CENTRED,
         note=f"In radius it differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
         "1e-9 from 0.001 N on: slip is along the circle then, at all points.",
@@ -66,7 +65,7 @@ def six_circles(engine: Engine) -> Measured:
 
 @functools.cache
 def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
-    return tuple(circle(REFERENCE, on_six(CENTRED), load, which, REFERENCE_TOLERANCE))
+    return tuple(circle(REFERENCE, on_six_points(CENTRED), load, which, TIGHTEST))
 
 
 @STUDY.claim(
@@ -80,21 +79,21 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
 )
 def six_rests(engine: Engine, loads: Sequence[float] = REST_LOADS) -> Measured:
     """Compare the motions about the equilibrium on six points with those of the reference."""
-    found = rests_of(engine, on_six(RING), loads)
+    found = rests_of(engine, on_six_points(RING), loads)
     return Measured(
         predicted=[_rest_of_reference(load) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
-        system=on_six(RING),
+        system=on_six_points(RING),
         data={"rest load": loads, "six rest": found.value},
     )
 
 
 @functools.cache
 def _rest_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(rest(REFERENCE, on_six(RING), load, REFERENCE_TOLERANCE))
+    return tuple(rest(REFERENCE, on_six_points(RING), load, TIGHTEST))
 
 
 @STUDY.claim(
@@ -116,14 +115,14 @@ def six_releases(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measur
         error=found.rows,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
-        system=on_six(RING),
+        system=on_six_points(RING),
         note=f"By then the disc has slipped by {', '.join(f'{math.hypot(*one[:2]):.2g}' for one in predicted)} of "
         "the radius.",
     )
 
 
 def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
-    disc = on_six(with_load(RING, load))
+    disc = on_six_points(with_load(RING, load))
     start, release = stuck_at(disc, OUTSIDE[-1])
     end = 1.5 * release
     run = engine.simulate(disc, start, [0.0, end], tolerance=tolerance)
@@ -133,4 +132,4 @@ def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
 
 @functools.cache
 def _slipped_in_reference(load: float) -> tuple[float, ...]:
-    return tuple(_slipped(REFERENCE, load, REFERENCE_TOLERANCE))
+    return tuple(_slipped(REFERENCE, load, TIGHTEST))

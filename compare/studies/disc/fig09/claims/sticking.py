@@ -112,7 +112,7 @@ def releases(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measured:
     "all the time, for ten.",
 )
 def coexist(engine: Engine) -> Measured:
-    """See whether for the largest load a disc sticks for a revolution and whirls without sticking."""
+    """See whether for the largest friction force a disc sticks for a revolution and whirls without sticking."""
     load = STICK_LOADS[-1]
     start, _ = stuck_at(with_load(RING, load), 0.5)
     orbit = orbit_of_reference(load, 0)

@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import WORKING, Measurement, refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig11.claims.study import STUDY
@@ -23,7 +23,7 @@ NOTE = (
 
 
 @STUDY.claim(
-    "Period of the modulation on the continuous ring, and the turn about the axis within it",
+    "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s, rad",
@@ -39,12 +39,12 @@ def period_and_turn(engine: Engine) -> Measured:
         value=found.value[:2],
         error=found.error[:2],
         components=("period", "turn"),
-        data={"the continuous ring": _run(engine, 1e-9).states},
+        data={"the continuous ring": _run(engine, WORKING).states},
     )
 
 
 @STUDY.claim(
-    "Least and greatest radius and spin of the modulated cycle on the continuous ring",
+    "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",
@@ -66,7 +66,7 @@ def extremes(engine: Engine) -> Measured:
 def modulation(engine: Engine) -> Measurement:
     """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
     found = refined(lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], alike=False)
-    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, 1e-9).states)[1]
+    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, WORKING).states)[1]
     return Measurement(found.value, np.nan_to_num(error, nan=np.inf))
 
 

@@ -50,7 +50,7 @@ def points_rest(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Least and greatest radius and spin of the modulated motion on six points within 300 s",
+    "Within 300 s the motion on six points has the least and greatest radius and spin that the reference gives",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",

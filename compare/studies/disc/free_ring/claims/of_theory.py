@@ -32,7 +32,7 @@ def ratio_exists() -> Measured:
 
 
 @STUDY.claim(
-    "The same balance on the whole face of a uniform disc is the published ratio",
+    "On the whole face of a uniform disc the balance of both decelerations gives the published ratio",
     equation="(20)",
     resolution=1e-3,
     note="Sliding over rim speed in the end, by the mean of the closed form of (20) over all radii; J = mR²/2. Model "

@@ -118,7 +118,7 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
 
 
 @STUDY.claim(
-    "Their ratio comes to 1 like exp(−A/t) with the remaining time t, faster than any power",
+    "With J = mR² the ratio of both speeds comes to 1 like exp(−A/t) with the remaining time t",
     equation="(19), (20)",
     unit="s",
     note="A = t·(ln(8/|ln U/W|) − 2). Predicted by the integrals over the ratio. Error: the tolerance of both "

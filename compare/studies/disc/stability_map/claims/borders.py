@@ -108,7 +108,7 @@ def folds() -> Measured:
     equation=BOTH_LAWS,
     unit="N",
     resolution=1e-3 * DISC.friction_force,
-    note="Loads of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
+    note="μN of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
     "determinant over the ratio U : W. Error: the change with points at twice the distance.",
     swept=("friction_force",),
 )
@@ -133,12 +133,12 @@ def crosses_line() -> Measured:
     equation=BOTH_LAWS,
     unit="N",
     resolution=1e-9 * DISC.friction_force,
-    note="By the root of the largest real part over the load; the ring and (23) have the same onset. Error: rounding "
+    note="By the root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
     "of the eigenvalues.",
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    """Compare the load at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
+    """Compare μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
         for speed in ONSET_SPEEDS:

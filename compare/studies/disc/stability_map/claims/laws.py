@@ -62,10 +62,10 @@ def _side(law: str, sign: float) -> Measured:
 
 
 @STUDY.claim(
-    "A pin has no such border: its whirl is stable for all damping wherever ω > k",
+    "A pin's whirl has no Hopf curve: it is stable for all damping wherever ω > k",
     equation="(16)",
     note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / K:g} and β from "
-    f"{LOW:g} to {HIGH:g} N s/m; the load and the torsion do not matter.",
+    f"{LOW:g} to {HIGH:g} N s/m; μN and the torsion do not matter.",
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:

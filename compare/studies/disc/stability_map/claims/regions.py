@@ -104,7 +104,7 @@ def ends_by_plane(starts: Sequence[Start], ends: Sequence[str]) -> Data:
 
 
 def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
-    """Return load in N, smallest and largest radius in m after a long time, shape (n, 3)."""
+    """Return friction force in N, smallest and largest radius in m after a long time, shape (n, 3)."""
     starts = [Start(at(friction_force=load), ON_CYCLE, "") for load in loads]
     return np.array(
         [(load, *kind_of_end(engine.simulate, start)[1:]) for load, start in zip(loads, starts, strict=True)]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import COARSENING, Measurement, change_as_error
+from compare.claims.error_estimates import COARSENING, WORKING, Measurement, change_as_error
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.claims.study import STUDY
@@ -26,7 +26,6 @@ from compare.studies.drivetrain.frozen.parameters import (
     SEEN,
     SLIPPING,
     START,
-    TOLERANCE,
     TORQUE,
     balanced_car,
 )
@@ -196,7 +195,7 @@ def _settled(
         shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)
         return motion.times, np.column_stack((*shape, motion.slip))
 
-    (times, found), (_, finer) = run(TOLERANCE), run(TOLERANCE / COARSENING)
+    (times, found), (_, finer) = run(WORKING), run(WORKING / COARSENING)
     delay = SEEN / rate
     earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
     rest = remaining_transient(earlier, found[-1], rate, delay)

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import matrix_balance
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, refined
+from compare.claims.error_estimates import COARSENING, ROUNDING, WORKING, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.claims.measured import Measured
 from compare.engines import Engine
@@ -33,7 +33,6 @@ from compare.studies.drivetrain.frozen.parameters import (
     PUSH,
     ROUGHER,
     TIME,
-    TOLERANCE,
     UNTIL,
     WHIRLS,
 )
@@ -168,11 +167,11 @@ def growth(engine: Engine) -> Measured:
         start, end = (runs[0] - runs[1]) @ mode
         return complex(np.log(end / start) / TIME)
 
-    found = refined(lambda tolerance: real_and_imaginary(grown(DEVIATION, tolerance)), TOLERANCE)
+    found = refined(lambda tolerance: real_and_imaginary(grown(DEVIATION, tolerance)), WORKING)
     return Measured(
         predicted=real_and_imaginary(predicted),
         value=found.value,
-        error=np.hypot(*found.error) + abs(grown(2.0 * DEVIATION, TOLERANCE) - complex(*found.value)),
+        error=np.hypot(*found.error) + abs(grown(2.0 * DEVIATION, WORKING) - complex(*found.value)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
         parameters=parameters_of(car, speed=MODULATED[0], torque=whirl.torque, surplus=MODULATED[2]),
@@ -205,7 +204,7 @@ def balance(engine: Engine, until: float = UNTIL) -> Measured:
     whirl = whirls_of(car)[0]
     motions = [
         build(car, whirl, deviation=PUSH).run(until, sample_every=CYCLE_SAMPLE, tolerance=tolerance)
-        for tolerance in (ROUGHER * TOLERANCE, ROUGHER * TOLERANCE / COARSENING)
+        for tolerance in (ROUGHER * WORKING, ROUGHER * WORKING / COARSENING)
     ]
     measured = balance_of(
         [motion.energy for motion in motions],

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import TIGHTEST, WORKING, Measurement, refined
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured
 from compare.engines import Engine
@@ -79,7 +79,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 
 @STUDY.claim(
-    "A pin that starts beside it settles on a whirl with the radius μN/(βk) where ω > k",
+    "A pin that starts beside the whirl comes to its radius μN/(βk) where ω > k",
     equation="(11)",
     unit="m",
     resolution=1e-9 * whirl_radius(PIN),
@@ -98,7 +98,7 @@ def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
 
 @STUDY.claim(
-    "A pin that starts beside it settles on a whirl with the frequency k where ω > k",
+    "A pin that starts beside the whirl comes to its frequency k where ω > k",
     equation="(11)",
     unit="rad/s",
     resolution=1e-9 * K,
@@ -141,8 +141,8 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
             found.append(moment / (pin.friction_force * state[0]))
         return np.array(found)
 
-    found = refined(functools.partial(rates_of, INTERVAL), 1e-11)
-    wide = np.abs(rates_of(2.0 * INTERVAL, 1e-11) - found.value)
+    found = refined(functools.partial(rates_of, INTERVAL), 10.0 * TIGHTEST)
+    wide = np.abs(rates_of(2.0 * INTERVAL, 10.0 * TIGHTEST) - found.value)
     rounding = 8.0 * np.finfo(float).eps * PIN.mass * K / (PIN.damping * INTERVAL)
     return Measured(
         predicted=[0.0 if speed > K else -2.0 for speed in starts],
@@ -261,8 +261,8 @@ def history(engine: Engine) -> Measured | None:
         )
         return np.asarray((outwards - inwards) / (2.0 * amplitude * circle))
 
-    found = refined(functools.partial(deviation, DEVIATION), 1e-10)
-    nonlinear = np.abs(deviation(2.0 * DEVIATION, 1e-10) - found.value)
+    found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
+    nonlinear = np.abs(deviation(2.0 * DEVIATION, WORKING / 10) - found.value)
     return Measured(
         predicted=linear_deviation(DEVIATION_TIMES),
         value=found.value,

@@ -1,0 +1,40 @@
+"""Slip by the plain equations, integrated to rounding: what the tests of all engines hold their motions against."""
+
+import math
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from reference_model import plain
+from reference_model.contact.contact_law import contact_of
+
+
+def slide(system, start, times, friction=None, **options):
+    """Return SciPy's solution of (1) or (19) from ``times[0]`` to ``times[-1]``, with states at ``times``.
+
+    Friction is by the law of the system's contact, of the form of :func:`reference_model.plain.on_ring` otherwise.
+    """
+    law = friction or plain.by_law(system.friction_force, contact_of(system))
+    options = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-15, "t_eval": times} | options
+    run = solve_ivp(lambda _, state: plain.rates(system, law, state), (times[0], times[-1]), start, **options)
+    assert run.status >= 0, run.message
+    return run
+
+
+def slide_past_stop(pin, start, times):
+    """Return the states at ``times``: each ends a run, and so does the stop where it begins or ends to act."""
+
+    def beyond(_, state):
+        return math.hypot(state[0] - pin.offset, state[1]) - pin.stop_gap
+
+    beyond.terminal = True
+    found, t, state = [np.array(start)], times[0], np.array(start)
+    for end in times[1:]:
+        while t < end:
+            run = slide(pin, state, (t, end), events=beyond, t_eval=None)
+            t, state = run.t[-1], run.y[:, -1]
+            if t < end:  # away from the edge, that it is not found once more
+                run = slide(pin, state, (t, min(t + 1e-6, end)), t_eval=None)
+                t, state = run.t[-1], run.y[:, -1]
+        found.append(state)
+    return np.array(found)
