@@ -91,6 +91,8 @@ class TestFig09(StudyTests):
     )
     def test_the_quick_claims_hold_in_exudyn(self, name, claim):
         few = self.few | {"orbits": {"whirls": ((0.0015, 1),)}}
+        if name == "exudyn-native":  # at the usual tolerance its creep takes it minutes
+            few |= {"six_releases": self.few["six_releases"] | {"tolerance": 3e-6}}
         (found,) = STUDY.measure(engine_named(name), few, only=(claim,)).claims
         assert found.verdict is Verdict.AGREES
 
@@ -99,7 +101,7 @@ class TestFig09(StudyTests):
         assert [claim.verdict for claim in found] == [Verdict.DIFFERS] * 2
 
     def test_an_engine_of_points_only_measures_the_rows_of_six_points(self):
-        found = STUDY.measure(Engine("points", simulate, ("points",)), self.few)
+        found = STUDY.measure(replace(engine_named("reference"), name="points", kinds=("points",)), self.few)
         assert [claim.identity for claim in found.claims] == [
             "fig09/six-circles",
             "fig09/six-rests",
