@@ -45,7 +45,10 @@ def states_of(z):
 class TestFig11(StudyTests):
     study = STUDY
     sound = ("reference",)
-    few = {"ends": {"offsets": (0.006, 0.009, 0.022)}}  # on all three sides of the critical ones
+    few = {
+        "ends": {"offsets": (0.006, 0.009, 0.022)},  # on all three sides of the critical ones
+        "curves": {"whirling": (0.0, 0.005, 0.01, 0.015)},
+    }
     faults = {
         "friction 0.1 % off": changed("friction", ("ring",), factors={"friction_force": 1.001}),
         "no offset": changed("no offset", ("ring",), offset=0.0),
