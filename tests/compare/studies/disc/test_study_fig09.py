@@ -11,7 +11,7 @@ from compare.claims.claim import Verdict
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.claims import STUDY, of_theory
-from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
+from compare.studies.disc.fig09.parameters import LARGEST_LOAD, OFFSETS, RING
 from compare.studies.toolkit.self_centred import last_load
 from reference_model import simulate
 from reference_model.contact.contact_law import Ring, Shares, Slopes
@@ -53,6 +53,7 @@ class TestFig09(StudyTests):
         "releases": {"loads": (0.2,)},
         "six_rests": {"loads": (0.05,)},
         "six_releases": {"loads": (0.2,)},
+        "curves": {"offsets": tuple(OFFSETS[::8]), "fold_offsets": (0.06, 0.15)},
     }
     faults = {
         "friction 0.1 % off": altered(friction_force=1.001),
