@@ -1,10 +1,12 @@
 """The plugin as a stranger meets it: pytest in a folder of its own, on the installed package."""
 
+import io
 import os
 import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
 from processes import PATIENCE, ROOT
@@ -49,26 +51,45 @@ CLAIMS = {study.name: list(study.sentences()) for study in STUDIES if study.only
 
 
 def run(folder, *arguments):
-    """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}."""
+    """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}.
+
+    In this process: pytest and the package take longer to start than most of what is asked here.
+    """
+    output = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
+        patch.chdir(folder)
+        status = pytest.main([*OPTIONS, "-p", "no:xdist", "-p", "no:faulthandler", *arguments])
+    return status, output.getvalue(), cases_in(folder)
+
+
+def run_by_itself(folder, *arguments):
+    """Do the same in a process of its own."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--junit-xml=out.xml", *arguments],
+        [sys.executable, "-m", "pytest", *OPTIONS, *arguments],
         cwd=folder,
         env=environment,
         capture_output=True,
         encoding="utf-8",
         timeout=PATIENCE,
     )
+    return done.returncode, done.stdout + done.stderr, cases_in(folder)
+
+
+OPTIONS = ("-p", "no:cacheprovider", "--junit-xml=out.xml")
+
+
+def cases_in(folder):
     cases = {}
     if (folder / "out.xml").exists():
         for case in ET.parse(folder / "out.xml").iter("testcase"):
             verdict = next((child for child in case if child.tag in ("failure", "error", "skipped")), None)
             text = "" if verdict is None else f"{verdict.get('message')} {verdict.text}"
             cases[case.get("name")] = ("passed" if verdict is None else verdict.tag, text)
-    return done.returncode, done.stdout + done.stderr, cases
+    return cases
 
 
-def judge(folder, study, *names, options=()):
+def judge(folder, study, *names, options=(), run=run):
     (folder / "mine.py").write_text(ENGINES)
     chosen = [argument for name in names for argument in ("--engine", name)]
     return run(folder, "--pyargs", "compare", "--study", study, *chosen, *options)
@@ -147,7 +168,9 @@ def of_pins_that_slide(claim):
 
 
 def test_an_engine_is_judged_on_what_it_promises_on_several_cores_too(tmp_path):
-    status, output, cases = judge(tmp_path, "trajectories", "mine:sliding", options=("-n", "2"))
+    status, output, cases = judge(
+        tmp_path, "trajectories", "mine:sliding", options=("-n", "2"), run=run_by_itself
+    )
     assert status == 0
     assert set(cases) == set(CLAIMS["trajectories"])
     for claim, (tag, _) in cases.items():
@@ -246,6 +269,6 @@ def test_the_tests_of_others_do_not_notice_the_plugin(file, named, tmp_path):
         "    assert not {'reference_model', 'compare.engines'} & set(sys.modules)\n"
     )
     options = ("--engine", "diesel", "-p", "no:hypothesispytest", "-o", "pythonpath=.")
-    status, output, _ = run(tmp_path, *named, *options)
+    status, output, _ = run_by_itself(tmp_path, *named, *options)
     assert status == 0, output
     assert "1 passed" in output

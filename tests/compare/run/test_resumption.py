@@ -67,8 +67,6 @@ def module(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
     def forget():
-        for known in (code_files._installed, code_files._installed_packages, code_files._distributions):
-            known.cache_clear()
         for name in list(sys.modules):
             where = (getattr(sys.modules[name], kind, "") for kind in ("__file__", "__path__"))
             if any(str(folder) in str(one) for one in where):
@@ -85,6 +83,18 @@ def module(tmp_path, monkeypatch):
         return importlib.import_module(next(iter(sources)).replace("__", "."))
 
     yield of
+    forget()
+
+
+@pytest.fixture
+def look_anew():
+    """Let what is installed be looked for anew, which takes longer than all else here."""
+
+    def forget():
+        for known in (code_files._installed, code_files._installed_packages, code_files._distributions):
+            known.cache_clear()
+
+    yield forget
     forget()
 
 
@@ -210,7 +220,7 @@ def test_an_engine_is_measured_anew_when_a_compiled_extension_changes(module, fo
 
 @pytest.mark.parametrize("editable", [False, True])
 def test_an_engine_is_measured_anew_when_what_is_installed_changes(
-    editable, module, found, tmp_path, monkeypatch
+    editable, module, found, look_anew, tmp_path, monkeypatch
 ):
     """Though its version stays the same; a distribution that is installed requires what changes."""
     site = tmp_path / "site-packages"
@@ -236,6 +246,7 @@ def test_an_engine_is_measured_anew_when_what_is_installed_changes(
         }
         for path, text in files.items():
             path.write_text(text)
+        look_anew()
         mine = module(mine=f"{HEAD}import first\n{ENGINE.format(factor=1.0)}")
         assert found(Engine("mine", mine.simulate)) == (1.0, anew, "")
 

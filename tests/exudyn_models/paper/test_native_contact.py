@@ -223,7 +223,7 @@ def test_resting_points_of_a_disc_creep_as_an_integrator_for_stiff_equations_has
 def test_a_disc_thrown_on_a_table_pivots_and_comes_to_rest_with_errors_of_first_order():
     exact = reference_model.simulate(TABLE_DISC, THROWN, [0.0, 5.0], tolerance=1e-11)
     errors = []
-    for tolerance in TOLERANCES[:4]:
+    for tolerance in TOLERANCES[:3]:
         found = simulate_with_native_contact(TABLE_DISC, THROWN, [0.0, 5.0], tolerance=tolerance)
         assert [phase.kind for phase in found.phases] == ["slip", "pivot", "stick"]
         assert [phase.kind for phase in exact.phases] == ["slip", "pivot", "stick"]

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
@@ -181,9 +182,9 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 # ---------------------------------------------------------------- curves
 
 
-def curves() -> Data:
-    """Return the branches of all motions over the friction force, and over the offset where they end."""
-    return circles() | smooth(orbits()) | rests() | sticking() | ends()
+def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
+    """Return the branches of all motions over μN, and where they end over X0: the whirl at ``fold_offsets``."""
+    return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
@@ -267,13 +268,13 @@ def sticking() -> Data:
     }
 
 
-def ends() -> Data:
+def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     """Return over the offset where equilibrium and whirl end, and where the equilibrium loses its stability."""
-    discs = [replace(RING, offset=float(offset)) for offset in OFFSETS]
+    discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
-    folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in FOLD_OFFSETS]
+    folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]
     return {
-        "offset": OFFSETS,
+        "offset": offsets,
         "last load": np.array([last_load(disc) for disc in discs]),
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
@@ -299,8 +300,8 @@ def extents(run: Trajectory, last: int = 0) -> list[float]:
 # ---------------------------------------------------------------- what the figures show
 
 
-def curves() -> Data:
-    """Return eigenvalues and cycle of Fig. 11, and the branches of whirl and equilibrium over the offset."""
+def curves(whirling: ArrayLike = BRANCH) -> Data:
+    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset: of whirls at ``whirling`` in m."""
     whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
     return {
         "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in whirls_of]),
@@ -308,21 +309,21 @@ def curves() -> Data:
         "modulation": predicted_modulation()[0],
         "cycle": integrated(RING, START, UNTIL, len(TIMES), 1e-12),
         "(23)": simulate(RING, START, TIMES, tolerance=1e-8, contact=EXPANSION).states,
-        **branches(),
+        **branches(whirling),
     }
 
 
-def branches() -> Data:
-    """Follow whirl and equilibrium over X0."""
+def branches(whirling: ArrayLike) -> Data:
+    """Follow whirl and equilibrium over X0; the critical X0 is added."""
     orbits: list[Orbit] = []
-    whirling = np.sort([*BRANCH, critical_offset_of_reference()])
-    for offset in whirling:
+    offsets = np.sort(np.append(whirling, critical_offset_of_reference()))
+    for offset in offsets:
         guess = orbits[-1].from_the_right() if orbits else None
         orbits.append(whirl_orbit(disc_at(float(offset)), guess=guess, tolerance=1e-9, samples=64))
     resting = np.sort([*np.linspace(0.0005, 0.025, 50), rest_offset()])
     rest = [self_centred_equilibria(disc_at(float(offset)))[0] for offset in resting]
     return {
-        "whirl: offset": whirling,
+        "whirl: offset": offsets,
         "whirl: extents": np.array([extents(orbit.trajectory) for orbit in orbits]),
         "rest: offset": resting,
         "rest: place": np.array([(math.hypot(state.x, state.y), state.spin) for state in rest]),

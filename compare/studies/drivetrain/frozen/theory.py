@@ -185,15 +185,16 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
     return [whirl for whirl in found if whirl is not None]
 
 
-def curves() -> Data:
-    """Return the lines of the steady motions, and where whirls are modulated."""
-    return _lines_of_reference(balanced_car()) | _maps_of_modulation(centred_car())
+def curves(every: int = 1) -> Data:
+    """Return the lines of the steady motions, and where whirls are modulated; of all places one in ``every``."""
+    return _lines_of_reference(balanced_car(), every) | _maps_of_modulation(centred_car(), every)
 
 
-def _lines_of_reference(car: Drivetrain) -> Data:
+def _lines_of_reference(car: Drivetrain, every: int) -> Data:
     """Return the reference's x, y at rest and radius, frequency of a whirl over the speed in turns a minute."""
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
-    slow, fast = np.linspace(300.0, onset - 1.0, 40), np.linspace(onset + 5.0, 6200.0, 25)
+    slow = np.linspace(300.0, onset - 1.0, 40)[::every]
+    fast = np.linspace(onset + 5.0, 6200.0, 25)[::every]
     rests = [rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
     circles = [whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
     return {
@@ -205,19 +206,18 @@ def _lines_of_reference(car: Drivetrain) -> Data:
     }
 
 
-def _maps_of_modulation(car: Drivetrain) -> Data:
+def _maps_of_modulation(car: Drivetrain, every: int) -> Data:
     """Return growth rates in 1/s of the modulation over (torque, speed) and over (torque, surplus).
 
     NaN where no whirl keeps the clutch from locking up. The radius in m, too, which tells whether it is on the stop.
     """
-    over_speed = np.array([[whirl_growth(car, n, t, SURPLUS) for n in SPEEDS] for t in TORQUES])
-    over_surplus = np.array([[whirl_growth(car, SPEED, t, s) for s in SURPLUSES] for t in TORQUES])
+    speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
     return {
-        "speeds": SPEEDS,
-        "torques": TORQUES,
-        "surpluses": SURPLUSES,
-        "over speed": over_speed,
-        "over surplus": over_surplus,
+        "speeds": speeds,
+        "torques": torques,
+        "surpluses": surpluses,
+        "over speed": np.array([[whirl_growth(car, n, t, SURPLUS) for n in speeds] for t in torques]),
+        "over surplus": np.array([[whirl_growth(car, SPEED, t, s) for s in surpluses] for t in torques]),
     }
 
 

@@ -11,7 +11,7 @@ from compare.claims.claim import Verdict
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.claims import STUDY, of_theory
-from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
+from compare.studies.disc.fig09.parameters import LARGEST_LOAD, OFFSETS, RING
 from compare.studies.toolkit.self_centred import last_load
 from reference_model import simulate
 from reference_model.contact.contact_law import Ring, Shares, Slopes
@@ -53,6 +53,7 @@ class TestFig09(StudyTests):
         "releases": {"loads": (0.2,)},
         "six_rests": {"loads": (0.05,)},
         "six_releases": {"loads": (0.2,)},
+        "curves": {"offsets": tuple(OFFSETS[::8]), "fold_offsets": (0.06, 0.15)},
     }
     faults = {
         "friction 0.1 % off": altered(friction_force=1.001),
@@ -91,6 +92,8 @@ class TestFig09(StudyTests):
     )
     def test_the_quick_claims_hold_in_exudyn(self, name, claim):
         few = self.few | {"orbits": {"whirls": ((0.0015, 1),)}}
+        if name == "exudyn-native":  # at the usual tolerance its creep takes it minutes
+            few |= {"six_releases": self.few["six_releases"] | {"tolerance": 3e-6}}
         (found,) = STUDY.measure(engine_named(name), few, only=(claim,)).claims
         assert found.verdict is Verdict.AGREES
 
@@ -99,7 +102,7 @@ class TestFig09(StudyTests):
         assert [claim.verdict for claim in found] == [Verdict.DIFFERS] * 2
 
     def test_an_engine_of_points_only_measures_the_rows_of_six_points(self):
-        found = STUDY.measure(Engine("points", simulate, ("points",)), self.few)
+        found = STUDY.measure(replace(engine_named("reference"), name="points", kinds=("points",)), self.few)
         assert [claim.identity for claim in found.claims] == [
             "fig09/six-circles",
             "fig09/six-rests",

@@ -45,7 +45,10 @@ def states_of(z):
 class TestFig11(StudyTests):
     study = STUDY
     sound = ("reference",)
-    few = {"ends": {"offsets": (0.006, 0.009, 0.022)}}  # on all three sides of the critical ones
+    few = {
+        "ends": {"offsets": (0.006, 0.009, 0.022)},  # on all three sides of the critical ones
+        "curves": {"whirling": (0.0, 0.005, 0.01, 0.015)},
+    }
     faults = {
         "friction 0.1 % off": changed("friction", ("ring",), factors={"friction_force": 1.001}),
         "no offset": changed("no offset", ("ring",), offset=0.0),
@@ -74,18 +77,23 @@ class TestFig11(StudyTests):
         ("kind", "lacking"), [("ring", "a disc on single points"), ("points", "a disc on a continuous ring")]
     )
     def test_an_engine_of_one_kind_of_contact_is_measured_by_what_it_simulates(self, kind, lacking):
-        engine = Engine(f"exudyn, {kind}", engine_named("exudyn").function, (kind,))
+        engine = replace(engine_named("reference"), name=f"only {kind}", kinds=(kind,))
         findings = STUDY.measure(engine, self.few)
         own = {claim.sentence for claim in self.found("reference").claims if self.kind_of(claim) == kind}
         assert {claim.sentence: claim.verdict for claim in findings.claims} == dict.fromkeys(
             own, Verdict.AGREES
         )
-        assert findings.not_simulated == f"exudyn, {kind} does not simulate {lacking}"
+        assert findings.not_simulated == f"only {kind} does not simulate {lacking}"
         for data in ({kind: findings.data}, {kind: findings.data, "theory": self.found("theory").data}):
             figures = STUDY.draw(data)
             assert set(figures) <= set(STUDY.figures)
             for figure in figures.values():
                 figure.canvas.draw()
+
+    @pytest.mark.parametrize("claim", ["slides", "period_and_turn"])
+    def test_the_quick_claims_hold_in_exudyn(self, claim):
+        found = STUDY.measure(engine_named("exudyn"), only=(claim,)).claims
+        assert {one.verdict for one in found} == {Verdict.AGREES}
 
     @staticmethod
     def kind_of(claim):

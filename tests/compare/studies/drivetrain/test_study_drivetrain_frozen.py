@@ -92,6 +92,7 @@ class TestDrivetrainFrozen(WrongPartTests):
         "frequency": {"above": FAST},
         "slips": {"below": SLOW, "above": FAST},
         "balance": {"until": 0.1},
+        "curves": {"every": 3},
     }
     faults = {
         "stop": bench_with(stop_gap=1.0 + 1e-6),

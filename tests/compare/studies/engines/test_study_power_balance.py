@@ -115,7 +115,7 @@ OF_DISC = {
 class TestPowerBalance(StudyTests):
     study = study.STUDY
     sound = ("reference",)
-    few_of_faults = SHORT
+    few = SHORT
     faults = FAULTS | FAULTS_OF_DISC
     columns = (*(f"pin/{name}" for name in PINS), *(f"disc/{name}" for name in DISCS))
     table = {

@@ -105,9 +105,11 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
     f"after the start as (7) has it for the continuous ring; at {OUTSIDE[-1]:g} of the radius (9). {BY_REFERENCE}",
     swept=("friction_force",),
 )
-def six_releases(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measured:
+def six_releases(
+    engine: Engine, loads: Sequence[float] = STICK_LOADS, tolerance: float = TOLERANCE
+) -> Measured:
     """Compare how far discs outside of the radius (9) have slipped on six points with the reference."""
-    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], TOLERANCE)
+    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], tolerance)
     predicted = [_slipped_in_reference(load) for load in loads]
     return Measured(
         predicted=predicted,
