@@ -24,7 +24,7 @@ from reference_model.systems import FloatArray
 
 def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
     """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
-    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
+    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.surfaces)
     lost = None
     while t < run.end:
         before = t
@@ -96,8 +96,8 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
     relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
-    edges = [edge.seen_by(lambda stretched: unknowns(stretched)[0]) for edge in motion.edges]
-    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, edges)
+    surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
+    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, surfaces)
     t = start
     while True:
         before = t

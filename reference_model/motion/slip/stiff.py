@@ -70,14 +70,14 @@ def slide_stiffly(
     most[-1] = 1.0
     speed = motion.speed(y)
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed)]
-    edges = [edge.seen_by(unknowns) for edge in motion.edges]
+    surfaces = [surface.seen_by(unknowns) for surface in motion.surfaces]
     solver = Stepper(
         run,
         rates,
         initial,
         (start, run.end),
         relative,
-        edges,
+        surfaces,
         (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
     t = start
