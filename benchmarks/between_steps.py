@@ -3,7 +3,7 @@
 Run with ``python benchmarks/between_steps.py [count] [first]``. Each motion is one of ``random_systems``, with a
 damping ratio of 0.1 to 10, for 30 units of time, asked for at 1,001 times. It is compared with the same motion at a
 tolerance smaller by 100. At the time where the two differ most a run is made to end, which has no interpolant there.
-All differences are shares of the size of the motion: of places and speeds, of the angle, and of the spin.
+All differences are shares of the same sizes as in ``random_systems``.
 """
 
 from __future__ import annotations
@@ -14,10 +14,9 @@ import sys
 from dataclasses import replace
 
 import numpy as np
-from random_systems import LONGEST, break_off, random_system
+from random_systems import LONGEST, break_off, random_system, sizes_of
 
-from reference_model import DiscOnDisc, SimulationError, simulate
-from reference_model.motion.nondimensional import Units
+from reference_model import SimulationError, simulate
 from reference_model.systems import FloatArray, System
 
 LASTS, SAMPLES = 30.0, 1001
@@ -30,18 +29,6 @@ def random_motion(seed: int) -> tuple[System, FloatArray]:
     system, state = random_system(seed)
     ratio = 10.0 ** np.random.default_rng([seed, 1]).uniform(-1.0, 1.0)
     return replace(system, damping=2.0 * float(ratio)), state
-
-
-def sizes_of(system: System, states: FloatArray) -> FloatArray:
-    """Return how large places and velocities of a motion are, its angle and its spin apart, shape (4,) or (6,)."""
-    unit, d = Units.of(system, states[0]), system.state_size // 2
-    place, speed = (np.hypot(*states[:, at : at + 2].T).max() for at in (0, d))
-    sizes = np.repeat((max(place, unit.length), max(speed, unit.speed)), d)
-    if isinstance(system, DiscOnDisc):
-        angle, spin = np.max(abs(states[:, [2, 5]]), axis=0)
-        rim = unit.speed / math.sqrt(system.polar_inertia / system.mass)
-        sizes[2], sizes[5] = max(angle, 1.0), max(spin, rim)
-    return sizes
 
 
 def measure(seed: int) -> tuple[float, float]:

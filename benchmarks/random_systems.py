@@ -3,7 +3,8 @@
 Run with ``python benchmarks/random_systems.py [--compiled] [count] [first]``; a thousand take about an hour, compiled
 some minutes. Each motion lasts for 50 natural periods, asked for at 501 times. It is compared with the same motion at
 a tolerance smaller by 100: the difference stands beside that of a motion that starts 1e-9 of its size aside, since
-unstable motions part. ``--compiled`` takes compiled runs in place of plain ones, on linear supports.
+unstable motions part. All are shares of the motion's extent and speed, or of the lengths that ``simulate`` names
+where these are larger. ``--compiled`` takes compiled runs in place of plain ones, on linear supports.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from types import FrameType
 import numpy as np
 
 from reference_model import DiscOnDisc, PinOnDisc, SimulationError, simulate
+from reference_model.motion.nondimensional import Units
 from reference_model.systems import FloatArray, System
 
 PERIODS, SAMPLES = 50, 501
@@ -65,6 +67,18 @@ def random_system(seed: int) -> tuple[System, FloatArray]:
     return disc, state
 
 
+def sizes_of(system: System, states: FloatArray) -> FloatArray:
+    """Return how large places and velocities of a motion are, its angle and its spin apart, shape (4,) or (6,)."""
+    unit, d = Units.of(system, states[0]), system.state_size // 2
+    place, speed = (np.hypot(*states[:, at : at + 2].T).max() for at in (0, d))
+    sizes = np.repeat((max(place, unit.length), max(speed, unit.speed)), d)
+    if isinstance(system, DiscOnDisc):
+        angle, spin = np.max(abs(states[:, [2, 5]]), axis=0)
+        rim = unit.speed / math.sqrt(system.polar_inertia / system.mass)
+        sizes[2], sizes[5] = max(angle, 1.0), max(spin, rim)
+    return sizes
+
+
 def break_off(_: int, frame: FrameType | None) -> None:
     """Raise ``TimeoutError``: the handler of the signal that breaks a run off."""
     raise TimeoutError
@@ -87,16 +101,16 @@ def measure(seed: int, compiled: bool = False) -> tuple[str, float, int, float, 
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
     seconds = time.process_time() - began
-    scale = np.maximum(abs(found.states).max(axis=0), 1e-300)
+    sizes = sizes_of(system, found.states)
     if seconds > 2.0:
         return "done", seconds, found.solution.steps, math.nan, math.nan
     difference = growth = math.nan
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
     try:
         tight = simulate(system, state, times, tolerance=1e-11, compiled=compiled)
-        aside = simulate(system, state + 1e-9 * scale, times, tolerance=1e-9, compiled=compiled)
-        difference = float(np.max(abs(found.states - tight.states) / scale))
-        growth = float(np.max(abs(found.states - aside.states) / scale)) / 1e-9
+        aside = simulate(system, state + 1e-9 * sizes, times, tolerance=1e-9, compiled=compiled)
+        difference = float(np.max(abs(found.states - tight.states) / sizes))
+        growth = float(np.max(abs(found.states - aside.states) / sizes)) / 1e-9
     except (TimeoutError, SimulationError):
         pass
     finally:

@@ -12,10 +12,10 @@ import numpy as np
 from reference_model.contact.contact_law import NONE, IsotropicContact, Ring
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.slip.breakaway import LEAST_SLIP, begin_slip
-from reference_model.motion.slip.coordinates import Coordinates, never, stop_edges
+from reference_model.motion.slip.breakaway import begin_slip
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, never, stop_surfaces
 from reference_model.motion.slip.slide import slide, slide_slowly
-from reference_model.motion.stepper import Edge, Run
+from reference_model.motion.stepper import Run, SwitchingSurface
 from reference_model.motion.stick import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
 from reference_model.systems import FloatArray
 
@@ -205,9 +205,9 @@ class PinBody(Body):
             return wx - omega * y, wy + omega * x, a.real, a.imag
 
         slow = run.thresholds.slow_slip * g
-        edges = stop_edges(motion.support)
+        surfaces = stop_surfaces(motion.support)
         super().__init__(
-            run, Coordinates(rates, rates, 2, lambda _: slow, abs(omega) + 1.0, edges=edges), motion
+            run, Coordinates(rates, rates, 2, lambda _: slow, abs(omega) + 1.0, surfaces=surfaces), motion
         )
 
     def holds_for(self, y: Sequence[float]) -> float:
@@ -259,13 +259,15 @@ class PinBody(Body):
 class DiscBody(Body):
     """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
 
-    def __init__(self, run: Run, motion: DiscMotion, edges: tuple[Edge, ...] = ()) -> None:
-        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``edges``."""
+    def __init__(self, run: Run, motion: DiscMotion, surfaces: tuple[SwitchingSurface, ...] = ()) -> None:
+        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``surfaces``."""
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
-        edges += stop_edges(motion.centre.support)
+        surfaces += stop_surfaces(motion.centre.support)
         many = motion.at_once.rates
-        coordinates = Coordinates(motion.rates, many, 3, lambda _: slow, motion.pace, angle=2, edges=edges)
+        coordinates = Coordinates(
+            motion.rates, many, 3, lambda _: slow, motion.pace, angle=2, surfaces=surfaces
+        )
         super().__init__(run, coordinates, motion.centre)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
@@ -316,7 +318,9 @@ class RingBody(DiscBody):
 
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
         """Take up the disc that moves by ``motion``."""
-        super().__init__(run, motion, (Edge(motion.edge),) if isinstance(contact, Ring) else ())
+        super().__init__(
+            run, motion, (SwitchingSurface(motion.lead_over_rim),) if isinstance(contact, Ring) else ()
+        )
         self.contact = contact
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 

@@ -79,7 +79,7 @@ class DiscMotion:
         """The same for arrays of shape (k,) in place of numbers."""
         return replace(self, contact=cast(Contact, at_once(self.contact)))
 
-    def edge(self, unknowns: Sequence[float]) -> float:
+    def lead_over_rim(self, unknowns: Sequence[float]) -> float:
         """Return U − R|S|: zero where a point of a continuous ring rests and its slopes are infinite."""
         u = self.length * math.hypot(unknowns[3], unknowns[4])
         return u - self.radius * abs(unknowns[5]) / self.gyration

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import NONE, PointsOnRing
 from reference_model.motion.disc_equations import DiscMotion
-from reference_model.motion.slip.coordinates import Coordinates, stop_edges
+from reference_model.motion.slip.coordinates import Coordinates, stop_surfaces
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import FloatArray
 
@@ -115,7 +115,7 @@ class OnePoint:
         def slow_slip(y: Sequence[float]) -> float:
             return min(slow, passing * abs(y[3]))
 
-        edges = stop_edges(self.motion.centre.support)
+        surfaces = stop_surfaces(self.motion.centre.support)
         return Coordinates(
             self.slipping_rates,
             self.at_once.slipping_rates,
@@ -124,13 +124,13 @@ class OnePoint:
             self._pace,
             self._standard,
             angle=2,
-            edges=edges,
+            surfaces=surfaces,
         )
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
         """Return the coordinates of the disc that turns about the point: its only slip is r."""
         slow = thresholds.slow_slip * self.motion.centre.friction
-        edges = stop_edges(self.motion.centre.support)
+        surfaces = stop_surfaces(self.motion.centre.support)
         return Coordinates(
             self.pivoting_rates,
             self.at_once.pivoting_rates,
@@ -140,7 +140,7 @@ class OnePoint:
             self._standard,
             angle=2,
             grip=self.grip,
-            edges=edges,
+            surfaces=surfaces,
         )
 
     @property

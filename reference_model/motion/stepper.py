@@ -30,12 +30,13 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 """A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
 
 
-STABLE = 3.0
-"""Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
+PATIENCE = 40.0
+"""Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay.
 
-PATIENCE = 15
-"""Steps that stability limits before an implicit method is tried; twice as many each time that it does not pay."""
-
+Stability limits a step where its length times the fastest rate of decay is 6, but accuracy may do so at 0.4 already,
+and an implicit one be twenty times as long: only a trial can tell. So a step counts as its length times that rate, up
+to one.
+"""
 
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
@@ -113,7 +114,7 @@ class Run:
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
     steps: int = 0
-    patience: int = PATIENCE
+    patience: float = PATIENCE
     _recorded: int = 0
     _looked_back: float = 0.0
 
@@ -168,7 +169,7 @@ class Run:
             self._recorded = stop
 
 
-class Edge(NamedTuple):
+class SwitchingSurface(NamedTuple):
     """Where the rates are continuous but not smooth.
 
     Parameters
@@ -177,25 +178,25 @@ class Edge(NamedTuple):
         Takes the unknowns and changes sign there.
     trend : callable or None
         Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. If there is
-        one, a step that crosses the edge and comes back is noticed too.
+        one, a step that crosses the surface and comes back is noticed too.
 
     """
 
     value: Callable[[list[float]], float]
     trend: Callable[[list[float], list[float]], float] | None = None
 
-    def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> Edge:
-        """Return the edge for unknowns that ``unknowns`` turns into these; x and y are the first of both."""
-        return Edge(lambda other: self.value(unknowns(other)), self.trend)
+    def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> SwitchingSurface:
+        """Return the surface for unknowns that ``unknowns`` turns into these; x and y are the first of both."""
+        return SwitchingSurface(lambda other: self.value(unknowns(other)), self.trend)
 
 
 class Stepper:
-    """Steps of a Runge–Kutta method, landing on edges where the rates are continuous but not smooth.
+    """Steps of a Runge–Kutta method, landing on surfaces where the rates are continuous but not smooth.
 
     SciPy's explicit one of eighth order, or collocation, which is implicit.
 
-    An error estimate tells little of a step across such an edge, but it can be trusted on either side. So a step that
-    has crossed one is taken back and made to end there.
+    An error estimate tells little of a step across such a surface, but it can be trusted on either side. So a step
+    that has crossed one is taken back and made to end there.
 
     Parameters
     ----------
@@ -209,8 +210,8 @@ class Stepper:
         When to begin and to end.
     relative_tolerance : array of shape (unknowns,)
         Of each unknown; the absolute tolerance is that of the run.
-    edges : sequence of Edge
-        The edges.
+    surfaces : sequence of SwitchingSurface
+        The surfaces.
     implicit : (Scales, float) or None
         For an implicit method, the scales of the unknowns and the first step to try.
 
@@ -223,19 +224,19 @@ class Stepper:
         y: Sequence[float],
         span: tuple[float, float],
         relative_tolerance: FloatArray,
-        edges: Sequence[Edge] = (),
+        surfaces: Sequence[SwitchingSurface] = (),
         implicit: tuple[Scales, float] | None = None,
     ) -> None:
-        self._run, self._edges = run, edges
+        self._run, self._surfaces = run, surfaces
         self._rates: Callable[..., Any] = rates
         self._scales = None if implicit is None else implicit[0]
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._limited = 0  # steps that stability may have limited, less others
+        self._stiff_steps = 0.0
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
-        self._landed: tuple[Edge, float] | None = None  # an edge, and the sign beyond
+        self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond
         self._usual_step = math.inf
         self._start(span[0], np.array(y), self._end, first_step)
 
@@ -260,9 +261,9 @@ class Stepper:
         return isinstance(self._solver, Radau) and self._solver.settled
 
     @property
-    def stiff(self) -> bool:
-        """Whether stability has limited the explicit method for long."""
-        return self._limited >= self._run.patience
+    def tedious(self) -> bool:
+        """Whether the explicit method has followed fast decays for so long that an implicit one is worth a trial."""
+        return self._stiff_steps >= self._run.patience
 
     @property
     def stiffness(self) -> float:
@@ -317,37 +318,37 @@ class Stepper:
         solver = self._solver
         t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
-        self._limited = max(0, self._limited + (1 if self.stiffness > STABLE else -1))
-        if not self._edges or solver.t_bound != self._end:
+        self._stiff_steps += min(self.stiffness, 1.0) if self._scales is None else 0.0
+        if not self._surfaces or solver.t_bound != self._end:
             return
         landed, self._landed = self._landed, None
         crossings = []
-        for edge in self._edges:
-            side = landed[1] if landed is not None and landed[0] is edge else None
-            crossing = self._crossing(edge, side, t, y.tolist(), rates.tolist())
+        for surface in self._surfaces:
+            side = landed[1] if landed is not None and landed[0] is surface else None
+            crossing = self._crossing(surface, side, t, y.tolist(), rates.tolist())
             if crossing is not None and t < crossing[0] < solver.t:
-                crossings.append((*crossing, edge))
+                crossings.append((*crossing, surface))
         if crossings:
-            place, beyond, edge = min(crossings, key=lambda crossing: crossing[0])
-            self._landed = edge, beyond
+            place, beyond, surface = min(crossings, key=lambda crossing: crossing[0])
+            self._landed = surface, beyond
             self._usual_step = float(solver.t - t)
             self._start(t, y, place, place - t)
             self._run.step(self._solver, since)
 
     def _crossing(
-        self, edge: Edge, side: float | None, t: float, y: list[float], rates: list[float]
+        self, surface: SwitchingSurface, side: float | None, t: float, y: list[float], rates: list[float]
     ) -> tuple[float, float] | None:
-        """Return where in the last step, from ``t`` on, an edge was crossed, and the sign of its value beyond.
+        """Return where in the last step, from ``t`` on, a surface was crossed, and the sign of its value beyond.
 
-        ``side`` is the sign at ``t`` if the step began on the edge, where the value is nothing but rounding.
+        ``side`` is the sign at ``t`` if the step began on the surface, where the value is nothing but rounding.
         """
-        on_edge = side is not None
-        if on_edge and edge.trend is None:
+        on_surface = side is not None
+        if on_surface and surface.trend is None:
             return None  # one step on, it is on one side again
         if side is None:
-            side = math.copysign(1.0, edge.value(y))
-        crossed = side * edge.value(self.y.tolist()) < 0.0
-        dips = edge.trend is not None and side * edge.trend(y, rates) < 0.0 < side * edge.trend(
+            side = math.copysign(1.0, surface.value(y))
+        crossed = side * surface.value(self.y.tolist()) < 0.0
+        dips = surface.trend is not None and side * surface.trend(y, rates) < 0.0 < side * surface.trend(
             self.y.tolist(), self.rates.tolist()
         )
         if not crossed and not dips:
@@ -355,11 +356,11 @@ class Stepper:
         dense = self.dense_output()
 
         def inside(tau: float) -> float:
-            return side * edge.value(dense(tau).tolist())
+            return side * surface.value(dense(tau).tolist())
 
         first, last = t, self.t
-        if not crossed or on_edge:
-            sign = -1.0 if crossed else 1.0  # off the edge and back, or towards it and back
+        if not crossed or on_surface:
+            sign = -1.0 if crossed else 1.0  # off the surface and back, or towards it and back
             span = {"bounds": (t, self.t), "method": "bounded", "options": {"xatol": 1e-9 * (last - first)}}
             extreme = float(minimize_scalar(lambda tau: sign * inside(tau), **span).x)
             first, last = (extreme, last) if crossed else (first, extreme)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.motion.stepper import TIGHTEST, Edge, Run, Stepper
+from reference_model.motion.stepper import TIGHTEST, Run, Stepper, SwitchingSurface
 from reference_model.support import Support
 from reference_model.systems import FloatArray
 
@@ -43,7 +43,7 @@ class Coordinates:
         Which unknown is an angle, if one is: it counts by its absolute error.
     grip : callable or None
         How much more could be held of what friction holds in this motion, which ends when that falls to zero.
-    edges : tuple of Edge
+    surfaces : tuple of SwitchingSurface
         Where friction or support are continuous but not smooth.
 
     """
@@ -56,7 +56,7 @@ class Coordinates:
     standard: Callable[[FloatArray], FloatArray] = lambda y: y
     angle: int | None = None
     grip: Callable[[Sequence[float]], float] | None = None
-    edges: tuple[Edge, ...] = ()
+    surfaces: tuple[SwitchingSurface, ...] = ()
 
     def rates_at(self, unknowns: FloatArray) -> FloatArray:
         """Return the rates at many ``unknowns``, shape (unknowns, k)."""
@@ -74,7 +74,7 @@ class Coordinates:
         return result
 
 
-def stop_edges(support: Support) -> tuple[Edge, ...]:
+def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
     """Return where the stop of a support begins, for unknowns of which x and y are the first; none without one."""
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
@@ -85,7 +85,7 @@ def stop_edges(support: Support) -> tuple[Edge, ...]:
     def outward(y: list[float], rates: list[float]) -> float:
         return (y[0] - support.offset) * rates[0] + y[1] * rates[1]
 
-    return (Edge(beyond, outward),)
+    return (SwitchingSurface(beyond, outward),)
 
 
 class Outcome(NamedTuple):
@@ -104,6 +104,9 @@ def never(_: list[float]) -> bool:
     """Leave a description in its own time only."""
     return False
 
+
+LEAST_SLIP = 1e-100
+"""A slip speed that stands for none, but gives friction a direction."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
 """Way that lingering slip may have left, as a share of the local tolerance and in units, for it to count as over."""

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.integrate import DenseOutput
 
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
 from reference_model.motion.stepper import TIGHTEST, Run, Sampler, Stepper
 from reference_model.systems import FloatArray
@@ -24,7 +25,7 @@ from reference_model.systems import FloatArray
 
 def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
     """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
-    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.edges)
+    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.surfaces)
     lost = None
     while t < run.end:
         before = t
@@ -39,7 +40,7 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
         y = solver.y.tolist()
         if (motion.speed(y) < motion.slow(y) and _falling(motion, solver)) or leave(y):
             break
-        if solver.stiff and motion.speed(y) > 0.0:
+        if solver.tedious and motion.speed(y) > 0.0:
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
 
@@ -96,8 +97,9 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
     relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
-    edges = [edge.seen_by(lambda stretched: unknowns(stretched)[0]) for edge in motion.edges]
-    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, edges)
+    surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
+    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, surfaces)
+    landings = Landings(run, motion, leave)
     t = start
     while True:
         before = t
@@ -110,10 +112,10 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         y, _, s = unknowns(ending)
         if lost is not None or t >= run.end or s > 1.2 * motion.slow(y) or leave(y):
             break
-        ended = slip_ends(run, motion, t, y)
+        ended = landings.attempt(t, y) or slip_ends(run, motion, t, y)
         if ended is not None:
             return ended
-        if solver.stiff:
+        if solver.tedious:
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
 

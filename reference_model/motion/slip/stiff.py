@@ -16,7 +16,8 @@ import numpy as np
 from scipy.integrate import DenseOutput
 
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
-from reference_model.motion.stepper import Run, StepError, Stepper
+from reference_model.motion.slip.landing import Landings
+from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
@@ -29,8 +30,11 @@ TIGHTEST_IMPLICIT = 3e-13
 LOOSEST = 0.03
 """The largest error of a step in ln s."""
 
-WORTH = 50.0
-"""Length of a step times the largest rate, from which an implicit step is worth what it costs."""
+WORTH = 8.0
+"""Length of a step times the largest rate, from which an implicit step may be worth what it costs."""
+
+COST = 10.0
+"""Work of an implicit step over that of an explicit one."""
 
 
 def slide_stiffly(
@@ -70,22 +74,23 @@ def slide_stiffly(
     most[-1] = 1.0
     speed = motion.speed(y)
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed)]
-    edges = [edge.seen_by(unknowns) for edge in motion.edges]
+    surfaces = [surface.seen_by(unknowns) for surface in motion.surfaces]
     solver = Stepper(
         run,
         rates,
         initial,
         (start, run.end),
         relative,
-        edges,
+        surfaces,
         (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
-    t = start
+    landings = Landings(run, motion, leave)
+    t, taken, paid = start, run.steps, False
     while t < run.end:
+        before = t
         try:
             solver.step(t)
         except StepError:
-            run.patience *= 2
             break
         lost = grip_lost(motion, solver, unknowns)
         t = solver.t if lost is None else lost
@@ -96,12 +101,14 @@ def slide_stiffly(
             return Outcome(t, y, let_go=True)
         if t >= run.end or leave(y):
             break
-        ended = slip_ends(run, motion, t, y) if motion.slow(y) > 0.0 else None
+        slow = motion.slow(y) > 0.0
+        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
         if ended is not None:
             return ended
-        if solver.settled and solver.stiffness < WORTH:
-            run.patience *= 2
+        paid = t - start > COST * step * (run.steps - taken)
+        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
             break
+    run.patience = PATIENCE if paid else 2 * run.patience
     return Outcome(t, y)
 
 

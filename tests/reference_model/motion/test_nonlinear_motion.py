@@ -135,10 +135,10 @@ def test_every_description_of_a_motion_knows_where_the_stop_begins():
     motion = DiscMotion.of(disc, PointsOnRing(0.12, 3))
     point = OnePoint(motion, PointsOnRing(0.12, 3), 0)
     for coordinates in (point.slipping(Thresholds()), point.pivoting(Thresholds())):
-        (edge,) = coordinates.edges
+        (surface,) = coordinates.surfaces
         unknowns = [0.25, 0.0, 0.3, 0.1, 0.2, 0.1]  # 0.15 m from (0.1, 0)
-        assert edge.value(unknowns) == pytest.approx(0.0, abs=1e-16)
-        assert edge.trend(unknowns, [1.0, -1.0, 0.0, 0.0, 0.0, 0.0]) > 0.0
+        assert surface.value(unknowns) == pytest.approx(0.0, abs=1e-16)
+        assert surface.trend(unknowns, [1.0, -1.0, 0.0, 0.0, 0.0, 0.0]) > 0.0
 
 
 # ---------------------------------------------------------------- stick
