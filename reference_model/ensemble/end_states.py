@@ -29,8 +29,11 @@ class EndState(IntEnum):
     STICK_SLIP = 5
 
 
+UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (int(end) for end in EndState)
+"""As compiled code takes them."""
+
 HANDED_OVER = 255
-"""In place of an end state: compiled code does not follow the motion any further, see :mod:`disc`."""
+"""In place of an end state: compiled code does not follow the motion any further, see :mod:`.disc.driver`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +75,6 @@ class Results(NamedTuple):
     """Where compiled code puts results: arrays (n,), states (n, 4 or 6), measures (n, 3).
 
     The measures are the least and the largest radius in m and the mean slip speed in m/s: power per friction force.
-    ``notes`` is room for those of a single trajectory, flat, see :mod:`notes`; empty where none are asked for.
     """
 
     ends: NDArray[np.uint8]
@@ -80,7 +82,6 @@ class Results(NamedTuple):
     states: FloatArray
     measures: FloatArray
     steps: NDArray[np.int64]
-    notes: FloatArray
 
     def ensemble(self, friction_force: float | FloatArray) -> Ensemble:
         """Return them as Python has them; ``friction_force`` in N, shape () or (n,)."""
@@ -96,5 +97,4 @@ class Results(NamedTuple):
             np.zeros((n, state_size)),
             np.zeros((n, 3)),
             np.zeros(n, dtype=np.int64),
-            np.zeros(0),
         )

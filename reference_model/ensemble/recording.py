@@ -1,8 +1,8 @@
-"""The motion of a single trajectory at any times, from the notes of a compiled run.
+"""The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at some time is that of a short trajectory of its own, from the last note before it. Those of all times run
-side by side in lanes, and end where they should as every trajectory does. So the motion does not depend on the times
-that are asked for, and its error is the same at all of them.
+The state at some time is that of a short trajectory of its own, from the last checkpoint before it. Those of all
+times run side by side in lanes, and end where they should as every trajectory does. So the motion does not depend on
+the times that are asked for, and its error is the same at all of them.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import KIND, NONE, ON_THE_WAY, SLIPS, STATE, TIME
+from reference_model.ensemble.checkpoints import NONE, ON_THE_WAY, SLIPS, Checkpoints, room_for
 from reference_model.ensemble.end_states import HANDED_OVER, Results
 from reference_model.motion.stepper import Kind
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
-Runs = Callable[[FloatArray, FloatArray, FloatArray], Results]
-"""Takes starts (n, 4 or 6), durations in s (n,) and room for notes of a single one, a flat array; runs them all."""
+Runs = Callable[[FloatArray, FloatArray, Checkpoints], Results]
+"""Takes starts (n, 4 or 6), durations in s (n,) and room for checkpoints of a single one; runs them all."""
 
 ROOM_A_UNIT, ROOM_TO_SPARE = 2.0, 64
-"""Notes that there is room for at first, in a unit of time and besides."""
+"""Checkpoints that there is room for at first, in a unit of time and besides."""
 
 ROUNDED = 1e-12
 """Share of a duration, or of the unit of time if that is longer, that is rounding of times."""
@@ -66,15 +66,15 @@ class Recording:
     def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
         """Take up the motion from ``state`` at ``since`` as far as ``one`` goes; return what that comes to.
 
-        ``many`` goes from notes to times. Raises ``SimulationError`` if one of them is given up.
+        ``many`` goes from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
         """
         # A copy, which may be written to: the kernel is compiled for such arrays, and not once more for others.
         start, left = state.copy()[np.newaxis], np.array([self.duration - since])
         room = int(ROOM_A_UNIT * left[0] / self.unit) + ROOM_TO_SPARE
         while True:
-            notes = np.zeros((room, STATE + len(state)))
-            end = one(start, left, notes.reshape(-1))
-            taken = int(np.count_nonzero(notes[:, KIND] != NONE))
+            checkpoints = room_for(room, len(state))
+            end = one(start, left, checkpoints)
+            taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
                 break
             room *= 2  # once more from the start: the motion does not depend on the room
@@ -82,11 +82,12 @@ class Recording:
         if end.ends[0] != HANDED_OVER:
             self._require_end(end, left, since)
             until = self.duration
-        notes = notes[:taken]
-        notes[:, TIME] += since
-        self._sample(many, notes, until)
-        for note in notes[notes[:, KIND] != ON_THE_WAY]:
-            self._enter("slip" if note[KIND] == SLIPS else "stick", float(note[TIME]), note[STATE:])
+        checkpoints = checkpoints[:taken]
+        checkpoints["time"] += since
+        self._sample(many, checkpoints, until)
+        for checkpoint in checkpoints[checkpoints["kind"] != ON_THE_WAY]:
+            kind: Kind = "slip" if checkpoint["kind"] == SLIPS else "stick"
+            self._enter(kind, float(checkpoint["time"]), checkpoint["state"])
         self._count(end)
         return end
 
@@ -99,14 +100,14 @@ class Recording:
         self.steps += motion.solution.steps
         self.evaluations += motion.solution.evaluations
 
-    def _sample(self, many: Runs, notes: FloatArray, until: float) -> None:
-        """Find the states at the times from the first note up to ``until``."""
-        asked = (self.times >= notes[0, TIME]) & (self.times <= until)
+    def _sample(self, many: Runs, checkpoints: Checkpoints, until: float) -> None:
+        """Find the states at the times from the first checkpoint up to ``until``."""
+        asked = (self.times >= checkpoints["time"][0]) & (self.times <= until)
         if not np.any(asked):
             return
-        before = notes[np.searchsorted(notes[:, TIME], self.times[asked], side="right") - 1]
-        durations = self.times[asked] - before[:, TIME]
-        ends = many(np.ascontiguousarray(before[:, STATE:]), durations, np.zeros(0))
+        before = checkpoints[np.searchsorted(checkpoints["time"], self.times[asked], side="right") - 1]
+        durations = self.times[asked] - before["time"]
+        ends = many(np.ascontiguousarray(before["state"]), durations, checkpoints[:0])
         self._require_end(ends, durations, until)
         self.states[asked] = ends.states
         self.evaluations += STAGES * int(np.sum(ends.steps))

@@ -57,7 +57,7 @@ def simulate_ensemble(
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Those that differ from trajectory to trajectory.
     early_end : bool
-        Whether a trajectory ends as soon as its end state is certain (how that is told: :mod:`.pin_ends`).
+        Whether a trajectory ends as soon as its end state is certain (how that is told: :mod:`.pin.end_states`).
     threads : int, optional
         As many as there are processors unless told otherwise.
 

@@ -48,7 +48,7 @@ COSINE = tuple((-1.0) ** n / math.factorial(2 * n) for n in range(8, -1, -1))
 
 
 @inlined
-def ring_shares(slip: float, rim: float) -> Any:
+def ring_shares(slip: float, rim: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂W of a ring for U, W >= 0."""
     more = slip >= rim
     larger = slip if more else rim
@@ -73,7 +73,9 @@ def ring_shares(slip: float, rim: float) -> Any:
     return (by_larger if more else by_smaller), (by_smaller if more else by_larger)
 
 
-def points_shares(ux: float, uy: float, rim: float, around: Any) -> tuple[float, float, float, float]:
+def points_shares(
+    ux: float, uy: float, rim: float, around: tuple[float, ...]
+) -> tuple[float, float, float, float]:
     """Return the resistance along x and y, that of the rim, and the mean slip speed of points on a ring.
 
     ``around`` holds the unit vectors to the points, (cos, sin) of each, one after the other: a tuple, which says how
@@ -103,7 +105,7 @@ def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any
 
 
 @inlined
-def turned(angle: float) -> Any:
+def turned(angle: float) -> tuple[float, float]:
     """Return cosine and sine of an angle of up to some 1e6 rad, to rounding, without a branch.
 
     Quarter turns are taken off in three parts, each but the last with zeros at its end (Cody and Waite), and Taylor's

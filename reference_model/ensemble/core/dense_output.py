@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from reference_model.ensemble.core.jit import inlined, scalar
 
@@ -16,7 +17,7 @@ GAUSS = (
 """Places and weights of Gauss's quadrature with four points on (0, 1)."""
 
 MOST_STEPS_TO_ROOT, CLOSE = 60, 1e-5
-"""Of the search for a root in an arc, and the change of u that is the last one: what it leaves is far smaller."""
+"""Of the search for a root in a step, and the change of u that is the last one: what it leaves is far smaller."""
 
 
 class Polynomial(NamedTuple):
@@ -32,7 +33,7 @@ class Polynomial(NamedTuple):
     d3: float
 
 
-class Arc(NamedTuple):
+class DenseOutput(NamedTuple):
     """x and y over a step of length ``span`` in time, u from 0 to 1."""
 
     x: Polynomial
@@ -56,12 +57,12 @@ class Motion(NamedTuple):
 
 
 @scalar
-def arc_between(span: float, first: Motion, last: Motion) -> Arc:
-    """Return the arc of length ``span`` in time from one motion to another."""
+def dense_output(span: float, first: Motion, last: Motion) -> DenseOutput:
+    """Return the motion of length ``span`` in time from one end to another."""
     v0, a0, j0 = first.velocity * span, first.acceleration * span**2, first.jerk * span**3
     v1, a1, j1 = last.velocity * span, last.acceleration * span**2, last.jerk * span**3
     z0, z1 = first.place, last.place
-    return Arc(
+    return DenseOutput(
         _between(z0.real, v0.real, a0.real, j0.real, z1.real, v1.real, a1.real, j1.real),
         _between(z0.imag, v0.imag, a0.imag, j0.imag, z1.imag, v1.imag, a1.imag, j1.imag),
         span,
@@ -98,56 +99,56 @@ def _slope(p: Polynomial, u: float) -> float:
 
 
 @inlined
-def place_on(arc: Arc, u: float) -> complex:
+def place_on(step: DenseOutput, u: float) -> complex:
     """Return z(u)."""
-    return complex(_value(arc.x, u), _value(arc.y, u))
+    return complex(_value(step.x, u), _value(step.y, u))
 
 
 @inlined
-def velocity_on(arc: Arc, u: float) -> complex:
+def velocity_on(step: DenseOutput, u: float) -> complex:
     """Return ż(u)."""
-    return complex(_slope(arc.x, u), _slope(arc.y, u)) / arc.span
+    return complex(_slope(step.x, u), _slope(step.y, u)) / step.span
 
 
 @inlined
-def rightward(arc: Arc, u: float) -> float:
-    """Return what is zero where x is largest: ẋ(u), times the length of the arc."""
-    return _slope(arc.x, u)
+def rightward(step: DenseOutput, u: float) -> float:
+    """Return what is zero where x is largest: ẋ(u), times the length of the step."""
+    return _slope(step.x, u)
 
 
 @inlined
-def outward(arc: Arc, u: float) -> float:
-    """Return what is zero where the radius is largest or smallest: ρρ̇, times the length of the arc."""
-    return _value(arc.x, u) * _slope(arc.x, u) + _value(arc.y, u) * _slope(arc.y, u)
+def outward(step: DenseOutput, u: float) -> float:
+    """Return what is zero where the radius is largest or smallest: ρρ̇, times the length of the step."""
+    return _value(step.x, u) * _slope(step.x, u) + _value(step.y, u) * _slope(step.y, u)
 
 
 @scalar
-def where_rightmost(arc: Arc) -> float:
+def where_rightmost(step: DenseOutput) -> float:
     """Return u at which x is largest; its rate changes its sign between the ends."""
-    return _zero_of(rightward, arc)
+    return _zero_of(rightward, step)
 
 
 @scalar
-def where_radius_turns(arc: Arc) -> float:
+def where_radius_turns(step: DenseOutput) -> float:
     """Return u at which the radius is largest or smallest, and inf if it only rises or only falls."""
-    if (outward(arc, 0.0) > 0.0) == (outward(arc, 1.0) > 0.0):
+    if (outward(step, 0.0) > 0.0) == (outward(step, 1.0) > 0.0):
         return math.inf
-    return _zero_of(outward, arc)
+    return _zero_of(outward, step)
 
 
 @inlined
-def _zero_of(measure: Any, arc: Arc) -> float:
-    """Return u at which ``measure`` of the arc is zero; it changes its sign between the ends.
+def _zero_of(measure: Callable[[DenseOutput, float], float], step: DenseOutput) -> float:
+    """Return u at which ``measure`` of the step is zero; it changes its sign between the ends.
 
     By inverse quadratic interpolation, kept inside of the bracket.
     """
     low, high = 0.0, 1.0
-    at_low, at_high = measure(arc, low), measure(arc, high)
+    at_low, at_high = measure(step, low), measure(step, high)
     if at_low == at_high:
         return low
     u: float = at_low / (at_low - at_high)
     for _ in range(MOST_STEPS_TO_ROOT):
-        at = measure(arc, u)
+        at = measure(step, u)
         a, b, c = at_low - at_high, at_low - at, at_high - at
         new = low * at_high * at / (a * b) - high * at_low * at / (a * c) + u * at_low * at_high / (b * c)
         if (at > 0.0) == (at_low > 0.0):
@@ -163,10 +164,10 @@ def _zero_of(measure: Any, arc: Arc) -> float:
 
 
 @scalar
-def way_along(arc: Arc, u: float, disc_speed: float) -> float:
-    """Return ∫|ż − iωz|dt from the start of the arc to u: how far the pin slips over the disc."""
+def way_along(step: DenseOutput, u: float, disc_speed: float) -> float:
+    """Return ∫|ż − iωz|dt from the start of the step to u: how far the pin slips over the disc."""
     total: float = 0.0
     for place, weight in GAUSS:
         at = u * place
-        total += weight * size_of(velocity_on(arc, at) - complex(0.0, disc_speed) * place_on(arc, at))
-    return total * u * arc.span
+        total += weight * size_of(velocity_on(step, at) - complex(0.0, disc_speed) * place_on(step, at))
+    return total * u * step.span

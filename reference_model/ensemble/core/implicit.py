@@ -1,4 +1,4 @@
-"""Implicit steps of slip for compiled code: Radau IIA through all nodes of a step at once, as in ``growth``.
+"""Implicit steps of slip for compiled code: Radau IIA through all nodes of a step at once, as in ``breakaway``.
 
 Slip that creeps draws its direction to that of the pull at the rate g/s, a strong damper draws the velocity to zero
 at β/m: an explicit step is limited by these rates long after what they rule has died out. This method is not (Hairer
@@ -13,16 +13,18 @@ rounding, are freed of it.
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
+from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
-from reference_model.ensemble.core.laws import points_friction, pull, ring_friction
+from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
 from reference_model.ensemble.core.linear import solve
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES
+from reference_model.systems import FloatArray
 
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
@@ -51,33 +53,38 @@ GROWTH, CAUTION = 4.0, 0.8
 """By how much the next step may differ from this one at most, and below what the error estimate would allow."""
 
 
+Collocation = Callable[
+    [complex, float, FloatArray, float, DiscLaw, FloatArray, FloatArray, FloatArray], float
+]
+"""Solves for the slip at the nodes of a step, as :func:`collocate_with` with a friction of its own."""
+
+
 @written_out
 def collocate_with(
-    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any, friction: Any
+    z: complex,
+    angle: float,
+    start: FloatArray,
+    step: float,
+    law: DiscLaw,
+    w: FloatArray,
+    f: FloatArray,
+    power: FloatArray,
+    friction: Friction,
 ) -> float:
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
     Also for its rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start`` are where the
-    step begins, ``law`` is that of a disc, and ``friction`` as ``disc_slip.ring_friction``. Return how fast friction
+    step begins, ``law`` is that of a disc, and ``friction`` as ``laws.ring_friction``. Return how fast friction
     draws slip to its direction at the end, or -1 if there is no convergence.
     """
     d = len(start)
-    size = d * NODES
-    matrix, residual = np.empty((size, size)), np.empty(size)
+    linear, rest = np.empty((NODES, d, NODES, d)), np.empty((NODES, d))
+    matrix, change = linear.reshape(NODES * d, NODES * d), rest.reshape(NODES * d)
     slopes = np.empty((NODES, d, d))
     by_place = -law.stiffness - (law.damping + 1j * law.disc_speed) * 1j * law.disc_speed
     by_slip = -(law.damping + 1j * law.disc_speed)
-    turns = np.empty(NODES, dtype=np.complex128)  # of the master disc up to the nodes
-    for j in range(NODES):
-        turn = law.disc_speed * step * PLACES[j]
-        turns[j] = complex(math.cos(turn), math.sin(turn))
-    reach = np.empty((NODES, NODES), dtype=np.complex128)  # of slip at a node on the pull at another
-    for i in range(NODES):
-        for k in range(NODES):
-            total = 0j
-            for j in range(NODES):
-                total += INTEGRAL[i, j] * INTEGRAL[j, k] * turns[j]
-            reach[i, k] = step * step * by_place * total * turns[k].conjugate()
+    turns = _turns(law.disc_speed, step)
+    reach = _reach(step, by_place, turns)
     for _ in range(MOST_ITERATIONS):
         for j in range(NODES):
             ux, uy = w[j, 0], w[j, 1]
@@ -108,44 +115,95 @@ def collocate_with(
             slopes[j, 1, 1] += by_slip.real
             if d == 3:
                 slopes[j, 2, 2] -= law.shaft_rate
-        for i in range(NODES):
-            for a_ in range(d):
-                rest = w[i, a_] - start[a_]
-                for j in range(NODES):
-                    rest -= step * INTEGRAL[i, j] * f[j, a_]
-                    for b in range(d):
-                        same = 1.0 if i == j and a_ == b else 0.0
-                        matrix[d * i + a_, d * j + b] = same - step * INTEGRAL[i, j] * slopes[j, a_, b]
-                residual[d * i + a_] = rest
-            for j in range(NODES):
-                matrix[d * i, d * j] -= reach[i, j].real
-                matrix[d * i, d * j + 1] += reach[i, j].imag
-                matrix[d * i + 1, d * j] -= reach[i, j].imag
-                matrix[d * i + 1, d * j + 1] -= reach[i, j].real
-        if not solve(matrix, residual):
+        _linearise(w, f, slopes, start, step, reach, linear, rest)
+        if not solve(matrix, change):
             return -1.0
-        converged = True
-        for i in range(NODES):
-            change = length_of(residual[d * i : d * i + d])
-            for k in range(d):
-                w[i, k] -= residual[d * i + k]
-            s = length_of(w[i])
-            converged = converged and change < 1e-9 * s + 1e-15 * step and change < 1e-13 * (1.0 + s)
-        if converged:
+        if _corrected(w, rest, step):
             return _size_of(slopes[-1])
     return -1.0
 
 
+@scalar
+def _turns(disc_speed: float, step: float) -> ComplexArray:
+    """Return how the master disc has turned up to the nodes, e^(iωt)."""
+    turns = np.empty(NODES, dtype=np.complex128)
+    for j in range(NODES):
+        turn = disc_speed * step * PLACES[j]
+        turns[j] = complex(math.cos(turn), math.sin(turn))
+    return turns
+
+
+@scalar
+def _reach(step: float, by_place: complex, turns: ComplexArray) -> ComplexArray:
+    """Return the derivative of step times the pull at a node by slip at another, through the place."""
+    reach = np.empty((NODES, NODES), dtype=np.complex128)
+    for i in range(NODES):
+        for k in range(NODES):
+            total = 0j
+            for j in range(NODES):
+                total += INTEGRAL[i, j] * INTEGRAL[j, k] * turns[j]
+            reach[i, k] = step * step * by_place * total * turns[k].conjugate()
+    return reach
+
+
+@scalar
+def _linearise(
+    w: FloatArray, f: FloatArray, slopes: FloatArray, start: FloatArray, step: float, reach: ComplexArray,
+    linear: FloatArray, rest: FloatArray,
+) -> None:  # fmt: skip
+    """Put by how much the slip at the nodes misses its equations into ``rest`` (NODES, d).
+
+    And the derivative of this by all slip into ``linear`` (NODES, d, NODES, d).
+    """
+    d = len(start)
+    for i in range(NODES):
+        for a in range(d):
+            missed = w[i, a] - start[a]
+            for j in range(NODES):
+                missed -= step * INTEGRAL[i, j] * f[j, a]
+                for b in range(d):
+                    same = 1.0 if i == j and a == b else 0.0
+                    linear[i, a, j, b] = same - step * INTEGRAL[i, j] * slopes[j, a, b]
+            rest[i, a] = missed
+        for j in range(NODES):
+            linear[i, 0, j, 0] -= reach[i, j].real
+            linear[i, 0, j, 1] += reach[i, j].imag
+            linear[i, 1, j, 0] -= reach[i, j].imag
+            linear[i, 1, j, 1] -= reach[i, j].real
+
+
+@scalar
+def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
+    """Take the change (NODES, d) of Newton's method off the slip; tell whether it was no more than rounding."""
+    converged = True
+    for i in range(NODES):
+        size = length_of(change[i])
+        for k in range(w.shape[1]):
+            w[i, k] -= change[i, k]
+        s = length_of(w[i])
+        converged = converged and size < 1e-9 * s + 1e-15 * step and size < 1e-13 * (1.0 + s)
+    return converged
+
+
 @inlined
-def pin_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
-    """Return what ``disc_slip.ring_friction`` does, of a pin, which does not spin."""
+def pin_friction(
+    ux: float, uy: float, r: float, angle: float, law: DiscLaw
+) -> tuple[float, float, float, float]:
+    """Return what ``laws.ring_friction`` does, of a pin, which does not spin."""
     s = math.sqrt(ux * ux + uy * uy)
     return -ux / s, -uy / s, 0.0, s
 
 
 @scalar
 def collocate_pin(
-    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+    z: complex,
+    angle: float,
+    start: FloatArray,
+    step: float,
+    law: DiscLaw,
+    w: FloatArray,
+    f: FloatArray,
+    power: FloatArray,
 ) -> float:
     """Do as :func:`collocate_with` of a pin."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, pin_friction))
@@ -153,7 +211,14 @@ def collocate_pin(
 
 @scalar
 def collocate_ring(
-    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+    z: complex,
+    angle: float,
+    start: FloatArray,
+    step: float,
+    law: DiscLaw,
+    w: FloatArray,
+    f: FloatArray,
+    power: FloatArray,
 ) -> float:
     """Do as :func:`collocate_with` of a disc on a ring."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, ring_friction))
@@ -161,7 +226,14 @@ def collocate_ring(
 
 @scalar
 def collocate_points(
-    z: complex, angle: float, start: Any, step: float, law: Any, w: Any, f: Any, power: Any
+    z: complex,
+    angle: float,
+    start: FloatArray,
+    step: float,
+    law: DiscLaw,
+    w: FloatArray,
+    f: FloatArray,
+    power: FloatArray,
 ) -> float:
     """Do as :func:`collocate_with` of a disc on points."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, points_friction))
@@ -169,9 +241,9 @@ def collocate_points(
 
 @written_out
 def stride_with(
-    z: complex, angle: float, start: Any, guess: Any, span: float, least: float, tolerance: float, law: Any,
-    collocate: Any,
-) -> Any:  # fmt: skip
+    z: complex, angle: float, start: FloatArray, guess: FloatArray, span: float, least: float, tolerance: float,
+    law: DiscLaw, collocate: Collocation,
+) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or shorter where its error asks for that, but not shorter than ``least``.
 
     ``start`` (2 or 3,) is the slip at its beginning, and ``guess`` what it may soon be.
@@ -232,17 +304,13 @@ def patience(planned: float) -> float:
 
 
 @scalar
-def place_after(z: complex, w: Any, step: float, law: Any) -> complex:
+def place_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
     """Return where the centre is at the end of a step: in the frame of the master disc it goes by the slip alone."""
-    turns = np.empty(NODES, dtype=np.complex128)
-    for j in range(NODES):
-        turn = law.disc_speed * step * PLACES[j]
-        turns[j] = complex(math.cos(turn), math.sin(turn))
-    return _place(z, w, step, NODES - 1, turns)
+    return _place(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 
 @inlined
-def _place(z: complex, w: Any, step: float, node: int, turns: Any) -> complex:
+def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
     """Return where the centre is at a node; ``turns`` are those of the master disc up to the nodes, e^(iωt)."""
     way = 0j
     for j in range(NODES):
@@ -252,7 +320,7 @@ def _place(z: complex, w: Any, step: float, node: int, turns: Any) -> complex:
 
 
 @scalar
-def length_of(vector: Any) -> float:
+def length_of(vector: FloatArray) -> float:
     """Return the Euclidean norm."""
     total = 0.0
     for value in vector:
@@ -261,7 +329,7 @@ def length_of(vector: Any) -> float:
 
 
 @inlined
-def _free_of(matrix: Any, along: Any, size: float) -> None:
+def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
     """Take the direction ``along`` out of a symmetric matrix, from both sides; ``size`` is the length of that."""
     d = len(along)
     for i in range(d):
@@ -279,7 +347,7 @@ def _free_of(matrix: Any, along: Any, size: float) -> None:
 
 
 @scalar
-def _size_of(matrix: Any) -> float:
+def _size_of(matrix: FloatArray) -> float:
     """Return the Frobenius norm."""
     total = 0.0
     for row in matrix:
@@ -289,7 +357,7 @@ def _size_of(matrix: Any) -> float:
 
 
 @scalar
-def _turns_back(w: Any) -> bool:
+def _turns_back(w: FloatArray) -> bool:
     """Tell whether slip turns by more than a right angle from one node to the next: then it came to rest between."""
     for i in range(1, NODES):
         along = 0.0
@@ -301,7 +369,7 @@ def _turns_back(w: Any) -> bool:
 
 
 @scalar
-def _last_term(w: Any) -> float:
+def _last_term(w: FloatArray) -> float:
     """Return the largest of the last coefficients of the polynomials through the slip at the nodes."""
     largest = 0.0
     for k in range(w.shape[1]):

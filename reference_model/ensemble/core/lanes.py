@@ -1,7 +1,7 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-A processor takes a step in eight lanes in the time of one. All numbers of all lanes stand in one flat array,
-``scratch[slot * LANES + lane]``, so that a loop over the lanes which loads, steps and stores becomes a loop of vector
+A processor takes a step in eight lanes in the time of one. All numbers of all lanes stand in one record, each in a
+row of its own (:mod:`records`), so that a loop over the lanes which loads, steps and stores becomes a loop of vector
 instructions. (It must be a function of its own that calls nothing but inlined functions of numbers and tuples.)
 
 A trajectory by itself would pay for all lanes: its step is compiled for one lane besides, to the same bits.
@@ -13,41 +13,67 @@ trajectory comes out the same bit by bit wherever and beside whichever others it
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from reference_model.ensemble.core.jit import scalar, written_out
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.records import LANES
+from reference_model.systems import FloatArray
 
-LANES = 16
-"""Two vectors of eight: while one waits for a square root the other goes on (measured: 25 ns a step, with eight
-29)."""
+
+class _Lanes(Protocol):
+    """What the record of all lanes must hold.
+
+    The motion as it is ``now`` and after the ``trial`` step; why a lane wants to be attended, positive if it does.
+    """
+
+    now: Any
+    trial: Any
+    flag: FloatArray
+
+
+Lanes = TypeVar("Lanes", bound=_Lanes)
+Memory = TypeVar("Memory")
+Task = TypeVar("Task")
+Aims = TypeVar("Aims")
+Results = TypeVar("Results")
+Kind = TypeVar("Kind")
 
 
 @written_out
 def run(
-    load: Any, advance: Any, alone: Any, attend: Any, store: Any, idle: Any,
-    slots: int, trial: int, items: int, flag: int, first: int, last: int, kind: Any,
-    task: Any, aims: Any, results: Any,
-) -> None:  # fmt: skip
+    load: Callable[[Lanes, Memory, int, int, Task, Aims], bool],
+    advance: Callable[[Lanes, Kind], None],
+    alone: Callable[[Lanes, Kind], None],
+    attend: Callable[[Lanes, Memory, int, Aims], bool],
+    store: Callable[[Lanes, Memory, int, Results], None],
+    idle: Callable[[Lanes, int], None],
+    room: NDArray[Any],
+    memory: NDArray[Any],
+    first: int,
+    last: int,
+    kind: Kind,
+    task: Task,
+    aims: Aims,
+    results: Results,
+) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task`` to their ends.
 
     Parameters
     ----------
     load, advance, alone, attend, store, idle : compiled functions
-        ``load(scratch, book, lane, number, task, aims)`` puts the start of a trajectory into the trial slots of a
-        lane, ``advance(scratch, kind)`` makes a trial step in all lanes and ``alone`` in the first one only,
-        ``attend(scratch, book, lane, aims)`` sees to a lane with a flag and may change its trial,
-        ``store(scratch, book, lane, results)`` writes down what stands in the trial slots, and
-        ``idle(scratch, lane)`` puts something harmless into a lane. ``load`` and ``attend`` return whether the
-        trajectory has ended.
-    slots, trial : int
-        Length of a lane in the scratch array; how many of these slots, the first, make up the motion. As many that
-        follow are those of the trial.
-    items : int
-        Length of its page in the book, where scalar code keeps what no vector needs.
-    flag : int
-        The slot of the flag, which is positive if it is raised.
+        ``load(lanes, memory, lane, number, task, aims)`` puts the start of a trajectory into the trial of a lane,
+        ``advance(lanes, kind)`` makes a trial step in all lanes and ``alone`` in the first one only,
+        ``attend(lanes, memory, lane, aims)`` sees to a lane with a flag and may change its trial,
+        ``store(lanes, memory, lane, results)`` writes down the trial, and ``idle(lanes, lane)`` puts something
+        harmless into a lane. ``load`` and ``attend`` return whether the trajectory has ended.
+    room : array of shape (1,)
+        Of the record of all lanes, with zeros in it.
+    memory : array of shape (LANES,)
+        Of the records in which scalar code keeps what no vector needs.
     first, last : int
         Numbers of trajectories.
     kind
@@ -57,41 +83,47 @@ def run(
         where results go.
 
     """
-    scratch = np.zeros(slots * LANES)
-    book = np.empty((LANES, items))
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
     active = 0
     for lane in range(LANES):
-        idle(scratch, lane)
+        idle(room[0], lane)
     while True:
+        # The record is taken from its room in every round: it is there as long as something asks for the room.
+        lanes = room[0]
         for lane in range(LANES):
             ended = False
-            if busy[lane] and scratch[flag * LANES + lane] > 0.0:
-                ended = attend(scratch, book, lane, aims)
+            if busy[lane] and lanes.flag[lane] > 0.0:
+                ended = attend(lanes, memory[lane], lane, aims)
             while ended or (not busy[lane] and number < last):
                 if busy[lane]:
-                    store(scratch, book, lane, results)
+                    store(lanes, memory[lane], lane, results)
                     busy[lane] = False
                     active -= 1
                 if number == last:
-                    idle(scratch, lane)
+                    idle(lanes, lane)
                     break
-                ended = load(scratch, book, lane, number, task, aims)
+                ended = load(lanes, memory[lane], lane, number, task, aims)
                 busy[lane] = True
                 active += 1
                 number += 1
         if active == 0:
             break
-        _accept(scratch, trial)
+        _accept(lanes)
         if last - first == 1:
-            alone(scratch, kind)
+            alone(lanes, kind)
         else:
-            advance(scratch, kind)
+            advance(lanes, kind)
+
+
+@inlined
+def row_of(values: FloatArray, number: int) -> FloatArray:
+    """Return the row of a trajectory in what has one for each, or a single one for all."""
+    row: FloatArray = values[number if values.shape[0] > 1 else 0]
+    return row
 
 
 @scalar
-def _accept(scratch: Any, trial: int) -> None:
+def _accept(lanes: _Lanes) -> None:
     """Take over the trial of every lane."""
-    for i in range(trial * LANES):
-        scratch[i] = scratch[trial * LANES + i]
+    lanes.now = lanes.trial

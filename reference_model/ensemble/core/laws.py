@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
 from reference_model.ensemble.core.jit import inlined, scalar
@@ -27,12 +28,13 @@ class PinLaw(NamedTuple):
 
 
 class DiscLaw(NamedTuple):
-    """The constants of a disc in units in which motion is of order one; the first seven as of a pin.
+    """The constants of a disc in units in which motion is of order one; seven as of a pin.
 
-    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω), ``curling`` 1/κ, and ``around`` the unit vectors to
-    the points of contact, (cos, sin) of each, one after the other; none for the ring.
+    ``around`` are the unit vectors to the points of contact, (cos, sin) of each, one after the other; none for the
+    ring. ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
     """
 
+    around: tuple[float, ...]
     stiffness: float
     damping: float
     friction: float
@@ -44,11 +46,16 @@ class DiscLaw(NamedTuple):
     shaft_rate: float
     lag: float
     curling: float
-    around: tuple[float, ...]
+
+
+Law = PinLaw | DiscLaw
+
+Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, float, float]]
+"""Returns friction of a slip u_x, u_y, r at an angle, and the mean slip speed, as :func:`ring_friction`."""
 
 
 @inlined
-def pull(z: complex, w: complex, law: Any) -> complex:
+def pull(z: complex, w: complex, law: Law) -> complex:
     """Return a(z, w), the relative acceleration without friction."""
     v = w + 1j * law.disc_speed * z
     acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
@@ -56,7 +63,9 @@ def pull(z: complex, w: complex, law: Any) -> complex:
 
 
 @inlined
-def ring_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+def ring_friction(
+    ux: float, uy: float, r: float, angle: float, law: DiscLaw
+) -> tuple[float, float, float, float]:
     """Return −∂P/∂u_x, −∂P/∂u_y, −∂P/∂r and P of a ring."""
     u, rim = math.sqrt(ux * ux + uy * uy), law.leverage * abs(r)
     by_slip, by_rim = ring_shares(u, rim)
@@ -66,7 +75,9 @@ def ring_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any
 
 
 @inlined
-def points_friction(ux: float, uy: float, r: float, angle: float, law: Any) -> Any:
+def points_friction(
+    ux: float, uy: float, r: float, angle: float, law: DiscLaw
+) -> tuple[float, float, float, float]:
     """Return what :func:`ring_friction` does, of points: in the frame of the disc they always stand alike."""
     c, s = turned(angle)
     fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from reference_model.ensemble.core.jit import scalar
+from reference_model.systems import FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6
@@ -15,7 +15,7 @@ VANISHED, GROWN = 1e-6, 1e6
 
 
 @scalar
-def solve(matrix: Any, right: Any) -> bool:
+def solve(matrix: FloatArray, right: FloatArray) -> bool:
     """Solve a linear system in place, by elimination with pivots; tell whether that went."""
     n = len(right)
     for k in range(n):
@@ -41,7 +41,7 @@ def solve(matrix: Any, right: Any) -> bool:
 
 
 @scalar
-def powers_vanish(matrix: Any) -> bool:
+def powers_vanish(matrix: FloatArray) -> bool:
     """Tell whether the powers of a square matrix vanish: whether all its eigenvalues are below 1 in size.
 
     It is squared until they do, or grow.

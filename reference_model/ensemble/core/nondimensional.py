@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from reference_model.ensemble.core.jit import scalar
 
 ROUNDING = 4.0 * 2.220446049250313e-16
@@ -11,7 +9,9 @@ ROUNDING = 4.0 * 2.220446049250313e-16
 
 
 @scalar
-def units(k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float) -> Any:
+def units(
+    k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float
+) -> tuple[float, float]:
     """Return the unit of length in m and one over that of time in 1/s, as ``units.Units.of`` a pin."""
     rate = max(k, abs(omega))
     if rate == 0.0:

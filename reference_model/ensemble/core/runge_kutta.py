@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from numba.extending import overload
 from scipy.integrate import DOP853
@@ -17,6 +17,7 @@ from reference_model.ensemble.core.jit import inlined
 from reference_model.motion.stepper import TIGHTEST
 
 Tuple = tuple[float, ...]
+Constants = TypeVar("Constants")
 
 
 def _without_zeros(row: Sequence[float]) -> Tuple:
@@ -91,7 +92,9 @@ def _written_out(arguments: str, terms: list[str]) -> Callable[..., Any]:
 
 
 @inlined
-def step(rates: Any, law: Any, y: Any, k1: Any, h: float) -> Any:
+def step(
+    rates: Callable[[Tuple, Constants], Tuple], law: Constants, y: Tuple, k1: Tuple, h: float
+) -> tuple[Tuple, Tuple, Tuple]:
     """Return the mean rates over a step of ``h`` from ``y``, and what they differ by from those of lower order.
 
     ``rates(y, law)`` returns the rates of ``y``, and possibly more that no rate depends on; ``k1`` are those at
@@ -113,7 +116,7 @@ def step(rates: Any, law: Any, y: Any, k1: Any, h: float) -> Any:
 
 
 @inlined
-def error_of(y: Any, new: Any, h: float, third: Any, fifth: Any, tolerance: float) -> float:
+def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
     """Return the error of a step as a multiple of what is allowed, as Hairer estimates it from both differences.
 
     Of unknowns that are below 1 the absolute error counts and of the others the relative one.

@@ -8,7 +8,6 @@ can.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -21,15 +20,19 @@ from reference_model.ensemble.core.implicit import (
     place_after,
 )
 from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
 from reference_model.numerics.collocation import NODES
+from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
 """Of what the last terms of the polynomials contribute, in units in which motion is of order one."""
 
 
 @scalar
-def grown(z: complex, n: complex, turning: float, first: float, longest: float, law: Any) -> Any:
+def grown(
+    z: complex, n: complex, turning: float, first: float, longest: float, law: DiscLaw
+) -> tuple[complex, complex, float, float, float, float]:
     """Return place, slip, turn, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
     Up to where an explicit method can go on, but for no longer than ``longest``. ``first`` is the rate at which slip
@@ -75,7 +78,7 @@ def grown(z: complex, n: complex, turning: float, first: float, longest: float, 
 
 
 @scalar
-def _last_terms(f: Any) -> float:
+def _last_terms(f: FloatArray) -> float:
     """Return the largest of the last two coefficients of the polynomials through ``f``."""
     largest = 0.0
     for row in (NODES - 2, NODES - 1):

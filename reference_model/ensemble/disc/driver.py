@@ -9,22 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from reference_model.ensemble.checkpoints import Checkpoints, room_for
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.disc.kernel import (
-    PARAMETERS,
-    STUCK,
-    UNDECIDED,
-    DiscAims,
-    DiscTask,
-    run_points,
-    run_rings,
-)
-from reference_model.ensemble.disc.trapping import REGION, known_regions
-from reference_model.ensemble.end_states import HANDED_OVER, Ensemble, Results
+from reference_model.ensemble.disc.kernel import PARAMETERS, DiscTask, run_points, run_rings
+from reference_model.ensemble.disc.memory import DiscAims
+from reference_model.ensemble.disc.trapping import known_regions, no_regions
+from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Ensemble, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.motion.exact import simulate_with
@@ -34,8 +30,6 @@ from reference_model.trajectory import Trajectory
 
 LEAST_SPAN = 0.1
 """Turns of the master disc, or of the free centre, that the reference takes a trajectory through at least."""
-
-NOTHING_KNOWN = np.zeros((0, REGION))
 
 
 def simulate_discs(
@@ -50,7 +44,7 @@ def simulate_discs(
 ) -> Ensemble:
     """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` discs."""
     table = parameter_table(disc, PARAMETERS, varied)
-    aims = _aims(disc, tolerance, early_end, NOTHING_KNOWN if varied else known_regions(disc))
+    aims = _aims(disc, tolerance, early_end, no_regions() if varied else known_regions(disc))
     results = Results.empty(n, disc.state_size)
     _run_through(
         disc, DiscTask(table, starts, np.full(1, duration)), aims, results, varied, tolerance, threads
@@ -61,14 +55,14 @@ def simulate_discs(
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a disc from ``state`` on."""
     table = parameter_table(disc, PARAMETERS)
-    aims = _aims(disc, tolerance, False, NOTHING_KNOWN)
+    aims = _aims(disc, tolerance, False, no_regions())
 
-    def one(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
-        results = Results.empty(1, disc.state_size)._replace(notes=notes)
-        _run(DiscTask(table, starts, durations), aims, results)
+    def one(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
+        results = Results.empty(1, disc.state_size)
+        _run(DiscTask(table, starts, durations), aims._replace(checkpoints=checkpoints), results)
         return results
 
-    def many(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
+    def many(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
         results = Results.empty(len(starts), disc.state_size)
         _run_through(disc, DiscTask(table, starts, durations), aims, results, {}, tolerance)
         return results
@@ -84,10 +78,11 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
             t, state = float(motion.times[-1]), motion.at_end
 
 
-def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, known: FloatArray) -> DiscAims:
+def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[Any]) -> DiscAims:
     points = disc.contact_points or 0
     around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
-    return DiscAims(tolerance_of_steps(tolerance), early_end, around, known)
+    nowhere = room_for(0, disc.state_size)
+    return DiscAims(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
 def _run(task: DiscTask, aims: DiscAims, results: Results, threads: int = 1) -> None:

@@ -1,38 +1,71 @@
-"""The disc in lanes: what stands where, the step of all lanes, and how slip of one of them ends and begins."""
+"""The disc in lanes: what stands there, the step of all lanes, and how slip of one of them ends and begins."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import NamedTuple
 
 from reference_model.ensemble.core.contact_shares import LEAST
-from reference_model.ensemble.core.dense_output import Arc, Motion, arc_between
+from reference_model.ensemble.core.dense_output import DenseOutput, Motion, dense_output
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import LANES
 from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.runge_kutta import factor_of, moved, step
+from reference_model.ensemble.core.records import Record, Row, Rows, at, put
+from reference_model.ensemble.core.runge_kutta import Tuple, factor_of, moved, step
 from reference_model.ensemble.disc.breakaway import grown
 from reference_model.ensemble.disc.slip import direction
 
-X, Y, UX, UY, R, ANGLE, TIME, WAY = range(8)
-"""Slots of a lane: place, slip velocity, r, angle, time and way slipped, the mean over the contact. All scaled."""
 
-RATES, STEP = 8, 16
-"""Where their rates by stretched time begin; the step that comes."""
+class DiscState(NamedTuple):
+    """Place, slip velocity, r, angle, time and way slipped, the mean over the contact; or the rates of all.
 
-TRIAL = STEP + 1
-"""How much further on the same stands after the step on trial."""
+    All is scaled; rates are by stretched time.
+    """
 
-LAW = 2 * TRIAL
-"""Where the constants of a disc begin."""
+    x: float
+    y: float
+    ux: float
+    uy: float
+    r: float
+    angle: float
+    time: float
+    way: float
 
-CONSTANTS = len(DiscLaw._fields) - 1
-(TOLERANCE, USUAL, DURATION, DUE, WATCH, FLAG, STEPS, SHORT, SLOTS) = range(
-    LAW + CONSTANTS, LAW + CONSTANTS + 9
-)
-"""The tolerance of a step; the step before the edge was in the way; when it ends, and when it wants to be attended
-before; how closely it is watched; why it wants to be attended; steps so far; how many of the last were short; the
-number of slots."""
+
+class Moment(Record):
+    """The motion at one time, with its rates, and the step that comes."""
+
+    state: Rows[DiscState]
+    rates: Rows[DiscState]
+    step: Row
+
+
+class DiscLanes(Record):
+    """All lanes: the motion now and after the step on trial, and the law.
+
+    The tolerance of a step; the step before the edge was in the way; when the motion ends, and when it wants to be
+    attended before; how closely it is watched; why it wants to be attended; steps so far; how many of the last were
+    short.
+    """
+
+    now: Moment
+    trial: Moment
+    law: Rows[DiscLaw]
+    tolerance: Row
+    usual: Row
+    duration: Row
+    due: Row
+    watch: Row
+    flag: Row
+    steps: Row
+    short: Row
+
+
+Rates = Callable[[Tuple, DiscLaw], Tuple]
+"""Returns the rates of the unknowns, as :func:`reference_model.ensemble.disc.slip.ring_rates`."""
+
+Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
+"""Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """A lane may be attended whenever x is largest, whenever the radius is largest or smallest, or both."""
@@ -42,7 +75,7 @@ REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 step size or number of steps are beyond what is sensible; an implicit step may be worth its while."""
 
 SHORT_STEP, MANY = 0.1, 40.0
-"""As in :mod:`pin_lanes`; explicit steps of discs cost more."""
+"""As of a pin; explicit steps of discs cost more."""
 
 MOST_STEPS = 5_000_000.0
 SMALLEST_STEP = 1e-13
@@ -64,256 +97,218 @@ LEAST_SLIP = 1e-13
 """Slip speed, in units, that is none."""
 
 LONGEST_GROWTH = 10.0
-"""Time, in units, for which slip that grows is followed from rest: as any slip after, so that notes can be taken."""
+"""Time, in units, for which slip that grows is followed from rest: after that as any slip, with checkpoints."""
 
 SUDDEN = 0.05
 """Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
 
 
 @written_out
-def advance_with(scratch: Any, around: Any, rates: Any, edge: Any, small_step: float, lanes: int) -> None:
-    """Make a trial step in the first ``lanes``; where it does not do the old state goes into the slots of the trial.
+def advance_with(
+    lanes: DiscLanes, around: Tuple, rates: Rates, edge: Edge, small_step: float, count: int
+) -> None:
+    """Make a trial step in the first ``count`` lanes; where it does not do the trial is the old state.
 
     Where the step crosses the ``edge`` of friction, an error estimate would tell little: it is to end there. The same
     at the end. A lane wants to be attended, too, where steps are smaller than ``small_step``.
     """
-    for lane in range(lanes):
-        q = (
-            scratch[X * LANES + lane],
-            scratch[Y * LANES + lane],
-            scratch[UX * LANES + lane],
-            scratch[UY * LANES + lane],
-            scratch[R * LANES + lane],
-            scratch[ANGLE * LANES + lane],
-            scratch[TIME * LANES + lane],
-            scratch[WAY * LANES + lane],
-        )
-        k = (
-            scratch[RATES * LANES + lane],
-            scratch[(RATES + 1) * LANES + lane],
-            scratch[(RATES + 2) * LANES + lane],
-            scratch[(RATES + 3) * LANES + lane],
-            scratch[(RATES + 4) * LANES + lane],
-            scratch[(RATES + 5) * LANES + lane],
-            scratch[(RATES + 6) * LANES + lane],
-            scratch[(RATES + 7) * LANES + lane],
-        )
-        law = DiscLaw(
-            scratch[LAW * LANES + lane],
-            scratch[(LAW + 1) * LANES + lane],
-            scratch[(LAW + 2) * LANES + lane],
-            scratch[(LAW + 3) * LANES + lane],
-            scratch[(LAW + 4) * LANES + lane],
-            scratch[(LAW + 5) * LANES + lane],
-            scratch[(LAW + 6) * LANES + lane],
-            scratch[(LAW + 7) * LANES + lane],
-            scratch[(LAW + 8) * LANES + lane],
-            scratch[(LAW + 9) * LANES + lane],
-            scratch[(LAW + 10) * LANES + lane],
-            around,
-        )
-        h, end = scratch[STEP * LANES + lane], scratch[DURATION * LANES + lane]
-        mean, third, fifth = step(rates, law, q[:6], k, h)
-        new = moved(q, h, (1.0,), (mean,))
-        k1 = rates(new[:6], law)
-
-        # Slip counts by its own size once it is small, if there is friction: its direction decides when it ends.
-        slip = math.sqrt(q[2] * q[2] + q[3] * q[3] + q[4] * q[4])
-        small = (slip + law.free) / (SLOW * law.friction + LEAST)
-        high = low = 0.0
-        for j in range(7):
-            size = 1.0 + (max(abs(q[j]), abs(new[j])) if j < 5 else 0.0)
-            size = max(min(size, small), LEAST) if 2 <= j < 5 else size
-            high += (fifth[j] / size) ** 2
-            low += (third[j] / size) ** 2
-        tolerance = scratch[TOLERANCE * LANES + lane]
-        error = h * high / (math.sqrt((high + 0.01 * low) * 7.0 + 1e-300) * tolerance)
+    now, trial = lanes.now, lanes.trial
+    for lane in range(count):
+        state, k = state_at(now, lane), rates_at(now, lane)
+        law = DiscLaw(around, *at(lanes.law, lane))
+        h, end = now.step[lane], lanes.duration[lane]
+        mean, third, fifth = step(rates, law, state[:6], k, h)
+        new = DiscState(*moved(state, h, (1.0,), (mean,)))
+        k1 = DiscState(*rates(new[:6], law))
+        error = error_of_slip(state, new, h, third, fifth, lanes.tolerance[lane], law)
         good = error < 1.0
         next_step = h * factor_of(error)
 
-        # The distance from the edge goes about by a parabola.
-        before, approach = edge(q[:6], k, law)
+        before, approach = edge(state[:6], k, law)
         after, _ = edge(new[:6], k1, law)
-        slope = approach * h
-        bend = after - before - slope
-        root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))
-        share = abs(2.0 * before) / (abs(slope) + root + LEAST)
-        share = min(max(share if approach * before < 0.0 else 0.5, 0.01), 0.99)
         far = min(abs(before), abs(after)) > ON_EDGE * abs(after - before)
         crossed = good & (before * after < 0.0) & far
-        late = good & (new[6] > end + AT_END)
-        share = (end - q[6]) / (new[6] - q[6]) if late else share
+        late = good & (new.time > end + AT_END)
+        to_edge = share_to_edge(before, after, approach, h)
+        share = (end - state.time) / (new.time - state.time) if late else to_edge
         taken = good & (not crossed) & (not late)
-        usual = scratch[USUAL * LANES + lane]
-        resumed = min(max(next_step, usual), (end - new[6]) / max(k1[6], LEAST))
-        scratch[USUAL * LANES + lane] = 0.0 if taken else (max(h, usual) if crossed else usual)
-        scratch[(TRIAL + STEP) * LANES + lane] = resumed if taken else (h * share if good else next_step)
+        usual = lanes.usual[lane]
+        resumed = min(max(next_step, usual), (end - new.time) / max(k1.time, LEAST))
+        lanes.usual[lane] = 0.0 if taken else (max(h, usual) if crossed else usual)
+        trial.step[lane] = resumed if taken else (h * share if good else next_step)
 
-        count = scratch[STEPS * LANES + lane] + 1.0
-        done = new[6] >= end - AT_END
-        flag = reasons(
-            q, k, new, k1, NEAR_REST * law.friction, (new[6] >= scratch[DUE * LANES + lane]) | done, h < small_step,
-            scratch[WATCH * LANES + lane],
-        )  # fmt: skip
+        done = new.time >= end - AT_END
+        due = (new.time >= lanes.due[lane]) | done
+        flag = reasons(state, k, new, k1, NEAR_REST * law.friction, due, h < small_step, lanes.watch[lane])
         flag = flag if taken else 0.0
-        short = scratch[SHORT * LANES + lane] + 1.0 if new[6] - q[6] < SHORT_STEP else 0.0
+        steps = lanes.steps[lane] + 1.0
+        short = lanes.short[lane] + 1.0 if new.time - state.time < SHORT_STEP else 0.0
         flag += STIFF if short > MANY else 0.0
-        scratch[SHORT * LANES + lane] = short
-        lost = (not h > SMALLEST_STEP) | (count > MOST_STEPS)
+        lost = (not h > SMALLEST_STEP) | (steps > MOST_STEPS)
         flag += LOST if lost & (not (taken & done)) else 0.0
-        scratch[FLAG * LANES + lane] = flag
-        scratch[STEPS * LANES + lane] = count
-        for j in range(8):
-            scratch[(TRIAL + j) * LANES + lane] = new[j] if taken else q[j]
-            scratch[(TRIAL + RATES + j) * LANES + lane] = k1[j] if taken else k[j]
+        lanes.short[lane], lanes.flag[lane], lanes.steps[lane] = short, flag, steps
+        put(trial.state, lane, new if taken else state)
+        put(trial.rates, lane, k1 if taken else k)
 
 
 @inlined
-def reasons(q: Any, k: Any, new: Any, k1: Any, nearly: float, due: bool, fine: bool, watch: float) -> float:
-    """Return the flags of a step from ``q`` with the rates ``k`` to what is ``new``."""
-    s2 = new[2] * new[2] + new[3] * new[3] + new[4] * new[4]
-    extreme = (q[0] * k[0] + q[1] * k[1] > 0.0) != (new[0] * k1[0] + new[1] * k1[1] > 0.0)
+def error_of_slip(
+    state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
+) -> float:
+    """Return the error of a step as a multiple of what is allowed, see :func:`.runge_kutta.error_of`.
+
+    Slip counts by its own size once it is small, if there is friction: its direction decides when it ends.
+    """
+    slip = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
+    small = (slip + law.free) / (SLOW * law.friction + LEAST)
+    high = low = 0.0
+    for j in range(7):
+        size = 1.0 + (max(abs(state[j]), abs(new[j])) if j < 5 else 0.0)
+        size = max(min(size, small), LEAST) if 2 <= j < 5 else size
+        high += (fifth[j] / size) ** 2
+        low += (third[j] / size) ** 2
+    return h * high / (math.sqrt((high + 0.01 * low) * 7.0 + 1e-300) * tolerance)
+
+
+@inlined
+def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
+    """Return the share of a step after which the edge is met: the distance from it goes about by a parabola."""
+    slope = approach * h
+    bend = after - before - slope
+    root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))
+    share = abs(2.0 * before) / (abs(slope) + root + LEAST)
+    return min(max(share if approach * before < 0.0 else 0.5, 0.01), 0.99)
+
+
+@inlined
+def reasons(
+    state: DiscState, k: DiscState, new: DiscState, k1: DiscState, nearly: float, due: bool, fine: bool, watch: float
+) -> float:  # fmt: skip
+    """Return the flags of a step from ``state`` with the rates ``k`` to what is ``new``, with the rates ``k1``."""
+    s2 = new.ux * new.ux + new.uy * new.uy + new.r * new.r
+    turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
     flag = REST if (s2 < nearly * nearly) | fine else 0.0
     flag += IS_DUE if due else 0.0
-    flag += RIGHTMOST if (k[0] > 0.0) & (k1[0] <= 0.0) & ((watch == TURNS) | (watch == BOTH)) else 0.0
-    flag += EXTREME if extreme & (watch >= BOTH) else 0.0
+    flag += RIGHTMOST if (k.x > 0.0) & (k1.x <= 0.0) & ((watch == TURNS) | (watch == BOTH)) else 0.0
+    flag += EXTREME if turns & (watch >= BOTH) else 0.0
     return flag
 
 
 @scalar
-def idle(scratch: Any, lane: int) -> None:
+def idle(lanes: DiscLanes, lane: int) -> None:
     """Put into a lane what goes on for ever without being attended."""
-    for slot in range(SLOTS):
-        scratch[slot * LANES + lane] = 0.0
-    for slot in (LAW + 5, LAW + 6, TOLERANCE, TRIAL + STEP):
-        scratch[slot * LANES + lane] = 1.0
-    scratch[DURATION * LANES + lane] = scratch[DUE * LANES + lane] = math.inf
+    trial = lanes.trial
+    put(lanes.law, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0))
+    put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    put(trial.rates, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    trial.step[lane] = lanes.tolerance[lane] = 1.0
+    lanes.duration[lane] = lanes.due[lane] = math.inf
+    lanes.usual[lane] = lanes.watch[lane] = lanes.flag[lane] = lanes.steps[lane] = lanes.short[lane] = 0.0
 
 
 @inlined
-def law_of(scratch: Any, lane: int, around: Any) -> DiscLaw:
+def law_of(lanes: DiscLanes, lane: int, around: Tuple) -> DiscLaw:
     """Return the law of a lane."""
-    at = LAW * LANES + lane
-    return DiscLaw(
-        scratch[at],
-        scratch[at + LANES],
-        scratch[at + 2 * LANES],
-        scratch[at + 3 * LANES],
-        scratch[at + 4 * LANES],
-        scratch[at + 5 * LANES],
-        scratch[at + 6 * LANES],
-        scratch[at + 7 * LANES],
-        scratch[at + 8 * LANES],
-        scratch[at + 9 * LANES],
-        scratch[at + 10 * LANES],
-        around,
-    )
+    return DiscLaw(around, *at(lanes.law, lane))
 
 
 @inlined
-def eight_of(scratch: Any, lane: int, slot: int) -> Any:
-    """Return what stands in eight slots from ``slot`` on."""
-    at = slot * LANES + lane
-    return (
-        scratch[at],
-        scratch[at + LANES],
-        scratch[at + 2 * LANES],
-        scratch[at + 3 * LANES],
-        scratch[at + 4 * LANES],
-        scratch[at + 5 * LANES],
-        scratch[at + 6 * LANES],
-        scratch[at + 7 * LANES],
-    )
+def state_at(moment: Moment, lane: int) -> DiscState:
+    """Return the motion in a lane."""
+    return DiscState(*at(moment.state, lane))
 
 
 @inlined
-def put(scratch: Any, lane: int, values: Any) -> None:
-    """Put place, slip, angle, time and way into the slots of the trial."""
-    for j in range(8):
-        scratch[(TRIAL + j) * LANES + lane] = values[j]
+def rates_at(moment: Moment, lane: int) -> DiscState:
+    """Return its rates."""
+    return DiscState(*at(moment.rates, lane))
 
 
 @inlined
-def put_slipping(scratch: Any, lane: int, law: DiscLaw, rates: Any) -> None:
-    """Make ready the lane whose place stands in the slots of the trial, with a first step."""
-    k = rates(eight_of(scratch, lane, TRIAL)[:6], law)
-    for j in range(8):
-        scratch[(TRIAL + RATES + j) * LANES + lane] = k[j]
-    scratch[(TRIAL + STEP) * LANES + lane] = FIRST_STEP
-    scratch[USUAL * LANES + lane] = scratch[SHORT * LANES + lane] = 0.0
+def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> None:
+    """Make ready the lane whose place stands in its trial, with a first step."""
+    trial = lanes.trial
+    put(trial.rates, lane, rates(state_at(trial, lane)[:6], law))
+    trial.step[lane] = FIRST_STEP
+    lanes.usual[lane] = lanes.short[lane] = 0.0
 
 
 @scalar
-def last_arc(scratch: Any, lane: int) -> Arc:
+def last_step(lanes: DiscLanes, lane: int) -> DenseOutput:
     """Return the motion of the centre in the last step, of fifth order: by what it is at both ends."""
-    h = scratch[(TRIAL + TIME) * LANES + lane] - scratch[TIME * LANES + lane]
-    omega = scratch[(LAW + 3) * LANES + lane]
-    z0, v0, a0 = _motion(eight_of(scratch, lane, X), eight_of(scratch, lane, RATES), omega)
-    z1, v1, a1 = _motion(eight_of(scratch, lane, TRIAL), eight_of(scratch, lane, TRIAL + RATES), omega)
+    now, trial = lanes.now, lanes.trial
+    h, omega = trial.state.time[lane] - now.state.time[lane], lanes.law.disc_speed[lane]
+    z0, v0, a0 = _motion(state_at(now, lane), rates_at(now, lane), omega)
+    z1, v1, a1 = _motion(state_at(trial, lane), rates_at(trial, lane), omega)
     way, scale = 60.0 * (z1 - z0), 1.0 / h**3
     j0 = scale * (way - h * (36.0 * v0 + 24.0 * v1) - h * h * (9.0 * a0 - 3.0 * a1))
     j1 = scale * (way - h * (24.0 * v0 + 36.0 * v1) - h * h * (3.0 * a0 - 9.0 * a1))
-    return arc_between(h, Motion(z0, v0, a0, j0), Motion(z1, v1, a1, j1))
+    return dense_output(h, Motion(z0, v0, a0, j0), Motion(z1, v1, a1, j1))
 
 
 @inlined
-def _motion(q: Any, k: Any, omega: float) -> Any:
+def _motion(state: DiscState, k: DiscState, omega: float) -> tuple[complex, complex, complex]:
     """Return place, velocity and acceleration of the centre."""
-    pace, v = 1.0 / k[6], complex(k[0], k[1])
-    return complex(q[0], q[1]), pace * v, pace * (complex(k[2], k[3]) + 1j * omega * v)
+    pace, v = 1.0 / k.time, complex(k.x, k.y)
+    return complex(state.x, state.y), pace * v, pace * (complex(k.ux, k.uy) + 1j * omega * v)
 
 
 @inlined
-def slip_left(scratch: Any, lane: int) -> Any:
+def slowing(state: DiscState, k: DiscState) -> tuple[float, float]:
+    """Return slip speed, and how fast it falls."""
+    s = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
+    return s, -(state.ux * k.ux + state.uy * k.uy + state.r * k.r) / (s * k.time)
+
+
+@inlined
+def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
     """Return slip speed, and the time that it would last if it went on falling as it does; inf if it does not."""
-    _, _, ux, uy, r, _, _, _ = eight_of(scratch, lane, TRIAL)
-    k = eight_of(scratch, lane, TRIAL + RATES)
-    s = math.sqrt(ux * ux + uy * uy + r * r)
-    falling = -(ux * k[2] + uy * k[3] + r * k[4]) / (s * k[6])
+    s, falling = slowing(state_at(lanes.trial, lane), rates_at(lanes.trial, lane))
     return s, (s / falling if falling > 0.0 else math.inf)
 
 
 @scalar
-def comes_to_rest(scratch: Any, lane: int, law: DiscLaw) -> bool:
+def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
     """Tell whether slip ends within a moment, and let it: it falls linearly. As slow as rounding, it ends at once."""
-    x, y, ux, uy, r, angle, t, way = eight_of(scratch, lane, TRIAL)
-    k = eight_of(scratch, lane, TRIAL + RATES)
-    s = math.sqrt(ux * ux + uy * uy + r * r)
-    falling = -(ux * k[2] + uy * k[3] + r * k[4]) / (s * k[6])
+    trial = lanes.trial
+    state = state_at(trial, lane)
+    x, y, ux, uy, r, angle, t, way = state
+    k = rates_at(trial, lane)
+    s, falling = slowing(state, k)
     if not falling > 0.0:
         return False
     left = s / falling
-    across = (k[2] / k[6] + falling * ux / s, k[3] / k[6] + falling * uy / s, k[4] / k[6] + falling * r / s)
-    bend = left * math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2) / falling
+    turning_x, turning_y = k.ux / k.time + falling * ux / s, k.uy / k.time + falling * uy / s
+    turning_r = k.r / k.time + falling * r / s
+    bend = left * math.sqrt(turning_x**2 + turning_y**2 + turning_r**2) / falling
     pace = abs(law.disc_speed) + law.shaft_rate + 1.0
     if bend + left * left * pace >= REST_TIME:
         if s <= LEAST_SLIP:
-            put(scratch, lane, (x, y, 0.0, 0.0, 0.0, angle, t, way))
+            put(trial.state, lane, (x, y, 0.0, 0.0, 0.0, angle, t, way))
         return bool(s <= LEAST_SLIP)
-    delay = min(left, scratch[DURATION * LANES + lane] - t)
+    delay = min(left, lanes.duration[lane] - t)
     remains = 1.0 - delay / left
     mean = 0.5 * (1.0 + remains) * delay
-    middle = complex(x, y) + (0.5 * delay / k[6]) * complex(k[0], k[1])
+    middle = complex(x, y) + (0.5 * delay / k.time) * complex(k.x, k.y)
     z = complex(x, y) + mean * complex(ux, uy) + delay * 1j * law.disc_speed * middle
     angle += law.disc_speed * delay + law.curling * r * mean
-    slip = remains * ux, remains * uy, remains * r
-    put(
-        scratch, lane, (z.real, z.imag, slip[0], slip[1], slip[2], angle, t + delay, way + k[7] / k[6] * mean)
-    )
+    way += k.way / k.time * mean
+    put(trial.state, lane, (z.real, z.imag, remains * ux, remains * uy, remains * r, angle, t + delay, way))
     return True
 
 
 @scalar
-def begin_slip(scratch: Any, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
+def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
     """Let a disc on a ring slip from rest at ``z``; tell whether the motion could be resolved."""
+    trial = lanes.trial
     n, turning, first, taken = direction(z, law)
-    way = scratch[(TRIAL + WAY) * LANES + lane]
+    way = trial.state.way[lane]
     if first > SUDDEN * taken:
         u = LEAST_SLIP * n
-        put(scratch, lane, (z.real, z.imag, u.real, u.imag, LEAST_SLIP * turning, angle, t, way))
+        put(trial.state, lane, (z.real, z.imag, u.real, u.imag, LEAST_SLIP * turning, angle, t, way))
         return True
-    left = min(scratch[DURATION * LANES + lane] - t, LONGEST_GROWTH)
+    left = min(lanes.duration[lane] - t, LONGEST_GROWTH)
     z, u, r, took, curl, work = grown(z, n, turning, max(first, 0.0), left, law)
     angle += law.disc_speed * took + law.curling * curl
-    put(scratch, lane, (z.real, z.imag, u.real, u.imag, r, angle, t + took, way + work))
+    put(trial.state, lane, (z.real, z.imag, u.real, u.imag, r, angle, t + took, way + work))
     return bool(took > 0.0)

@@ -9,17 +9,18 @@ equations are smooth and not stiff down to s = 0.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from reference_model.ensemble.core.contact_shares import LEAST, ring_shares
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import (
+    DiscLaw,
     PinLaw,
     points_friction,
     pull,
     release_delay,
     ring_friction,
 )
+from reference_model.ensemble.core.runge_kutta import Tuple
 
 HALVINGS = 60
 """Of an interval of order one: what is left is rounding."""
@@ -29,7 +30,7 @@ ANGLES = 64
 
 
 @inlined
-def _rates(y: Any, law: Any, friction: Any) -> Any:
+def _rates(y: Tuple, law: DiscLaw, friction: tuple[float, float, float, float]) -> Tuple:
     x, y_, ux, uy, r, _ = y
     fx, fy, fr, power = friction
     s = math.sqrt(ux * ux + uy * uy + r * r)
@@ -43,19 +44,19 @@ def _rates(y: Any, law: Any, friction: Any) -> Any:
 
 
 @inlined
-def ring_rates(y: Any, law: Any) -> Any:
+def ring_rates(y: Tuple, law: DiscLaw) -> Tuple:
     """Return the rates of the unknowns of a disc on a ring by stretched time; then dt/dτ, and P times that."""
     return _rates(y, law, ring_friction(y[2], y[3], y[4], y[5], law))
 
 
 @inlined
-def points_rates(y: Any, law: Any) -> Any:
+def points_rates(y: Tuple, law: DiscLaw) -> Tuple:
     """Do as :func:`ring_rates` for points on a ring."""
     return _rates(y, law, points_friction(y[2], y[3], y[4], y[5], law))
 
 
 @inlined
-def ring_edge(y: Any, rates: Any, law: Any) -> Any:
+def ring_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
     """Return U − η|r| and its rate: where it is zero a point of the ring rests, and friction has infinite slopes."""
     _, _, ux, uy, r, _ = y
     u, w = math.sqrt(ux * ux + uy * uy), abs(r)
@@ -64,13 +65,13 @@ def ring_edge(y: Any, rates: Any, law: Any) -> Any:
 
 
 @inlined
-def no_edge(y: Any, rates: Any, law: Any) -> Any:
+def no_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
     """Return what :func:`ring_edge` does where friction is smooth but at rest."""
     return 1.0, 0.0
 
 
 @scalar
-def held_friction(law: Any) -> float:
+def held_friction(law: DiscLaw) -> float:
     """Return the force that friction of a ring can hold beside the moment of the shaft, < 0 where not even that.
 
     As ``sticking.stuck_centre``: force and moment of the limit surface are those of slip with all ratios of U and W.
@@ -91,7 +92,7 @@ def held_friction(law: Any) -> float:
 
 
 @scalar
-def stuck_for(z: complex, held: float, law: Any) -> float:
+def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
     """Return how long a disc on a ring rests at ``z`` whose centre friction can hold with ``held``."""
     if held < 0.0 or abs(pull(z, 0j, law)) > held:
         return 0.0
@@ -99,7 +100,7 @@ def stuck_for(z: complex, held: float, law: Any) -> float:
 
 
 @scalar
-def direction(z: complex, law: Any) -> Any:
+def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
     """Return (n_u, n_r), along which slip begins, how fast it does, and what friction takes of that.
 
     As ``sticking.slip_direction``.
@@ -127,7 +128,7 @@ def direction(z: complex, law: Any) -> Any:
 
 
 @scalar
-def _growth(beta: float, strength: float, law: Any) -> Any:
+def _growth(beta: float, strength: float, law: DiscLaw) -> tuple[float, float, float]:
     """Return the parts of a − g∇P along n and across it for n = (cos β along the pull, sin β), and g·P(n)."""
     c, s = math.cos(beta), math.sin(beta)
     fx, _, fr, power = ring_friction(c, 0.0, s, 0.0, law)

@@ -6,14 +6,13 @@ to the inside of the unit circle. So its powers vanish if all do.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
 from reference_model.ensemble.core.linear import powers_vanish, solve
+from reference_model.systems import FloatArray
 
 APART = 1e-5
 """Differences, in units of the motion, by which rates are differentiated."""
@@ -55,7 +54,7 @@ def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bo
 
 
 @scalar
-def _rates(y: Any, law: DiscLaw, circle: bool) -> Any:
+def _rates(y: FloatArray, law: DiscLaw, circle: bool) -> tuple[float, float, float, float, float]:
     """Return the rates of x, y, vx, vy, r or, as what turns with the centre, of ρ, v along and across, r, and 0."""
     if circle:
         z, v, r = complex(y[0]), complex(y[1], y[2]), y[3]

@@ -18,18 +18,17 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.disc.kernel import CIRCLE
+from reference_model.ensemble.core.records import layout
+from reference_model.ensemble.disc.memory import Region
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
-
-REGION = 25
-"""Numbers of a region: kind; centre (5); matrix, its upper triangle row by row (15); level of V; least and largest
-radius in m and slip speed in m/s of the motion in it."""
 
 DIRECTIONS, LEVELS = 4000, 60
 SMALLEST, LARGEST = 1e-4, 30.0
@@ -49,10 +48,10 @@ SAFE = 0.5
 
 
 @lru_cache(maxsize=64)
-def known_regions(disc: DiscOnDisc) -> FloatArray:
-    """Return what is known of the stable motions of ``disc``, shape (m, REGION)."""
+def known_regions(disc: DiscOnDisc) -> NDArray[Any]:
+    """Return what is known of the stable motions of ``disc``, ``Region``, shape (m,)."""
     ring = replace(disc, contact_points=None)
-    rows = []
+    regions = []
     try:
         for point in self_centred_equilibria(ring):
             if point.stable:
@@ -60,15 +59,21 @@ def known_regions(disc: DiscOnDisc) -> FloatArray:
                     [point.x, point.y, 0.0, 0.0, _gyration(disc) * (point.spin - disc.disc_speed)]
                 )
                 radius = math.hypot(point.x, point.y)
-                rows.append(_region(disc, 0.0, centre, radius, _at_rest))
+                regions.append(_region(disc, False, centre, radius, _at_rest))
         for whirl in whirls(ring) if disc.offset == 0.0 else ():
             if whirl.stable:
                 turning = _gyration(disc) * (whirl.spin - disc.disc_speed)
                 centre = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, turning])
-                rows.append(_region(disc, CIRCLE, centre, whirl.radius, _turning))
+                regions.append(_region(disc, True, centre, whirl.radius, _turning))
     except ValueError:
-        return np.zeros((0, REGION))  # a point of the ring rests there, and nothing can be linearised
-    return np.array([row for row in rows if row[21] > 0.0]).reshape(-1, REGION)
+        return no_regions()  # a point of the ring rests there, and nothing can be linearised
+    known = [region for region in regions if region["level"] > 0.0]
+    return np.array(known, dtype=layout(Region))
+
+
+def no_regions() -> NDArray[Any]:
+    """Return as much where nothing is known."""
+    return np.zeros(0, layout(Region))
 
 
 def _gyration(disc: DiscOnDisc) -> float:
@@ -116,13 +121,12 @@ def _turning(disc: DiscOnDisc, states: FloatArray) -> FloatArray:
 
 def _region(
     disc: DiscOnDisc,
-    kind: float,
+    circle: bool,
     centre: FloatArray,
     radius: float,
     rates: Callable[[DiscOnDisc, FloatArray], FloatArray],
-) -> FloatArray:
+) -> Any:
     """Return the region about a stable motion; its level is 0 if there is none."""
-    circle = kind == CIRCLE
     d, k = len(centre), disc.natural_frequency
     length = max(radius, disc.friction_force / disc.stiffness) or disc.contact_radius
     scale = np.array([length, *[length * k] * 3] if circle else [length] * 2 + [length * k] * 3)
@@ -151,16 +155,16 @@ def _region(
     if inner > INNER * size:
         size = 0.0
 
-    row = np.zeros(REGION)
-    row[0], row[1 : 1 + d] = kind, centre
+    region = np.zeros((), layout(Region))
+    region["circle"], region["centre"][:d] = circle, centre
     matrix = np.zeros((5, 5))
     matrix[:d, :d] = form / np.outer(scale, scale)
-    row[6:21] = matrix[np.triu_indices(5)]
-    row[21] = SAFE * (size / largest) ** 2
+    region["form"] = tuple(matrix[np.triu_indices(5)])
+    region["level"] = SAFE * (size / largest) ** 2
     z, v = (centre[0], 1j * centre[2]) if circle else (complex(*centre[:2]), 0j)
     slip = _accelerations(ring, np.array([z]), np.array([v]), centre[d - 1 :])[2][0]
-    row[22:] = radius, radius, slip
-    return row
+    region["measures"] = radius, radius, slip
+    return region
 
 
 def _values(form: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from reference_model.ensemble.checkpoints import Checkpoints, room_for
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Ensemble, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
-from reference_model.ensemble.pin.memory import KNOWN
+from reference_model.ensemble.pin.memory import nothing_known
 from reference_model.ensemble.pin.trapping import known_ends
 from reference_model.ensemble.recording import Recording
 from reference_model.systems import FloatArray, PinOnDisc
@@ -29,14 +30,15 @@ def simulate_pins(
 ) -> Ensemble:
     """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` pins."""
     table = parameter_table(pin, PARAMETERS, varied)
-    known = np.zeros(KNOWN)  # an array that may be written to: the kernel is compiled for one kind
+    known = nothing_known()  # an array that may be written to: the kernel is compiled for one kind
     if not varied:
         known[:] = known_ends(pin)
     local = tolerance_of_steps(tolerance)
     task, results = PinTask(table, starts, np.full(1, duration)), Results.empty(n, pin.state_size)
+    nowhere = room_for(0, pin.state_size)
 
     def run(first: int, last: int) -> None:
-        run_pins(task, local, early_end, False, known, results, first, last)
+        run_pins(task, local, early_end, False, known, nowhere, results, first, last)
 
     in_chunks(run, n, threads)
     return results.ensemble(varied.get("friction_force", pin.friction_force))
@@ -45,12 +47,12 @@ def simulate_pins(
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a pin from ``state`` on."""
     local = tolerance_of_steps(tolerance)
-    table, nothing = parameter_table(pin, PARAMETERS), np.zeros(KNOWN)
+    table, known = parameter_table(pin, PARAMETERS), nothing_known()
 
-    def run(starts: FloatArray, durations: FloatArray, notes: FloatArray) -> Results:
-        results = Results.empty(len(starts), pin.state_size)._replace(notes=notes)
+    def run(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
+        results = Results.empty(len(starts), pin.state_size)
         task = PinTask(table, starts, durations)
-        run_pins(task, local, False, False, nothing, results, 0, len(starts))
+        run_pins(task, local, False, False, known, checkpoints, results, 0, len(starts))
         return results
 
     recording.follow(run, run, state, 0.0)

@@ -7,12 +7,12 @@ Stuck for ever
     size δ^(3/2), and its way, by which the radius changes, ~δ². That leads inward where k > |ω|, and there is no
     radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
     what is left, creeps on for ever and never beyond that radius: it counts as stuck there
-    (``pin_slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
-    is damped enough not to pass by (``pin_slip.creeps_steadily``).
+    (``slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
+    is damped enough not to pass by (``slip.creeps_steadily``).
 
 Self-centred
     The motion is inside of a neighbourhood of the equilibrium (3) from which everything goes there: a level of a
-    quadratic form V. Where the parameters of all trajectories are the same, ``regions`` finds it. Else it follows
+    quadratic form V. Where the parameters of all trajectories are the same, ``trapping`` finds it. Else it follows
     from an estimate. With the deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
@@ -25,11 +25,11 @@ Whirl
     The places where x is largest make up a section that every closed orbit crosses once a turn. On it a stable orbit
     is a fixed point, in whose neighbourhood the distance shrinks geometrically. Where the parameters of all
     trajectories are the same, the orbit is found beforehand, and a neighbourhood that the return map contracts
-    (``regions``): a trajectory that crosses the section in it stays in it. Else the trajectory itself must show it:
+    (``trapping``): a trajectory that crosses the section in it stays in it. Else the trajectory itself must show it:
     with d the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is what
     is left to go, and that must be below ACCURACY of the speed at the crossing, which would vanish at an
     equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. Since a motion may
-    come close to an orbit that is unstable and leave it later, the orbit must attract, too (``pin_stability``).
+    come close to an orbit that is unstable and leave it later, the orbit must attract, too (``stability``).
 
 Stick–slip
     Released pins of one set of parameters differ in a single number, their distance from the axis: from there on the

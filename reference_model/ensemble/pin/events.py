@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
 
 from reference_model.ensemble.checkpoints import ON_THE_WAY, SLIPS, STICKS
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.dense_output import (
-    Arc,
+    DenseOutput,
     place_on,
     velocity_on,
     way_along,
@@ -16,74 +15,38 @@ from reference_model.ensemble.core.dense_output import (
     where_rightmost,
 )
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.lanes import LANES
 from reference_model.ensemble.core.laws import PinLaw, pull, release_delay
-from reference_model.ensemble.end_states import EndState
-from reference_model.ensemble.pin.end_states import Form, Well, depth
+from reference_model.ensemble.core.window import NO_WINDOW, open_window, see_radius
+from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
+from reference_model.ensemble.pin.end_states import Well, depth
 from reference_model.ensemble.pin.lanes import (
-    DUE,
     EXTREME,
-    FLAG,
     IS_DUE,
     LANDING,
     LOST,
-    MOST_STEPS,
     RADII,
     REST,
     RIGHTMOST,
-    STEPS,
     STIFF,
-    TIME,
-    TRIAL,
     TURNS,
     UNWATCHED,
-    WATCH,
-    WAY,
+    PinLanes,
     landed,
-    last_arc,
+    last_step,
     law_of,
-    place_of,
+    place_at,
     put_place,
     put_slipping,
-    slip_of,
+    slip_at,
 )
 from reference_model.ensemble.pin.memory import (
-    DURATION,
-    END,
-    FORM,
-    KNOWN_LARGEST,
-    KNOWN_LEAST,
-    KNOWN_METRIC,
-    KNOWN_REACH,
-    KNOWN_SLIP,
-    KNOWN_TURN,
-    LENGTH,
-    LEVEL,
-    MEASURED,
-    NO_WINDOW,
     OF_RELEASE,
     OF_TURN,
-    RATE,
-    RELEASE,
-    RELEASE_BEFORE,
-    RELEASE_COUNT,
-    RELEASE_LAST,
-    SINCE,
-    TICK,
-    TURN_BEFORE,
-    TURN_COUNT,
-    TURN_LAST,
-    TURN_V,
-    TURN_X,
-    TURN_Y,
-    WELL_X,
-    WELL_Y,
+    Aims,
+    PinMemory,
     close_window,
     keep,
-    note,
-    note_radius,
-    open_window,
-    takes_notes,
+    take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (
     begin_slip,
@@ -95,15 +58,6 @@ from reference_model.ensemble.pin.slip import (
 )
 from reference_model.ensemble.pin.stability import orbit_attracts
 from reference_model.ensemble.pin.stride import stride
-from reference_model.systems import FloatArray
-
-UNDECIDED, SELF_CENTRED, WHIRL, STUCK, STICK_SLIP = (
-    int(EndState.UNDECIDED),
-    int(EndState.SELF_CENTRED),
-    int(EndState.WHIRL),
-    int(EndState.STUCK),
-    int(EndState.STICK_SLIP),
-)
 
 SERIES_SHARE = 0.1
 """Of the tolerance, for the last terms of the series by which slip begins."""
@@ -118,273 +72,260 @@ AFTER_START = 1e-3
 """In units of time: a crossing before it is the start itself, on the section but for rounding."""
 
 
-class Aims(NamedTuple):
-    """What scalar code must know of the task; few arrays, since each costs time in every call.
-
-    ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section;
-    ``known`` (KNOWN,) is what is known of end states beforehand; ``series`` is room for how slip begins.
-    """
-
-    tolerance: float
-    early: bool
-    once: bool
-    known: FloatArray
-    series: Any
-
-
 @scalar
-def attend(scratch: Any, book: Any, lane: int, aims: Aims) -> bool:
+def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
     """See to what the flag of a lane says; return whether its trajectory ends here."""
-    page = book[lane]
-    law = law_of(scratch, lane)
-    if int(scratch[FLAG * LANES + lane]) & STIFF:
-        stride(scratch, page, lane, law)
-    flag = int(scratch[FLAG * LANES + lane])
-    later = scratch[(TRIAL + TIME) * LANES + lane]
+    law = law_of(lanes, lane)
+    if int(lanes.flag[lane]) & STIFF:
+        stride(lanes, memory, lane, law)
+    flag = int(lanes.flag[lane])
+    later = lanes.trial.state.time[lane]
     if flag & LOST:
-        page[END] = UNDECIDED
+        memory.end = UNDECIDED
         return True
-    if flag & IS_DUE and later >= page[DURATION] - LANDING:
-        if not landed(scratch, lane, page[DURATION]):
+    if flag & IS_DUE and later >= memory.duration - LANDING:
+        if not landed(lanes, lane, memory.duration):
             return False
-        settle(scratch, page, lane, law)
+        settle(lanes, memory, lane, law)
         return True
-    if flag & IS_DUE and watch_well(scratch, page, lane, later, law, aims):
+    if flag & IS_DUE and watch_well(lanes, memory, lane, later, law, aims):
         return True
     if flag & (RIGHTMOST | EXTREME):
-        arc = last_arc(scratch, lane, law)
-        turns, u = where_radius_turns(arc), 1.0
+        step = last_step(lanes, lane, law)
+        turns, u = where_radius_turns(step), 1.0
         if flag & RIGHTMOST:
-            u = where_rightmost(arc)
+            u = where_rightmost(step)
         if turns <= u:
-            note_radius(page, abs(place_on(arc, turns)))
+            see_radius(memory.window, abs(place_on(step, turns)))
         if flag & RIGHTMOST:
-            z, v = place_on(arc, u), velocity_on(arc, u)
-            if turn_made(scratch, page, lane, arc, u, law, aims):
-                put_place(scratch, lane, z, v - 1j * law.disc_speed * z)
-                scratch[(TRIAL + TIME) * LANES + lane] = scratch[TIME * LANES + lane] + u * arc.span
+            z, v = place_on(step, u), velocity_on(step, u)
+            if turn_made(lanes, memory, lane, step, u, law, aims):
+                put_place(lanes.trial, lane, z, v - 1j * law.disc_speed * z)
+                lanes.trial.state.time[lane] = lanes.now.state.time[lane] + u * step.span
                 return True
-            if watch_well(scratch, page, lane, later, law, aims):
+            if watch_well(lanes, memory, lane, later, law, aims):
                 return True
         if u < turns <= 1.0:
-            note_radius(page, abs(place_on(arc, turns)))  # of a window that opened at u
+            see_radius(memory.window, abs(place_on(step, turns)))  # of a window that opened at u
     if flag & REST:
-        return maybe_rest(scratch, page, lane, law, aims)
+        return maybe_rest(lanes, memory, lane, law, aims)
     return False
 
 
 @scalar
-def watch_well(scratch: Any, page: Any, lane: int, later: float, law: PinLaw, aims: Aims) -> bool:
+def watch_well(lanes: PinLanes, memory: PinMemory, lane: int, later: float, law: PinLaw, aims: Aims) -> bool:
     """Look whether the motion is captured by the equilibrium, and say when to look again."""
-    if scratch[WATCH * LANES + lane] == UNWATCHED and law.friction > 0.0 and page[END] == UNDECIDED:
-        scratch[WATCH * LANES + lane] = TURNS
-    scratch[DUE * LANES + lane] = min(later + page[TICK], page[DURATION] - LANDING)
-    if takes_notes(page):
-        note(page, ON_THE_WAY, later, place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL), law)
-    if page[END] != UNDECIDED or not in_well(scratch, page, lane, law):
+    if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
+        lanes.watch[lane] = TURNS
+    lanes.due[lane] = min(later + memory.tick, memory.duration - LANDING)
+    take_checkpoint(
+        memory, ON_THE_WAY, later, place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, aims
+    )
+    if memory.end != UNDECIDED or not in_well(lanes, memory, lane, law):
         return False
-    scratch[WATCH * LANES + lane] = UNWATCHED
-    page[END] = SELF_CENTRED
-    radius = math.hypot(page[WELL_X], page[WELL_Y])
-    keep(page, radius, radius, abs(law.disc_speed) * radius)
+    lanes.watch[lane] = UNWATCHED
+    memory.end = SELF_CENTRED
+    radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
+    keep(memory, radius, radius, abs(law.disc_speed) * radius)
     return aims.early
 
 
 @scalar
-def in_well(scratch: Any, page: Any, lane: int, law: PinLaw) -> bool:
+def in_well(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
     """Tell whether the motion is captured by the equilibrium."""
-    level: float = page[LEVEL]
+    level = memory.level
     if level <= 0.0:
         return False
-    form = Form(
-        page[FORM], page[FORM + 1], page[FORM + 2], page[FORM + 3], page[FORM + 4],
-        page[FORM + 5], page[FORM + 6], page[FORM + 7], page[FORM + 8], page[FORM + 9],
-    )  # fmt: skip
-    well = Well(complex(page[WELL_X], page[WELL_Y]), form, level)
-    return depth(place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL), law, well) <= level
+    well = Well(memory.equilibrium, memory.form, level)
+    return depth(place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
 
 
 @scalar
-def turn_made(scratch: Any, page: Any, lane: int, arc: Arc, u: float, law: PinLaw, aims: Aims) -> bool:
-    """Take note of a crossing of the section at u on an arc; return whether the trajectory ends."""
-    if page[END] != UNDECIDED:
+def turn_made(
+    lanes: PinLanes, memory: PinMemory, lane: int, step: DenseOutput, u: float, law: PinLaw, aims: Aims
+) -> bool:
+    """Take note of a crossing of the section at u in a step; return whether the trajectory ends."""
+    if memory.end != UNDECIDED:
         return False
-    z, speed = place_on(arc, u), velocity_on(arc, u).imag
-    t = scratch[TIME * LANES + lane] + u * arc.span
+    z, speed = place_on(step, u), velocity_on(step, u).imag
+    t = lanes.now.state.time[lane] + u * step.span
     if aims.once:
         if t < AFTER_START:
             return False
-        page[END] = WHIRL
+        memory.end = WHIRL
         return True
-    if in_reach(page, z, speed, law, aims):
-        page[END] = WHIRL
-        scratch[WATCH * LANES + lane] = UNWATCHED
+    if in_reach(memory, z, speed, law, aims):
+        memory.end = WHIRL
+        lanes.watch[lane] = UNWATCHED
         return aims.early
+    turns = memory.turns
     distance = math.sqrt(
-        (z.real - page[TURN_X]) ** 2 + (z.imag - page[TURN_Y]) ** 2 + (speed - page[TURN_V]) ** 2
+        (z.real - turns.place.real) ** 2 + (z.imag - turns.place.imag) ** 2 + (speed - turns.speed) ** 2
     )
-    before, first = page[TURN_LAST], page[TURN_BEFORE]
-    page[TURN_X], page[TURN_Y], page[TURN_V] = z.real, z.imag, speed
-    page[TURN_LAST], page[TURN_BEFORE] = distance, before
-    page[TURN_COUNT] += 1.0
-    if page[TURN_COUNT] < 5.0 or not converged(distance, before, first, abs(speed)):
+    before, first = turns.last, turns.before
+    turns.place, turns.speed = z, speed
+    turns.last, turns.before = distance, before
+    turns.count += 1
+    if turns.count < 5 or not converged(distance, before, first, abs(speed)):
         return False
-    way = scratch[WAY * LANES + lane] + way_along(arc, u, law.disc_speed)
-    if page[MEASURED] == OF_TURN:
-        if not orbit_attracts(z, velocity_on(arc, u), t - page[SINCE], law):
-            forget_turns(scratch, page, lane)
+    way = lanes.now.state.way[lane] + way_along(step, u, law.disc_speed)
+    if memory.window.kind == OF_TURN:
+        if not orbit_attracts(z, velocity_on(step, u), t - memory.window.since, law):
+            forget_turns(lanes, memory, lane)
             return False
-        close_window(page, WHIRL, t, way, abs(z))
-        scratch[WATCH * LANES + lane] = UNWATCHED
+        close_window(memory, WHIRL, t, way, abs(z))
+        lanes.watch[lane] = UNWATCHED
         return aims.early
-    open_window(page, OF_TURN, t, way, abs(z))
-    scratch[WATCH * LANES + lane] = RADII
+    open_window(memory.window, OF_TURN, t, way, abs(z))
+    lanes.watch[lane] = RADII
     return False
 
 
 @scalar
-def in_reach(page: Any, z: complex, speed: float, law: PinLaw, aims: Aims) -> bool:
+def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aims) -> bool:
     """Tell whether the motion crosses the section where the known whirl attracts."""
-    known, length = aims.known, page[LENGTH]
-    if known[KNOWN_REACH] <= 0.0:
+    known, turn, metric, length = aims.known, aims.known.turn, aims.known.metric, memory.length
+    if known.reach <= 0.0:
         return False
-    x, y = z.real * length - known[KNOWN_TURN], z.imag * length - known[KNOWN_TURN + 1]
-    v = speed * length / math.sqrt(law.stiffness) - known[KNOWN_TURN + 2]
+    x, y = z.real * length - turn.x, z.imag * length - turn.y
+    v = speed * length / math.sqrt(law.stiffness) - turn.v
     square = (
-        x * (known[KNOWN_METRIC] * x + 2.0 * (known[KNOWN_METRIC + 1] * y + known[KNOWN_METRIC + 2] * v))
-        + y * (known[KNOWN_METRIC + 3] * y + 2.0 * known[KNOWN_METRIC + 4] * v)
-        + known[KNOWN_METRIC + 5] * v * v
+        x * (metric.xx * x + 2.0 * (metric.xy * y + metric.xv * v))
+        + y * (metric.yy * y + 2.0 * metric.yv * v)
+        + metric.vv * v * v
     )
-    if square > known[KNOWN_REACH]:
+    if square > known.reach:
         return False
-    pace = length * page[RATE]
-    keep(page, known[KNOWN_LEAST] / length, known[KNOWN_LARGEST] / length, known[KNOWN_SLIP] / pace)
+    measures, pace = known.measures, length * memory.rate
+    keep(memory, measures.least / length, measures.largest / length, measures.slip / pace)
     return True
 
 
 @scalar
-def maybe_rest(scratch: Any, page: Any, lane: int, law: PinLaw, aims: Aims) -> bool:
+def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims: Aims) -> bool:
     """Bring the pin to rest if what is left of slip can be told; return whether the trajectory ends."""
-    z, w = place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL)
-    t, s = scratch[(TRIAL + TIME) * LANES + lane], abs(w)
+    z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    t, s = lanes.trial.state.time[lane], abs(w)
     creeps = creeps_steadily(z, w, law)
     if creeps:
         place = creeping_ends(z, law)
-        if page[END] == UNDECIDED:
-            page[END] = STUCK
+        if memory.end == UNDECIDED:
+            memory.end = STUCK
             radius = sticking_radius(law) if law.offset == 0.0 else abs(place)
-            keep(page, radius, radius, 0.0)
+            keep(memory, radius, radius, 0.0)
             if aims.early:
                 return True
         creeps = max(s, abs(place - z)) < max(SPENT_SHARE * aims.tolerance, REVERSAL_SLIP)
     left = time_to_rest(z, w, law, aims.tolerance)
     if creeps or (left == math.inf and s < REVERSAL_SLIP):
         left = 0.0
-    if not t + left < page[DURATION]:
+    if not t + left < memory.duration:
         return False
     middle = z + 0.5 * left * (0.75 * w + 1j * law.disc_speed * z)
     z += left * (0.5 * w + 1j * law.disc_speed * middle)
-    scratch[(TRIAL + WAY) * LANES + lane] += 0.5 * s * left
-    return rest(scratch, page, lane, z, t + left, law, aims, creeps)
+    lanes.trial.state.way[lane] += 0.5 * s * left
+    return rest(lanes, memory, lane, z, t + left, law, aims, creeps)
 
 
 @scalar
 def rest(
-    scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, aims: Aims, creeps: bool
+    lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, aims: Aims, creeps: bool
 ) -> bool:
     """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before.
 
     One that ``creeps`` slips so slowly that it might as well rest, for ever.
     """
-    end: float = page[DURATION]
+    end = memory.duration
     w = 0j
-    forget_turns(scratch, page, lane)
+    forget_turns(lanes, memory, lane)
     if aims.once:
-        page[END] = STUCK
+        memory.end = STUCK
         return True
     while w == 0j and t < end:
-        scratch[STEPS * LANES + lane] += 1.0
-        if scratch[STEPS * LANES + lane] > scratch[MOST_STEPS * LANES + lane]:
-            page[END], end = UNDECIDED, t  # given up
+        lanes.steps[lane] += 1.0
+        if lanes.steps[lane] > lanes.most_steps[lane]:
+            memory.end, end = UNDECIDED, t  # given up
         if creeps or abs(pull(z, 0j, law)) <= law.friction:
             held = math.inf if creeps else release_delay(z, law)
-            if held > 0.0 and not creeps and takes_notes(page):
-                note(page, STICKS, t, z, w, law)
+            if held > 0.0 and not creeps:
+                take_checkpoint(memory, STICKS, t, z, w, law, aims)
             if held == math.inf:
-                if page[END] == UNDECIDED or not creeps:
-                    page[END] = STUCK
-                    keep(page, abs(z), abs(z), 0.0)
+                if memory.end == UNDECIDED or not creeps:
+                    memory.end = STUCK
+                    keep(memory, abs(z), abs(z), 0.0)
                 if aims.early:
                     end = t
             turn = law.disc_speed * min(held, end - t)
             z *= complex(math.cos(turn), math.sin(turn))
             t += held
-            if t < end and held > 0.0 and takes_notes(page):
-                note(page, SLIPS, t, z, w, law)
-            if t < end and held > 0.0 and released(scratch, page, lane, z, t, law, aims):
+            if t < end and held > 0.0:
+                take_checkpoint(memory, SLIPS, t, z, w, law, aims)
+            if t < end and held > 0.0 and released(lanes, memory, lane, z, t, law, aims):
                 end = t
         if t < end:
             z, w, took, way = begin_slip(z, law, SERIES_SHARE * aims.tolerance, end - t, aims.series)
             t += took
-            scratch[(TRIAL + WAY) * LANES + lane] += way
-    scratch[(TRIAL + TIME) * LANES + lane] = min(t, end)
+            lanes.trial.state.way[lane] += way
+    lanes.trial.state.time[lane] = min(t, end)
     if w == 0j:
-        put_place(scratch, lane, z, w)
+        put_place(lanes.trial, lane, z, w)
     else:
-        put_slipping(scratch, lane, z, w, law)
+        put_slipping(lanes, lane, z, w, law)
     return t >= end  # one that has just begun to slip at the very end has ended too
 
 
 @inlined
-def forget_turns(scratch: Any, page: Any, lane: int) -> None:
+def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
     """Begin anew with crossings of the section."""
-    page[TURN_COUNT] = 0.0
-    if scratch[WATCH * LANES + lane] == RADII and page[MEASURED] == OF_TURN:
-        page[MEASURED] = NO_WINDOW
-        scratch[WATCH * LANES + lane] = TURNS
+    memory.turns.count = 0
+    if lanes.watch[lane] == RADII and memory.window.kind == OF_TURN:
+        memory.window.kind = NO_WINDOW
+        lanes.watch[lane] = TURNS
 
 
 @inlined
-def watched(scratch: Any, lane: int) -> bool:
+def watched(lanes: PinLanes, lane: int) -> bool:
     """Tell whether a lane is watched."""
-    watch: float = scratch[WATCH * LANES + lane]
-    return watch != UNWATCHED
+    return bool(lanes.watch[lane] != UNWATCHED)
 
 
 @scalar
-def released(scratch: Any, page: Any, lane: int, z: complex, t: float, law: PinLaw, aims: Aims) -> bool:
+def released(
+    lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, aims: Aims
+) -> bool:
     """Take note of a release at ``z``; return whether the trajectory ends."""
-    if page[END] == STUCK:
+    if memory.end == STUCK:
         return False
-    if page[END] == UNDECIDED and not watched(scratch, lane) and t < scratch[DUE * LANES + lane]:
+    if memory.end == UNDECIDED and not watched(lanes, lane) and t < lanes.due[lane]:
         return False
-    if not watched(scratch, lane) and page[END] != STICK_SLIP:
-        page[END] = UNDECIDED  # what it was, if anything, was not the end
-        scratch[WATCH * LANES + lane] = TURNS
+    if not watched(lanes, lane) and memory.end != STICK_SLIP:
+        memory.end = UNDECIDED  # what it was, if anything, was not the end
+        lanes.watch[lane] = TURNS
     radius, largest = abs(z), sticking_radius(law)
-    if page[RELEASE_COUNT] > 0.0 and creeps_by_turns(radius, page[RELEASE], law):
-        page[END] = STUCK
-        keep(page, largest, largest, 0.0)
+    releases = memory.releases
+    if releases.count > 0 and creeps_by_turns(radius, releases.radius, law):
+        memory.end = STUCK
+        keep(memory, largest, largest, 0.0)
         return aims.early
-    distance, before, first = abs(radius - page[RELEASE]), page[RELEASE_LAST], page[RELEASE_BEFORE]
-    page[RELEASE], page[RELEASE_LAST], page[RELEASE_BEFORE] = radius, distance, before
-    page[RELEASE_COUNT] += 1.0
-    if page[RELEASE_COUNT] < 5.0 or not converged(distance, before, first, radius):
+    distance, before, first = abs(radius - releases.radius), releases.last, releases.before
+    releases.radius, releases.last, releases.before = radius, distance, before
+    releases.count += 1
+    if releases.count < 5 or not converged(distance, before, first, radius):
         return False
-    way = scratch[(TRIAL + WAY) * LANES + lane]
-    if page[MEASURED] == OF_RELEASE:
-        close_window(page, STICK_SLIP, t, way, radius)
-        scratch[WATCH * LANES + lane] = TURNS
+    way = lanes.trial.state.way[lane]
+    if memory.window.kind == OF_RELEASE:
+        close_window(memory, STICK_SLIP, t, way, radius)
+        lanes.watch[lane] = TURNS
         return aims.early
-    open_window(page, OF_RELEASE, t, way, radius)
-    scratch[WATCH * LANES + lane] = RADII
+    open_window(memory.window, OF_RELEASE, t, way, radius)
+    lanes.watch[lane] = RADII
     return False
 
 
 @scalar
-def settle(scratch: Any, page: Any, lane: int, law: PinLaw) -> None:
+def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     """Say at the very end what can be said."""
-    if page[END] == UNDECIDED and in_well(scratch, page, lane, law):
-        radius = math.hypot(page[WELL_X], page[WELL_Y])
-        page[END] = SELF_CENTRED
-        keep(page, radius, radius, abs(law.disc_speed) * radius)
+    if memory.end == UNDECIDED and in_well(lanes, memory, lane, law):
+        radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
+        memory.end = SELF_CENTRED
+        keep(memory, radius, radius, abs(law.disc_speed) * radius)

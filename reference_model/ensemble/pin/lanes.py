@@ -1,30 +1,56 @@
-"""The pin in lanes: what stands where, the step of all lanes, and what a single lane does at rest and at its end."""
+"""The pin in lanes: what stands there, the step of all lanes, and what a single lane does at rest and at its end."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple
 
-from reference_model.ensemble.core.dense_output import Arc, Motion, arc_between, size_of
+from reference_model.ensemble.core.dense_output import DenseOutput, Motion, dense_output, size_of
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import LANES
 from reference_model.ensemble.core.laws import PinLaw
-from reference_model.ensemble.core.runge_kutta import error_of, factor_of, step
+from reference_model.ensemble.core.records import LANES, Record, Row, Rows, at, put
+from reference_model.ensemble.core.runge_kutta import error_of, factor_of, moved, step
 from reference_model.ensemble.pin.slip import pin_rates
 
-X, Y, WX, WY, TIME, WAY, KX, KY, KWX, KWY, SHARE, KWAY, STEP = range(13)
-"""Slots of a lane: place, slip velocity, time, way slipped; their rates; the step that comes. All scaled, as in a
-unit."""
 
-TRIAL = STEP + 1
-"""How much further on the same stands after the step on trial."""
+class PinState(NamedTuple):
+    """Place, slip velocity, time and way slipped, scaled as in a unit; or the rates of all by stretched time."""
 
-(
-    STIFFNESS, DAMPING, FRICTION, DISC_SPEED, OFFSET, STRETCHING, FREE,
-    TOLERANCE, SLOW, DUE, WATCH, FLAG, STEPS, MOST_STEPS, SHORT, SLOTS,
-) = range(2 * TRIAL, 2 * TRIAL + 16)  # fmt: skip
-"""The law; the tolerance of a step; the slip speed below which rest may be near; the time at which the lane wants to
-be attended; how closely it is watched; why it wants to be attended; steps so far and at most; how many of the last
-were short; the number of slots."""
+    x: float
+    y: float
+    wx: float
+    wy: float
+    time: float
+    way: float
+
+
+class Moment(Record):
+    """The motion at one time, with its rates, and the step that comes."""
+
+    state: Rows[PinState]
+    rates: Rows[PinState]
+    step: Row
+
+
+class PinLanes(Record):
+    """All lanes: the motion now and after the step on trial, and the law.
+
+    The tolerance of a step; the slip speed below which rest may be near; the time at which the lane wants to be
+    attended; how closely it is watched; why it wants to be attended; steps so far and at most; how many of the last
+    were short.
+    """
+
+    now: Moment
+    trial: Moment
+    law: Rows[PinLaw]
+    tolerance: Row
+    slow: Row
+    due: Row
+    watch: Row
+    flag: Row
+    steps: Row
+    most_steps: Row
+    short: Row
+
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 """A lane may be attended whenever x is largest, and also whenever the radius is largest or smallest."""
@@ -51,178 +77,149 @@ FIRST_STEP = 0.3
 
 
 @written_out
-def _advance_in(scratch: Any, lanes: int) -> None:
-    """Make a trial step in the first ``lanes``; where its error is too large the trial is the old state."""
-    for lane in range(lanes):
-        y = (
-            scratch[X * LANES + lane],
-            scratch[Y * LANES + lane],
-            scratch[WX * LANES + lane],
-            scratch[WY * LANES + lane],
-        )
-        k = (
-            scratch[KX * LANES + lane],
-            scratch[KY * LANES + lane],
-            scratch[KWX * LANES + lane],
-            scratch[KWY * LANES + lane],
-            scratch[SHARE * LANES + lane],
-            scratch[KWAY * LANES + lane],
-        )
-        law = PinLaw(
-            scratch[STIFFNESS * LANES + lane],
-            scratch[DAMPING * LANES + lane],
-            scratch[FRICTION * LANES + lane],
-            scratch[DISC_SPEED * LANES + lane],
-            scratch[OFFSET * LANES + lane],
-            scratch[STRETCHING * LANES + lane],
-            scratch[FREE * LANES + lane],
-        )
-        h, t, way = scratch[STEP * LANES + lane], scratch[TIME * LANES + lane], scratch[WAY * LANES + lane]
-        mean, third, fifth = step(pin_rates, law, y, k, h)
-        x, y_ = y[0] + h * mean[0], y[1] + h * mean[1]
-        wx, wy = y[2] + h * mean[2], y[3] + h * mean[3]
-        new = pin_rates((x, y_, wx, wy), law)
-        later = t + h * mean[4]
-        error = error_of(y, (x, y_, wx, wy), h, third, fifth, scratch[TOLERANCE * LANES + lane])
+def _advance_in(lanes: PinLanes, count: int) -> None:
+    """Make a trial step in the first ``count``; where its error is too large the trial is the old state."""
+    now, trial = lanes.now, lanes.trial
+    for lane in range(count):
+        state, k, h = state_at(now, lane), rates_at(now, lane), now.step[lane]
+        law = PinLaw(*at(lanes.law, lane))
+        mean, third, fifth = step(pin_rates, law, state[:4], k, h)
+        new = PinState(*moved(state, h, (1.0,), (mean,)))
+        k1 = PinState(*pin_rates(new[:4], law))
+        error = error_of(state[:4], new[:4], h, third, fifth, lanes.tolerance[lane])
         good = error < 1.0
         shorter = h * factor_of(error)
 
-        slow, watch = scratch[SLOW * LANES + lane], scratch[WATCH * LANES + lane]
-        count = scratch[STEPS * LANES + lane] + 1.0
-        flag = reasons(y, k, (x, y_, wx, wy), new, later, scratch[DUE * LANES + lane], slow, watch)
+        flag = reasons(state, k, new, k1, lanes.due[lane], lanes.slow[lane], lanes.watch[lane])
         flag = flag if good else 0.0
-        lost = (shorter < SMALLEST_STEP) | (count > scratch[MOST_STEPS * LANES + lane])
-        short = scratch[SHORT * LANES + lane] + 1.0 if later - t < SHORT_STEP else 0.0
+        steps = lanes.steps[lane] + 1.0
+        lost = (shorter < SMALLEST_STEP) | (steps > lanes.most_steps[lane])
+        short = lanes.short[lane] + 1.0 if new.time - state.time < SHORT_STEP else 0.0
         flag += STIFF if short > MANY else 0.0
 
-        scratch[SHORT * LANES + lane] = short
-        scratch[FLAG * LANES + lane] = flag + (LOST if lost else 0.0)
-        scratch[STEPS * LANES + lane] = count
-        scratch[(TRIAL + X) * LANES + lane] = x if good else y[0]
-        scratch[(TRIAL + Y) * LANES + lane] = y_ if good else y[1]
-        scratch[(TRIAL + WX) * LANES + lane] = wx if good else y[2]
-        scratch[(TRIAL + WY) * LANES + lane] = wy if good else y[3]
-        scratch[(TRIAL + TIME) * LANES + lane] = later if good else t
-        scratch[(TRIAL + WAY) * LANES + lane] = way + h * mean[5] if good else way
-        scratch[(TRIAL + KX) * LANES + lane] = new[0] if good else k[0]
-        scratch[(TRIAL + KY) * LANES + lane] = new[1] if good else k[1]
-        scratch[(TRIAL + KWX) * LANES + lane] = new[2] if good else k[2]
-        scratch[(TRIAL + KWY) * LANES + lane] = new[3] if good else k[3]
-        scratch[(TRIAL + SHARE) * LANES + lane] = new[4] if good else k[4]
-        scratch[(TRIAL + KWAY) * LANES + lane] = new[5] if good else k[5]
-        scratch[(TRIAL + STEP) * LANES + lane] = shorter
+        lanes.short[lane] = short
+        lanes.flag[lane] = flag + (LOST if lost else 0.0)
+        lanes.steps[lane] = steps
+        put(trial.state, lane, new if good else state)
+        put(trial.rates, lane, k1 if good else k)
+        trial.step[lane] = shorter
 
 
 @scalar
-def advance(scratch: Any, _: None) -> None:
+def advance(lanes: PinLanes, _: None) -> None:
     """Make a trial step in every lane."""
-    _advance_in(scratch, LANES)
+    _advance_in(lanes, LANES)
 
 
 @scalar
-def advance_alone(scratch: Any, _: None) -> None:
+def advance_alone(lanes: PinLanes, _: None) -> None:
     """Make a trial step in the first lane."""
-    _advance_in(scratch, 1)
+    _advance_in(lanes, 1)
 
 
 @inlined
 def reasons(
-    y: Any, k: Any, after: Any, rates: Any, later: float, due: float, slow: float, watch: float
+    state: PinState, k: PinState, new: PinState, k1: PinState, due: float, slow: float, watch: float
 ) -> float:
-    """Return the flags of a step from ``y`` with the rates ``k`` to what is ``after``, at the time ``later``."""
-    x, y_, wx, wy = after
-    resting = (wx * wx + wy * wy < slow * slow) & (wx * rates[2] + wy * rates[3] < 0.0)
-    rightmost = (k[0] > 0.0) & (rates[0] <= 0.0) & (watch >= TURNS)
-    extreme = ((y[0] * k[0] + y[1] * k[1] > 0.0) != (x * rates[0] + y_ * rates[1] > 0.0)) & (watch >= RADII)
+    """Return the flags of a step from ``state`` with the rates ``k`` to what is ``new``, with the rates ``k1``."""
+    resting = (new.wx * new.wx + new.wy * new.wy < slow * slow) & (new.wx * k1.wx + new.wy * k1.wy < 0.0)
+    rightmost = (k.x > 0.0) & (k1.x <= 0.0) & (watch >= TURNS)
+    turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
     flag = REST if resting else 0.0
-    flag += IS_DUE if later >= due else 0.0
+    flag += IS_DUE if new.time >= due else 0.0
     flag += RIGHTMOST if rightmost else 0.0
-    flag += EXTREME if extreme else 0.0
+    flag += EXTREME if turns & (watch >= RADII) else 0.0
     return flag
 
 
 @scalar
-def idle(scratch: Any, lane: int) -> None:
+def idle(lanes: PinLanes, lane: int) -> None:
     """Put into a lane what goes on for ever without being attended."""
-    for slot in range(SLOTS):
-        scratch[slot * LANES + lane] = 0.0
-    for slot in (STRETCHING, TOLERANCE, DUE, TRIAL + STEP):
-        scratch[slot * LANES + lane] = 1.0
+    trial = lanes.trial
+    put(lanes.law, lane, PinLaw(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
+    put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    put(trial.rates, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    trial.step[lane] = lanes.tolerance[lane] = lanes.due[lane] = 1.0
+    lanes.slow[lane] = lanes.watch[lane] = lanes.flag[lane] = lanes.steps[lane] = 0.0
+    lanes.most_steps[lane] = lanes.short[lane] = 0.0
 
 
 @scalar
-def law_of(scratch: Any, lane: int) -> PinLaw:
+def law_of(lanes: PinLanes, lane: int) -> PinLaw:
     """Return the law of a lane."""
-    return PinLaw(
-        scratch[STIFFNESS * LANES + lane],
-        scratch[DAMPING * LANES + lane],
-        scratch[FRICTION * LANES + lane],
-        scratch[DISC_SPEED * LANES + lane],
-        scratch[OFFSET * LANES + lane],
-        scratch[STRETCHING * LANES + lane],
-        scratch[FREE * LANES + lane],
-    )
+    return PinLaw(*at(lanes.law, lane))
 
 
 @inlined
-def place_of(scratch: Any, lane: int, block: int) -> complex:
-    """Return z; ``block`` is 0 before the step and TRIAL after it."""
-    return complex(scratch[(block + X) * LANES + lane], scratch[(block + Y) * LANES + lane])
+def state_at(moment: Moment, lane: int) -> PinState:
+    """Return the motion in a lane."""
+    return PinState(*at(moment.state, lane))
 
 
 @inlined
-def slip_of(scratch: Any, lane: int, block: int) -> complex:
-    """Return w; ``block`` as for :func:`place_of`."""
-    return complex(scratch[(block + WX) * LANES + lane], scratch[(block + WY) * LANES + lane])
+def rates_at(moment: Moment, lane: int) -> PinState:
+    """Return its rates."""
+    return PinState(*at(moment.rates, lane))
+
+
+@inlined
+def place_at(moment: Moment, lane: int) -> complex:
+    """Return z."""
+    return complex(moment.state.x[lane], moment.state.y[lane])
+
+
+@inlined
+def slip_at(moment: Moment, lane: int) -> complex:
+    """Return w."""
+    return complex(moment.state.wx[lane], moment.state.wy[lane])
 
 
 @scalar
-def put_slipping(scratch: Any, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Put a slipping pin into the slots of the trial, with a first step."""
-    put_motion(scratch, lane, z, w, law)
-    scratch[SHORT * LANES + lane] = 0.0
+def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw) -> None:
+    """Put a slipping pin into the trial of a lane, with a first step."""
+    put_motion(lanes.trial, lane, z, w, law)
+    lanes.short[lane] = 0.0
     h = FIRST_STEP
     if law.friction > 0.0:
         h = min(h, (abs(w) + law.stretching) / law.friction)  # the direction of slip is slaved no faster
-    scratch[(TRIAL + STEP) * LANES + lane] = h
+    lanes.trial.step[lane] = h
 
 
 @inlined
-def put_motion(scratch: Any, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Put a slipping pin and its rates into the slots of the trial."""
-    k = pin_rates((z.real, z.imag, w.real, w.imag), law)
-    put_place(scratch, lane, z, w)
-    for i in range(6):
-        scratch[(TRIAL + KX + i) * LANES + lane] = k[i]
+def put_motion(moment: Moment, lane: int, z: complex, w: complex, law: PinLaw) -> None:
+    """Put a slipping pin and its rates into a lane."""
+    put_place(moment, lane, z, w)
+    put(moment.rates, lane, pin_rates((z.real, z.imag, w.real, w.imag), law))
 
 
 @inlined
-def put_place(scratch: Any, lane: int, z: complex, w: complex) -> None:
-    """Put place and slip velocity into the slots of the trial."""
-    scratch[(TRIAL + X) * LANES + lane] = z.real
-    scratch[(TRIAL + Y) * LANES + lane] = z.imag
-    scratch[(TRIAL + WX) * LANES + lane] = w.real
-    scratch[(TRIAL + WY) * LANES + lane] = w.imag
+def put_place(moment: Moment, lane: int, z: complex, w: complex) -> None:
+    """Put place and slip velocity into a lane."""
+    state = moment.state
+    state.x[lane], state.y[lane], state.wx[lane], state.wy[lane] = z.real, z.imag, w.real, w.imag
 
 
 @scalar
-def landed(scratch: Any, lane: int, end: float) -> bool:
+def landed(lanes: PinLanes, lane: int, end: float) -> bool:
     """Tell whether the step ends at the time ``end``, and put it there; else take it back, to be done shorter.
 
     By Newton's method on the step: its rate of time at the end is known.
     """
-    beyond, share = scratch[(TRIAL + TIME) * LANES + lane] - end, scratch[(TRIAL + SHARE) * LANES + lane]
+    now, trial = lanes.now, lanes.trial
+    state, rates = trial.state, trial.rates
+    beyond, share = state.time[lane] - end, rates.time[lane]
     if beyond > LANDING:
-        h = scratch[STEP * LANES + lane]
-        for i in range(TRIAL):
-            scratch[(TRIAL + i) * LANES + lane] = scratch[i * LANES + lane]
+        h = now.step[lane]
+        put(state, lane, at(now.state, lane))
+        put(rates, lane, at(now.rates, lane))
         shorter = h - beyond / share
-        scratch[(TRIAL + STEP) * LANES + lane] = shorter if 0.0 < shorter < h else 0.5 * h
+        trial.step[lane] = shorter if 0.0 < shorter < h else 0.5 * h
         return False
-    for i in range(4):
-        rate = scratch[(TRIAL + KX + i) * LANES + lane] / share
-        scratch[(TRIAL + X + i) * LANES + lane] -= beyond * rate
-    scratch[(TRIAL + TIME) * LANES + lane] = end
+    state.x[lane] -= beyond * (rates.x[lane] / share)
+    state.y[lane] -= beyond * (rates.y[lane] / share)
+    state.wx[lane] -= beyond * (rates.wx[lane] / share)
+    state.wy[lane] -= beyond * (rates.wy[lane] / share)
+    state.time[lane] = end
     return True
 
 
@@ -240,9 +237,9 @@ def motion(z: complex, w: complex, law: PinLaw) -> Motion:
 
 
 @scalar
-def last_arc(scratch: Any, lane: int, law: PinLaw) -> Arc:
+def last_step(lanes: PinLanes, lane: int, law: PinLaw) -> DenseOutput:
     """Return the motion in the last step."""
-    span = scratch[(TRIAL + TIME) * LANES + lane] - scratch[TIME * LANES + lane]
-    first = motion(place_of(scratch, lane, 0), slip_of(scratch, lane, 0), law)
-    last = motion(place_of(scratch, lane, TRIAL), slip_of(scratch, lane, TRIAL), law)
-    return arc_between(span, first, last)
+    now, trial = lanes.now, lanes.trial
+    first = motion(place_at(now, lane), slip_at(now, lane), law)
+    last = motion(place_at(trial, lane), slip_at(trial, lane), law)
+    return dense_output(trial.state.time[lane] - now.state.time[lane], first, last)

@@ -8,10 +8,18 @@ they were: one right-hand side serves all lanes, whether they slip fast or are a
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw, pull
+from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.systems import FloatArray
+
+Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
 """Terms of the series by which slip begins, usually and where it stays slow: see STIFF.
@@ -32,7 +40,7 @@ PLACES = 8
 
 
 @inlined
-def pin_rates(y: Any, law: PinLaw) -> Any:
+def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
     """Return the rates of x, y and of the slip velocity by stretched time, dt/dτ, and that times the slip speed."""
     x, y_, wx, wy = y
     s = math.sqrt(wx * wx + wy * wy)
@@ -122,7 +130,9 @@ def creeping_ends(z: complex, law: PinLaw) -> complex:
 
 
 @scalar
-def begin_slip(z: complex, law: PinLaw, tolerance: float, longest: float, work: Any) -> Any:
+def begin_slip(
+    z: complex, law: PinLaw, tolerance: float, longest: float, work: ComplexArray
+) -> tuple[complex, complex, float, float]:
     """Return place, slip velocity, duration and way of slip that begins from rest at ``z``; the slip is 0 if it ends.
 
     The series of ``sticking.slip_from_rest``, which says how it comes about, as far as its last terms stay below
@@ -138,7 +148,7 @@ def begin_slip(z: complex, law: PinLaw, tolerance: float, longest: float, work: 
 
 @scalar
 def _series(
-    z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: Any
+    z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: ComplexArray
 ) -> float:
     """Put terms from ``first`` on into ``work``, which holds those before; return up to when they can be taken."""
     position, velocity, acceleration, slip, direction = work[0], work[1], work[2], work[3], work[4]
@@ -175,7 +185,9 @@ def _series(
 
 
 @scalar
-def _along(position: Any, slip: Any, speed: Any, terms: int, duration: float) -> Any:
+def _along(
+    position: ComplexArray, slip: ComplexArray, speed: FloatArray, terms: int, duration: float
+) -> tuple[complex, complex, float, float]:
     """Return place, slip velocity, duration and way at the end of the series, or where slip ends before."""
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
@@ -206,9 +218,9 @@ def _along(position: Any, slip: Any, speed: Any, terms: int, duration: float) ->
 
 
 @inlined
-def _sum(coefficients: Any, first: int, terms: int, t: float) -> Any:
+def _sum(coefficients: NDArray[Number], first: int, terms: int, t: float) -> Number:
     """Return the sum of coefficients·t^(k − first), k from ``first`` on."""
-    total = coefficients[terms]
+    total: Number = coefficients[terms]
     for k in range(terms - 1, first - 1, -1):
         total = total * t + coefficients[k]
     return total

@@ -10,14 +10,14 @@ x is largest, are followed for one turn together with the motion itself by the c
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.dense_output import size_of
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.linear import powers_vanish
+from reference_model.systems import FloatArray
 
 STRIDE, STABLE = 0.5, 1.5
 """Step, in units of time or of that in which the slip velocity changes by itself; and in those in which deviations
@@ -41,7 +41,7 @@ def orbit_attracts(z: complex, v: complex, period: float, law: PinLaw) -> bool:
 
 
 @scalar
-def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: Any) -> bool:
+def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: FloatArray) -> bool:
     """Put the derivative of the return map in (x, y, ẏ) into ``derivative``; tell whether the turn could be made."""
     work = np.zeros((4, 4, 2), dtype=np.complex128)
     y, stage, change, rates = work[0], work[1], work[2], work[3]
@@ -78,7 +78,7 @@ def return_derivative(z: complex, v: complex, period: float, law: PinLaw, deriva
 
 
 @scalar
-def _put_rates(y: Any, law: PinLaw, rates: Any) -> None:
+def _put_rates(y: ComplexArray, law: PinLaw, rates: ComplexArray) -> None:
     """Put the rates of the motion, the first row of ``y``, and of deviations from it, the others, into ``rates``."""
     turn = complex(0.0, law.disc_speed)
     z, v = y[0, 0], y[0, 1]

@@ -13,23 +13,17 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
+from reference_model.ensemble.checkpoints import room_for
 from reference_model.ensemble.end_states import EndState, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
-from reference_model.ensemble.pin.memory import (
-    KNOWN,
-    KNOWN_FORM,
-    KNOWN_LEAST,
-    KNOWN_LEVEL,
-    KNOWN_METRIC,
-    KNOWN_REACH,
-    KNOWN_SLIP,
-    KNOWN_TURN,
-)
+from reference_model.ensemble.pin.memory import nothing_known
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc
 
@@ -65,12 +59,12 @@ DIFFERENCE = 1e-4
 
 
 @lru_cache(maxsize=64)
-def known_ends(pin: PinOnDisc) -> FloatArray:
-    """Return what is known of the end states of ``pin``, as ``pin_watch.Aims`` takes it; zeros where nothing is.
+def known_ends(pin: PinOnDisc) -> NDArray[Any]:
+    """Return what is known of the end states of ``pin``, ``KnownEnds``, shape (1,); zeros where nothing is.
 
     It takes some ten milliseconds, which a sweep in many parts should spend once.
     """
-    known = np.zeros(KNOWN)
+    known = nothing_known()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
         _look_about_equilibrium(pin, known)
         _look_about_whirl(pin, known)
@@ -78,7 +72,7 @@ def known_ends(pin: PinOnDisc) -> FloatArray:
     return known
 
 
-def _look_about_equilibrium(pin: PinOnDisc, known: FloatArray) -> None:
+def _look_about_equilibrium(pin: PinOnDisc, known: NDArray[Any]) -> None:
     try:
         place = complex(*equilibrium_position(pin))
     except ValueError:
@@ -97,10 +91,11 @@ def _look_about_equilibrium(pin: PinOnDisc, known: FloatArray) -> None:
         given_up = results.times < 0.5 * duration
         return np.where(given_up[:, np.newaxis], np.nan, np.column_stack((z.real, z.imag, v.real, v.imag)))
 
-    known[KNOWN_LEVEL], known[KNOWN_FORM:KNOWN_REACH] = _drawn_in(after_some_time, 4, abs(place))
+    known["level"], form = _drawn_in(after_some_time, 4, abs(place))
+    known["form"] = tuple(form)
 
 
-def _look_about_whirl(pin: PinOnDisc, known: FloatArray) -> None:
+def _look_about_whirl(pin: PinOnDisc, known: NDArray[Any]) -> None:
     centred = replace(pin, offset=0.0)
     try:
         radius, frequency = whirl_radius(centred), whirl_frequency(centred)
@@ -129,11 +124,9 @@ def _look_about_whirl(pin: PinOnDisc, known: FloatArray) -> None:
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
         start = _on_section(turn[np.newaxis], k)  # the measures are those of the orbit itself
-    known[KNOWN_TURN:KNOWN_METRIC] = turn
-    known[KNOWN_LEAST : KNOWN_SLIP + 1] = found.measures[0]
-    known[KNOWN_REACH], known[KNOWN_METRIC:KNOWN_LEAST] = _drawn_in(
-        lambda points: crossing_from(turn + points) - turn, 3, radius
-    )
+    known["turn"], known["measures"] = tuple(turn), tuple(found.measures[0])
+    known["reach"], metric = _drawn_in(lambda points: crossing_from(turn + points) - turn, 3, radius)
+    known["metric"] = tuple(metric)
 
 
 def _on_section(crossings: FloatArray, k: float) -> FloatArray:
@@ -147,7 +140,8 @@ def _run(
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
     task = PinTask(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
-    run_pins(task, TOLERANCE, early, once, np.zeros(KNOWN), results, 0, len(starts))
+    checkpoints = room_for(0, pin.state_size)
+    run_pins(task, TOLERANCE, early, once, nothing_known(), checkpoints, results, 0, len(starts))
     return results
 
 

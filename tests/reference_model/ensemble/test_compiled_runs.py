@@ -106,7 +106,7 @@ def test_the_times_that_are_asked_for_do_not_change_the_motion(system, start):
     assert fine.solution.steps == coarse.solution.steps
 
 
-def test_too_little_room_for_notes_at_first_does_not_change_the_motion(monkeypatch):
+def test_too_little_room_for_checkpoints_at_first_does_not_change_the_motion(monkeypatch):
     times = np.linspace(0.0, 60.0, 61)
     usual = simulate(FIG5, SECOND, times, compiled=True)
     monkeypatch.setattr(recording, "ROOM_A_UNIT", 0.0)

@@ -8,6 +8,7 @@ import pytest
 from compare.claims.paper_parameters import FIG8, FIG9, FIG11
 from reference_model import DiscOnDisc, self_centred_equilibria, simulate, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
+from reference_model.ensemble.core.records import layout
 from reference_model.ensemble.disc import kernel as disc_kernel
 from reference_model.ensemble.disc import lanes as disc_lanes
 from reference_model.ensemble.disc.trapping import known_regions
@@ -97,7 +98,8 @@ def test_the_error_falls_with_the_tolerance():
 def test_one_step_of_all_lanes_is_vectorised_throughout(advance, around):
     arm = platform.machine() in ("arm64", "aarch64")
     together, alone = ("fsqrt\tv", "fsqrt\td") if arm else ("sqrtpd", "sqrtsd")
-    advance(np.ones(disc_lanes.SLOTS * disc_kernel.LANES), around)
+    lanes = layout(disc_lanes.DiscLanes)
+    advance(np.ones(lanes.itemsize // 8).view(lanes)[0], around)
     code = "".join(advance.inspect_asm().values())
     assert code.count(together) > 13 * 3
     assert code.count(alone) == 0
@@ -143,17 +145,17 @@ def test_what_is_ended_early_in_fig_8_rests_where_the_equilibrium_is():
 
 
 def test_motion_on_the_edge_of_a_region_goes_to_the_equilibrium():
-    row = known_regions(BISTABLE)[0]
+    region = known_regions(BISTABLE)[0]
     form = np.zeros((5, 5))
-    form[np.triu_indices(5)] = row[6:21]
+    form[np.triu_indices(5)] = region["form"].tolist()
     form += np.triu(form, 1).T
     directions = np.random.default_rng(3).standard_normal((200, 5))
-    sizes = np.sqrt(row[21] / np.einsum("ni,ij,nj->n", directions, form, directions))
-    x, y, vx, vy, r = (row[1:6] + sizes[:, np.newaxis] * directions).T
+    sizes = np.sqrt(region["level"] / np.einsum("ni,ij,nj->n", directions, form, directions))
+    x, y, vx, vy, r = (region["centre"] + sizes[:, np.newaxis] * directions).T
     gyration = math.sqrt(BISTABLE.polar_inertia / BISTABLE.mass)
     starts = np.column_stack((x, y, 0.0 * x, vx, vy, BISTABLE.disc_speed + r / gyration))
     found = simulate_ensemble(BISTABLE, starts, duration=600.0, early_end=False)
-    assert np.all(np.abs(found.states[:, :2] - row[1:3]) < 1e-6)
+    assert np.all(np.abs(found.states[:, :2] - region["centre"][:2]) < 1e-6)
 
 
 def test_what_is_ended_early_ends_as_at_full_length_and_as_in_the_reference():

@@ -22,7 +22,6 @@ from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.convergence import ACCURACY, converged
 from reference_model.ensemble.pin import trapping as regions
 from reference_model.ensemble.pin.end_states import depth, well_of
-from reference_model.ensemble.pin.memory import KNOWN_LEVEL, KNOWN_REACH
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
 
 STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
@@ -285,8 +284,8 @@ def test_the_direction_of_slip_is_linear_but_for_the_square_that_is_assumed():
 
 def test_what_is_within_known_neighbourhoods_ends_there():
     known = regions.known_ends(FIG5)
-    assert known[KNOWN_LEVEL] > 0.0
-    assert known[KNOWN_REACH] > 0.0
+    assert known["level"] > 0.0
+    assert known["reach"] > 0.0
     # The starts that are captured early, run on to the very end by the reference's own law of convergence.
     states = starts(2000, 0.5, seed=8)
     early = simulate_ensemble(FIG5, states, duration=600.0)

@@ -13,6 +13,7 @@ from reference_model import PinOnDisc, simulate
 from reference_model.ensemble import chunks, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.nondimensional import units
+from reference_model.ensemble.core.records import layout
 from reference_model.ensemble.pin import lanes as pin_lanes
 from reference_model.ensemble.pin import slip as pin_slip
 from reference_model.ensemble.pin.kernel import run_pins
@@ -185,7 +186,7 @@ def test_while_the_pull_is_constant_the_time_to_rest_is_exact():
 def test_the_step_of_all_lanes_is_vectorised():
     packed = {"x86_64": r"v?sqrtpd", "AMD64": r"v?sqrtpd", "aarch64": r"fsqrt\s+v", "arm64": r"fsqrt\s+v"}
     advance = pin_lanes.advance
-    advance.compile((numba.float64[::1], numba.none))
+    advance.compile((numba.from_dtype(layout(pin_lanes.PinLanes)), numba.none))
     assembly = "\n".join(advance.inspect_asm().values())
     # Thirteen right-hand sides and four roots for the error, each in one vector at least.
     assert len(re.findall(packed[platform.machine()], assembly)) >= 16

@@ -4,7 +4,15 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.ensemble.core import dense_output as arc
+from reference_model.ensemble.core.dense_output import (
+    Motion,
+    dense_output,
+    place_on,
+    velocity_on,
+    way_along,
+    where_radius_turns,
+    where_rightmost,
+)
 from reference_model.ensemble.core.runge_kutta import (
     CAUTION,
     LARGEST_FACTOR,
@@ -60,33 +68,33 @@ def motion_at(x, y, t):
     places = [
         complex(p(t), q(t)) for p, q in ((x.deriv(i) if i else x, y.deriv(i) if i else y) for i in range(4))
     ]
-    return arc.Motion(*places)
+    return Motion(*places)
 
 
-def test_the_arc_is_exact_for_polynomials_of_seventh_order():
+def test_the_dense_output_is_exact_for_polynomials_of_seventh_order():
     rng = np.random.default_rng(0)
     x, y = (np.polynomial.Polynomial(rng.normal(size=8)) for _ in range(2))
-    between = arc.arc_between(0.8, motion_at(x, y, 0.3), motion_at(x, y, 1.1))
+    between = dense_output(0.8, motion_at(x, y, 0.3), motion_at(x, y, 1.1))
     for u in np.linspace(0.0, 1.0, 7):
         t = 0.3 + 0.8 * u
-        assert arc.place_on(between, u) == pytest.approx(complex(x(t), y(t)), rel=1e-12, abs=1e-12)
-        assert arc.velocity_on(between, u) == pytest.approx(
+        assert place_on(between, u) == pytest.approx(complex(x(t), y(t)), rel=1e-12, abs=1e-12)
+        assert velocity_on(between, u) == pytest.approx(
             complex(x.deriv()(t), y.deriv()(t)), rel=1e-11, abs=1e-11
         )
 
 
 def circling(t, radius=0.9, centre=0.1, speed=1.0):
     turned = radius * np.exp(1j * speed * t)
-    return arc.Motion(centre + turned, *((1j * speed) ** i * turned for i in (1, 2, 3)))
+    return Motion(centre + turned, *((1j * speed) ** i * turned for i in (1, 2, 3)))
 
 
 def test_extremes_of_a_circling_motion_are_found():
-    between = arc.arc_between(0.9, circling(-0.4), circling(0.5))
-    assert arc.where_rightmost(between) == pytest.approx(4.0 / 9.0, abs=1e-7)
-    assert arc.where_radius_turns(between) == pytest.approx(4.0 / 9.0, abs=1e-6)
-    assert arc.where_radius_turns(arc.arc_between(0.3, circling(0.2), circling(0.5))) == np.inf
+    between = dense_output(0.9, circling(-0.4), circling(0.5))
+    assert where_rightmost(between) == pytest.approx(4.0 / 9.0, abs=1e-7)
+    assert where_radius_turns(between) == pytest.approx(4.0 / 9.0, abs=1e-6)
+    assert where_radius_turns(dense_output(0.3, circling(0.2), circling(0.5))) == np.inf
 
 
 def test_way_is_the_integral_of_the_slip_speed():
-    between = arc.arc_between(0.9, circling(0.0, centre=0.0), circling(0.9, centre=0.0))
-    assert arc.way_along(between, 0.7, 1.5) == pytest.approx(0.7 * 0.9 * 0.5 * 0.9, rel=1e-7)
+    between = dense_output(0.9, circling(0.0, centre=0.0), circling(0.9, centre=0.0))
+    assert way_along(between, 0.7, 1.5) == pytest.approx(0.7 * 0.9 * 0.5 * 0.9, rel=1e-7)

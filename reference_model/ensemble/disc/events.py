@@ -1,0 +1,246 @@
+"""How the end state of a disc shows itself while it moves.
+
+Self-centred
+    Once in every free period the motion is looked at: the places, velocities and spins of a motion that goes to an
+    equilibrium go to a fixed point. With d the distance from one look to the next and q the larger of its last two
+    ratios, d·q/(1 − q) is what is left to go (:mod:`.convergence`). Since a motion may come close to one that is
+    unstable and leave it later (some of Fig. 11 begin so), it must attract, too (:mod:`.stability`).
+
+Whirl
+    The same from one place to the next where x is largest; without an offset the whirl is a circle, on which radius,
+    velocities along it and across it, and spin have a fixed point of their own: from look to look.
+
+Modulated
+    Without an offset, the same from one largest radius to the next, where the radius goes on swinging.
+
+What is known of the basins beforehand (:mod:`.trapping`) ends the trajectories that come into it earlier.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from reference_model.ensemble.checkpoints import ON_THE_WAY
+from reference_model.ensemble.core.convergence import ACCURACY
+from reference_model.ensemble.core.dense_output import (
+    outward,
+    place_on,
+    velocity_on,
+    where_radius_turns,
+    where_rightmost,
+)
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.records import fill
+from reference_model.ensemble.core.window import NO_WINDOW, Measures, measured, open_window, see_radius
+from reference_model.ensemble.disc.lanes import (
+    AT_END,
+    BOTH,
+    EXTREME,
+    IS_DUE,
+    LOST,
+    RADII,
+    REST,
+    RIGHTMOST,
+    STIFF,
+    UNWATCHED,
+    DiscLanes,
+    last_step,
+    law_of,
+    rates_at,
+    state_at,
+)
+from reference_model.ensemble.disc.memory import (
+    OF_PEAK,
+    OF_TURN,
+    DiscAims,
+    DiscMemory,
+    compared,
+    recorded,
+    take_checkpoint,
+)
+from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
+
+Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
+"""Puts an implicit step in the place of the one on trial, if that is worth it."""
+
+Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscAims], bool]
+"""Sees to slow slip, or to rest; tells whether the trajectory ends."""
+
+Shows = Callable[[complex, complex, float, DiscLaw, bool], bool]
+"""Tells whether the steady motion with z, v and r attracts, an equilibrium or a circle."""
+
+STILL = 1e-2
+"""Share of its radius or of ω times it by which a motion may swing that goes to a point or to a circle."""
+
+
+@written_out
+def attend_with(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims, stride: Stride, slow: Slow, shows: Shows
+) -> bool:
+    """See to what the flag of a lane says; return whether its trajectory ends here."""
+    law = law_of(lanes, lane, aims.around)
+    if int(lanes.flag[lane]) & STIFF:
+        stride(lanes, memory, lane, law)
+    flag = int(lanes.flag[lane])
+    if flag & LOST:
+        memory.end = UNDECIDED
+        return True
+    passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]  # more than rounding
+    if flag & IS_DUE and passed and looked(lanes, memory, lane, law, aims, shows):
+        return True
+    if lanes.trial.state.time[lane] >= lanes.duration[lane] - AT_END:
+        return True
+    if flag & (RIGHTMOST | EXTREME) and passed and extreme_met(lanes, memory, lane, flag, law, aims):
+        return True
+    return bool(flag & REST) and slow(lanes, memory, lane, law, aims)
+
+
+@scalar
+def found(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, end: int, t: float, way: float, radius: float,
+    law: DiscLaw, aims: DiscAims,
+) -> bool:  # fmt: skip
+    """Take the measures of an end state from here to the next like place; return whether that is the end."""
+    window = memory.window
+    if window.kind != kind:
+        open_window(window, kind, t, way, radius)
+        lanes.watch[lane] = RADII if law.offset == 0.0 else BOTH
+        return False
+    see_radius(window, radius)
+    fill(memory.found, measured(window, t, way))
+    swings = window.largest - window.least > STILL * window.largest
+    memory.end = MODULATED if end == WHIRL and law.offset == 0.0 and swings else end
+    window.kind = NO_WINDOW
+    lanes.watch[lane] = UNWATCHED
+    return aims.early
+
+
+@inlined
+def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
+    """Return r within the last step, by the cubic through it and its rate at both ends."""
+    r0, r1 = lanes.now.state.r[lane], lanes.trial.state.r[lane]
+    k0, k1 = lanes.now.rates, lanes.trial.rates
+    d0, d1 = span * k0.r[lane] / k0.time[lane], span * k1.r[lane] / k1.time[lane]
+    rest = u - 1.0
+    spin: float = r0 + u * (d0 + u * (r1 - r0 - d0 + rest * (d0 + d1 - 2.0 * (r1 - r0))))
+    return spin
+
+
+@scalar
+def extreme_met(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, aims: DiscAims
+) -> bool:
+    """Take note of where x or the radius is largest, or the latter smallest; return whether that is the end."""
+    if memory.end != UNDECIDED:
+        return False
+    step = last_step(lanes, lane)
+    turns, radius = where_radius_turns(step), 0.0
+    centred = law.offset == 0.0
+    ended = False
+    if turns <= 1.0:
+        z, v = place_on(step, turns), velocity_on(step, turns)
+        radius = abs(z)
+        see_radius(memory.window, radius)
+        if centred and outward(step, 0.0) > 0.0:
+            values = (
+                radius,
+                (v * z.conjugate()).imag / radius,
+                spin_at(lanes, lane, turns, step.span),
+                0.0,
+                0.0,
+            )
+            met = compared(memory.peaks, values, radius)
+            ended = met and whirls(lanes, memory, lane, OF_PEAK, turns, radius, law, aims)
+    if flag & RIGHTMOST and not centred and not ended:
+        u = where_rightmost(step)
+        z, v = place_on(step, u), velocity_on(step, u)
+        values = (z.real, z.imag, v.imag, spin_at(lanes, lane, u, step.span), 0.0)
+        met = compared(memory.turns, values, abs(v))
+        ended = met and whirls(lanes, memory, lane, OF_TURN, u, abs(z), law, aims)
+        if turns <= 1.0:
+            see_radius(
+                memory.window, radius
+            )  # again: what comes after this place belongs to a window that opens here
+    return ended
+
+
+@scalar
+def whirls(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw, aims: DiscAims
+) -> bool:  # fmt: skip
+    """Take note of a place in the last step that is as the one before; return whether the trajectory ends there."""
+    t0, t1 = lanes.now.state.time[lane], lanes.trial.state.time[lane]
+    way0, way1 = lanes.now.state.way[lane], lanes.trial.state.way[lane]
+    t, way = t0 + u * (t1 - t0), way0 + u * (way1 - way0)
+    return found(lanes, memory, lane, kind, WHIRL, t, way, radius, law, aims)
+
+
+@written_out
+def looked(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims, shows: Shows
+) -> bool:
+    """Look at the motion, as once in every free period and at the end; return whether the trajectory ends here."""
+    t, due = lanes.trial.state.time[lane], lanes.due[lane]
+    if recorded(aims):
+        take_checkpoint(lanes, memory, lane, ON_THE_WAY, aims)
+        lanes.due[lane] = t + memory.tick
+        return False
+    state, k = state_at(lanes.trial, lane), rates_at(lanes.trial, lane)
+    velocity = (1.0 / k.time) * complex(k.x, k.y)
+    place = complex(state.x, state.y)
+    if memory.end == UNDECIDED and in_region(memory, place, velocity, state.r, aims):
+        lanes.watch[lane] = UNWATCHED
+        return aims.early
+    if t < due:
+        return False  # the end
+    lanes.due[lane] = due + memory.tick
+    if memory.end != UNDECIDED:
+        return False
+    step = last_step(lanes, lane)
+    u = (due - lanes.now.state.time[lane]) / step.span
+    z, v, r = place_on(step, u), velocity_on(step, u), spin_at(lanes, lane, u, step.span)
+    if law.offset == 0.0:
+        radius = max(abs(z), 1e-300)
+        along = (1.0 / radius) * v * z.conjugate()
+        values = (abs(z), along.real, along.imag, r, 0.0)
+        swing, centred = abs(along.real), max(abs(z), abs(v)) < ACCURACY
+    else:
+        values = (z.real, z.imag, v.real, v.imag, r)
+        swing, centred = abs(v), False
+    met = compared(memory.looks, values, 1.0 if centred else abs(z))
+    if not met or (swing > STILL * abs(law.disc_speed * z) and not centred):
+        return False
+    if not shows(z, v, r, law, law.offset == 0.0 and not centred):
+        return False
+    memory.end = WHIRL if law.offset == 0.0 and not centred else SELF_CENTRED
+    fill(memory.found, Measures(abs(z), abs(z), k.way / k.time))
+    lanes.watch[lane] = UNWATCHED
+    return aims.early
+
+
+@scalar
+def in_region(memory: DiscMemory, z: complex, v: complex, r: float, aims: DiscAims) -> bool:
+    """Tell whether the motion is where it is known beforehand what comes of it, and keep that."""
+    length, speed = memory.length, memory.length * memory.rate
+    for region in aims.regions:
+        if region.circle:
+            radius = max(abs(z), 1e-300)
+            along = (1.0 / radius) * v * z.conjugate()
+            a, b, c, d, e = length * radius, speed * along.real, speed * along.imag, speed * r, 0.0
+        else:
+            a, b, c, d, e = length * z.real, length * z.imag, speed * v.real, speed * v.imag, speed * r
+        centre, form = region.centre, region.form
+        a, b, c, d, e = a - centre[0], b - centre[1], c - centre[2], d - centre[3], e - centre[4]
+        level = a * (form.aa * a + 2.0 * (form.ab * b + form.ac * c + form.ad * d + form.ae * e))
+        level += b * (form.bb * b + 2.0 * (form.bc * c + form.bd * d + form.be * e))
+        level += c * (form.cc * c + 2.0 * (form.cd * d + form.ce * e))
+        level += d * (form.dd * d + 2.0 * form.de * e) + e * form.ee * e
+        if level < region.level:
+            memory.end, measures = (WHIRL if region.circle else SELF_CENTRED), region.measures
+            fill(
+                memory.found,
+                Measures(measures.least / length, measures.largest / length, measures.slip / speed),
+            )
+            return True
+    return False

@@ -1,0 +1,139 @@
+"""What scalar code keeps of each lane of discs, and what it must know of the task."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from reference_model.ensemble.checkpoints import Checkpoints
+from reference_model.ensemble.core.convergence import converged
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.records import Record
+from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.ensemble.core.window import Measures, Window
+from reference_model.ensemble.disc.lanes import DiscLanes, state_at
+from reference_model.systems import FloatArray
+
+OF_TURN, OF_PEAK = 1, 2
+"""Kinds of windows: from one place where x is largest to the next, or from one largest radius to the next."""
+
+
+class RegionForm(NamedTuple):
+    """The upper half of a quadratic form in five numbers, row by row."""
+
+    aa: float
+    ab: float
+    ac: float
+    ad: float
+    ae: float
+    bb: float
+    bc: float
+    bd: float
+    be: float
+    cc: float
+    cd: float
+    ce: float
+    dd: float
+    de: float
+    ee: float
+
+
+class Region(Record):
+    """A neighbourhood of a motion that no motion leaves, in m and s: where the form is below its level.
+
+    ``circle`` is 1 about a whirl, in the coordinates that turn with the centre (ρ, v along and across the radius, r,
+    0), and 0 about an equilibrium, in (x, y, vx, vy, r). The measures are those of the motion in its centre.
+    """
+
+    circle: int
+    centre: Annotated[FloatArray, 5]
+    form: RegionForm
+    level: float
+    measures: Measures
+
+
+class Series(Record):
+    """What was seen last of its kind, the last two distances from one to the next, and how many were seen."""
+
+    values: Annotated[FloatArray, 5]
+    last: float
+    before: float
+    count: int
+
+
+class DiscMemory(Record):
+    """Of a lane: the number of its trajectory, units, end state so far and its measures, the period of looks.
+
+    The motion as it was once in a period, where x was largest and where the radius was; the window in which it may
+    show to be the end state. How long an implicit step may be, and how many checkpoints have been taken.
+    """
+
+    number: int
+    length: float
+    rate: float
+    end: int
+    found: Measures
+    tick: float
+    looks: Series
+    turns: Series
+    peaks: Series
+    window: Window
+    span: float
+    checkpoints: int
+
+
+class DiscAims(NamedTuple):
+    """What a disc needs to be attended.
+
+    ``around`` of its law, ``regions`` (m,) that are known beforehand, and room for ``checkpoints`` of a single
+    trajectory, none where they are not asked for.
+    """
+
+    tolerance: float
+    early: bool
+    around: tuple[float, ...]
+    regions: NDArray[Any]
+    checkpoints: Checkpoints
+
+
+@scalar
+def compared(series: Series, values: Tuple, scale: float) -> bool:
+    """Compare with what was seen before of the same kind; tell whether less than ACCURACY·scale is left to go."""
+    square = 0.0
+    for i in range(5):
+        square += (values[i] - series.values[i]) ** 2
+        series.values[i] = values[i]
+    distance, before, first = math.sqrt(square), series.last, series.before
+    series.last, series.before = distance, before
+    series.count += 1
+    return series.count >= 5 and converged(distance, before, first, scale)
+
+
+@inlined
+def recorded(aims: DiscAims) -> bool:
+    """Tell whether checkpoints are asked for."""
+    return aims.checkpoints.size > 0
+
+
+@scalar
+def take_checkpoint(lanes: DiscLanes, memory: DiscMemory, lane: int, kind: float, aims: DiscAims) -> None:
+    """Take a checkpoint of the trial, while there is room."""
+    if memory.checkpoints < aims.checkpoints.size:
+        checkpoint = aims.checkpoints[memory.checkpoints]
+        memory.checkpoints += 1
+        checkpoint.kind, checkpoint.time = kind, lanes.trial.state.time[lane] / memory.rate
+        put_state(checkpoint.state, lanes, memory, lane)
+
+
+@scalar
+def put_state(state: FloatArray, lanes: DiscLanes, memory: DiscMemory, lane: int) -> None:
+    """Put x, y, angle, vx, vy and spin of the trial into ``state`` (6,), in SI units."""
+    length, rate = memory.length, memory.rate
+    trial = state_at(lanes.trial, lane)
+    omega, curling = lanes.law.disc_speed[lane], lanes.law.curling[lane]
+    state[0], state[1], state[2] = trial.x * length, trial.y * length, trial.angle
+    state[3] = (trial.ux - omega * trial.y) * length * rate
+    state[4] = (trial.uy + omega * trial.x) * length * rate
+    state[5] = (omega + curling * trial.r) * rate

@@ -1,0 +1,171 @@
+"""How a disc comes to rest, rests and begins to slip again; one on points is handed over.
+
+A disc on a ring sticks as a whole, and its centre as a pin with the friction that the moment of the shaft leaves:
+it is stuck for ever if the pull, a constant part and one that turns, never exceeds that (eq. 7). Exact.
+"""
+
+from __future__ import annotations
+
+import math
+
+from reference_model.ensemble.checkpoints import SLIPS, STICKS
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.records import fill, put
+from reference_model.ensemble.core.window import Measures
+from reference_model.ensemble.disc.events import found
+from reference_model.ensemble.disc.lanes import (
+    AT_END,
+    LEAST_SLIP,
+    NEAR_REST,
+    UNWATCHED,
+    DiscLanes,
+    begin_slip,
+    comes_to_rest,
+    put_slipping,
+    rates_at,
+    slip_left,
+    state_at,
+)
+from reference_model.ensemble.disc.memory import OF_PEAK, DiscAims, DiscMemory, compared, take_checkpoint
+from reference_model.ensemble.disc.slip import held_friction, points_rates, ring_rates, stuck_for
+from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
+
+LINGERS = 0.01
+"""Time, in units, that slow slip of a disc or of a point lasts at least, at its pace, if it creeps."""
+
+SPENT_SHARE = 0.1
+"""Of the tolerance, for what is left of slip that dies out for ever."""
+
+SOON = 3e-4
+"""Time, in units, in which a point must come to rest for that to be foreseen."""
+
+
+@scalar
+def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Bring a disc on a ring to rest if what is left of slip can be told; return whether the trajectory ends."""
+    if not slip_left(lanes, lane)[0] < NEAR_REST * law.friction:
+        return False
+    if _creeps_out(lanes, memory, lane, law, aims):
+        return True
+    return comes_to_rest(lanes, lane, law) and ring_rests(lanes, memory, lane, law, aims)
+
+
+@scalar
+def _creeps_out(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Tell whether a disc all but rests that slips ever more slowly for ever, and end its trajectory.
+
+    That it can only where its pull does nothing but turn with the master disc. As a pin, see
+    ``pin.slip.creeps_steadily``: what is left of speed and way is far below the tolerance.
+    """
+    s, left = slip_left(lanes, lane)
+    steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
+    least = max(SPENT_SHARE * lanes.tolerance[lane], LEAST_SLIP)
+    spent = s * max(left, 1.0) < least or s <= LEAST_SLIP
+    if not (steady and LINGERS < left < math.inf and spent):
+        return False
+    x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
+    z = complex(x, y)
+    if memory.end == UNDECIDED:
+        memory.end = STUCK
+        fill(memory.found, Measures(abs(z), abs(z), 0.0))
+    if not aims.early:
+        delay = lanes.duration[lane] - t
+        turn = law.disc_speed * delay
+        z *= complex(math.cos(turn), math.sin(turn))
+        put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
+    return True
+
+
+@scalar
+def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Follow a disc on a ring from rest until it slips; return whether its trajectory ends before."""
+    ended = _held(lanes, memory, lane, law, aims)
+    if not ended:
+        ring_slips(lanes, lane, law)
+    return ended
+
+
+@scalar
+def ring_slips(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
+    """Make ready a disc on a ring that slips."""
+    put_slipping(lanes, lane, law, ring_rates)
+
+
+@scalar
+def points_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Hand over a disc on points that is about to rest, or one of whose points is."""
+    s, left = slip_left(lanes, lane)
+    slow = s < NEAR_REST * law.friction
+    if slow and _creeps_out(lanes, memory, lane, law, aims):
+        return True
+    goes_on = not slow or (left > LINGERS and s > LEAST_SLIP)
+    if goes_on and not _point_rests(lanes, lane, law):
+        return False
+    return points_rest(lanes, memory, lane, law, aims)
+
+
+@inlined
+def points_rest(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Hand over a disc on points that rests."""
+    memory.end = HANDED_OVER
+    return True
+
+
+@scalar
+def points_slip(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
+    """Make ready a disc on points that slips."""
+    put_slipping(lanes, lane, law, points_rates)
+
+
+@scalar
+def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+    """Let a disc on a ring rest as long as friction holds it, and begin to slip; return whether that is the end."""
+    x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
+    z, end = complex(x, y), lanes.duration[lane]
+    if t >= end - AT_END:
+        return True
+    memory.looks.count = memory.turns.count = 0  # they begin anew
+    held = stuck_for(z, held_friction(law), law)
+    if held == math.inf:
+        memory.end = STUCK
+        fill(memory.found, Measures(abs(z), abs(z), 0.0))
+        if aims.early:
+            return True
+    if held > 0.0:
+        take_checkpoint(lanes, memory, lane, STICKS, aims)
+    delay = min(held, end - t)
+    turn = law.disc_speed * delay
+    z *= complex(math.cos(turn), math.sin(turn))
+    t, angle = t + delay, angle + turn
+    put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle, t, way))
+    if t >= end - AT_END:
+        return True
+    if held > 0.0:
+        take_checkpoint(lanes, memory, lane, SLIPS, aims)
+    if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
+        met = compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z))
+        if met and found(lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, aims):
+            return True
+    return not begin_slip(lanes, lane, z, angle, t, law)
+
+
+@scalar
+def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
+    """Tell whether a point of contact slips slowly, ever more so, and could be held at rest."""
+    _, _, ux, uy, r, angle, _, _ = state_at(lanes.trial, lane)
+    k = rates_at(lanes.trial, lane)
+    most = law.friction / (len(law.around) // 2)
+    eta, spin = law.leverage, law.disc_speed + law.curling * r
+    for j in range(0, len(law.around), 2):
+        arm = complex(math.cos(angle), math.sin(angle)) * complex(law.around[j], law.around[j + 1])
+        v = complex(ux, uy) + 1j * eta * r * arm
+        if 0.0 < abs(v) < SOON * most:
+            rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
+            # Without its own friction, and what that must be to hold it: see reference_model.motion.pivot.
+            free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
+            holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free
+            falling = -(v.conjugate() * rate).real / abs(v)
+            if abs(v) < LINGERS * falling and abs(holding) < most:
+                return True
+    return False
