@@ -274,7 +274,7 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]
     return {
-        "offset": offsets,
+        "offset": np.asarray(offsets, dtype=float),
         "last load": np.array([last_load(disc) for disc in discs]),
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),
