@@ -270,11 +270,12 @@ def sticking() -> Data:
 
 def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     """Return over the offset where equilibrium and whirl end, and where the equilibrium loses its stability."""
-    discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
+    over = np.asarray(offsets, dtype=float)
+    discs = [replace(RING, offset=offset) for offset in over.tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]
     return {
-        "offset": offsets,
+        "offset": over,
         "last load": np.array([last_load(disc) for disc in discs]),
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),
