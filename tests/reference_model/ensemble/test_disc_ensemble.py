@@ -60,7 +60,7 @@ def test_slip_is_that_of_the_reference_up_to_t_100(disc, points):
 
 def test_the_place_where_a_point_of_the_ring_rests_costs_no_accuracy():
     # There friction has infinite slopes; errors of 500 steps of 1e-10 each may add up to 5e-8.
-    starts = starts_of(40, seed=1)
+    starts = starts_of(12, seed=1)
     found = simulate_ensemble(FIG9, starts, duration=100.0, early_end=False)
     expected = [simulate(FIG9, start, [0.0, 100.0], tolerance=1e-11).at_end for start in starts]
     assert np.max(np.abs(found.states - expected)) < 1e-7
@@ -167,8 +167,8 @@ def test_what_is_ended_early_ends_as_at_full_length_and_as_in_the_reference():
     assert np.mean(early.time) < 0.3 * 1000.0
     point = self_centred_equilibria(BISTABLE)[0]
     for i in [
-        *np.flatnonzero(early.end == EndState.SELF_CENTRED)[:4],
-        *np.flatnonzero(early.end == EndState.WHIRL)[:4],
+        *np.flatnonzero(early.end == EndState.SELF_CENTRED)[:2],
+        *np.flatnonzero(early.end == EndState.WHIRL)[:2],
     ]:
         motion = simulate(BISTABLE, starts[i], np.linspace(0.0, 500.0, 5001))
         rests = math.dist(motion.at_end[:2], (point.x, point.y)) < 1e-8

@@ -141,13 +141,13 @@ def returns(engine: Engine) -> Measured:
 @STUDY.claim(
     "Starts on either side of the boundary, which is found by shooting, come to equilibrium and whirl",
     equation="(3), (17)",
-    note=f"{2 * PLACES} starts, {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: whether the "
+    note=f"Starts {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: whether the "
     "distance from the place (3) is smaller, or larger, than X0.",
     basis="reference",
 )
-def parts(engine: Engine) -> Measured:
-    """Tell to which end starts on either side of the boundary come."""
-    rays = np.exp(2j * math.pi * np.arange(PLACES) / PLACES)
+def parts(engine: Engine, places: int = PLACES) -> Measured:
+    """Tell to which end starts on either side of the boundary come, at so many ``places`` of it."""
+    rays = np.exp(2j * math.pi * np.arange(places) / places)
     ways = np.column_stack((rays.real, rays.imag))
     within = starts_at(*(WITHIN + np.zeros_like(ways)).T)
     without = starts_at(*(WITHIN + REACH * ways).T)
@@ -155,13 +155,13 @@ def parts(engine: Engine) -> Measured:
         boundary_point(saddle(), start, end)[[0, 2]] for start, end in zip(within, without, strict=True)
     ]
     sides = starts_at(*np.concatenate((middle - ASIDE * ways, middle + ASIDE * ways)).T)
-    outwards = np.repeat((-1.0, 1.0), PLACES)
+    outwards = np.repeat((-1.0, 1.0), places)
 
     def margins(tolerance: float) -> FloatArray:
         ends = [engine.simulate(FIG5, start, [0.0, AFTER], tolerance=tolerance).at_end for start in sides]
         return outwards * [beyond_equilibrium(end) for end in ends]
 
-    return answers_of(*asked(margins, ASIDE_TOLERANCE), source=FROM_REST)
+    return answers_of(*asked(margins, ASIDE_TOLERANCE), source=FROM_REST, note=f"{2 * places} starts.")
 
 
 @STUDY.claim(

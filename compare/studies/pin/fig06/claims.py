@@ -123,9 +123,16 @@ def whirl_ends(engine: Engine) -> Measured:
     fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=WORKING)
 
     def least_load(tolerance: float) -> float:
-        return last_whirl(
-            FIG6, simulate=engine.simulate, guess=fold, tolerance=tolerance
-        ).system.friction_force
+        # The load is flat there, so that its least value changes with the tolerance as that at this crossing.
+        orbit = whirl_orbit(
+            FIG6,
+            simulate=engine.simulate,
+            guess=fold,
+            at_crossing=float(fold.state[0]),
+            tolerance=tolerance,
+            samples=2,
+        )
+        return orbit.system.friction_force
 
     found = refined(least_load, WORKING)
     return Measured(

@@ -23,6 +23,7 @@ COARSE = {
     "recomputes": {"count": 6, "starts": 400, "cells": 6},
     "shrinks": SAMPLE,
     "curves": GRID | SAMPLE,
+    "parts": {"places": 2},
 }
 """A hundredth of the starts, at one speed, and a boundary from as few points as can be."""
 

@@ -24,12 +24,12 @@ NO_WHIRL = (SEES, NO_ORBIT)
 
 class TestFig06(StudyTests):
     study = STUDY
-    few = {"whirls": {"loads": (0.08, 0.12)}, "curves": {"innermost": 0.3, "step": 0.25}}
+    few_of_faults = {"rests": {"loads": (0.04, 0.095)}, "whirls": {"loads": (0.12,)}}
+    few = few_of_faults | {"curves": {"innermost": 0.3, "step": 0.25}}
     faults = broken_engines() | {
         "friction 1 % off": altered(friction_force=0.99),
         "damping 70 % too strong": altered(damping=1.7),
     }
-    few_of_faults = {"rests": {"loads": (0.04, 0.095)}, "whirls": {"loads": (0.12,)}}
     columns = ("rests", "whirls", "whirl_ends", "coexist", "cycle_exists", "cycle_attracts")
     table = {
         "wrong sign": (SEES, SEES, LEFT_OUT, SEES, SEES, SEES),
