@@ -19,7 +19,7 @@ def engine_named(name):
     """Return a registered engine, or the plain one that shares nothing ("intact").
 
     The reference remembers what it has simulated, for as long as the tests run: claims that ask for the same motion,
-    and engines under other names that promise less, get it once. That equal runs are equal, tests of the engines say.
+    and engines under other names that promise less, get it once. ``test_engines`` has that equal runs are equal.
     """
     if name in broken_engines():
         return broken_engines()[name]
