@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import ShortTimeFFT
 
 from compare.claims.study import Data
 from compare.studies.drivetrain.run_up.parameters import SAMPLES, TURNS
@@ -19,6 +18,8 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 
     Sampled at equal angles of the engine, so that an order stays what it is while the speed rises.
     """
+    from scipy.signal import ShortTimeFFT  # takes long to load, and other studies do without
+
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
     times = np.interp(even, angle, found["times"])

@@ -6,7 +6,7 @@ import functools
 import math
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from compare.claims.error_estimates import Measurement, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
@@ -166,7 +166,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
     coefficients = inverse @ logarithms
     freedom = len(times) - 2
     residual = np.linalg.norm(logarithms - matrix @ coefficients, axis=0) / math.sqrt(freedom)
-    scatter = float(student.ppf(0.975, freedom)) * float(np.linalg.norm(inverse[1])) * residual
+    scatter = float(stdtrit(freedom, 0.975)) * float(np.linalg.norm(inverse[1])) * residual
     return coefficients[1], scatter
 
 
