@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import PIL.Image
+    from matplotlib.artist import Artist
     from matplotlib.figure import Figure
 
 COLOURS = 64
@@ -15,12 +16,19 @@ COLOURS = 64
 
 
 def gif(
-    figure: Figure, update: Callable[[int], None], frames: int, *, dpi: float = 80.0, fps: float = 20.0
+    figure: Figure,
+    update: Callable[[int], None],
+    frames: int,
+    *,
+    moving: Sequence[Artist] = (),
+    dpi: float = 80.0,
+    fps: float = 20.0,
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
 
     ``update(i)`` changes the artists of ``figure`` for frame i; the layout is fixed at the first frame so
-    that nothing jumps.
+    that nothing jumps. Where it changes ``moving`` only, these are drawn in their order upon all the rest, which is
+    drawn once.
     """
     import PIL.Image
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -30,9 +38,17 @@ def gif(
     pictures: list[PIL.Image.Image] = []
     for i in range(frames):
         update(i)
-        canvas.draw()  # type: ignore[no-untyped-call]
         if i == 0:
+            canvas.draw()  # type: ignore[no-untyped-call]
             figure.set_layout_engine("none")
+            for artist in moving:
+                artist.set_animated(True)
+        if i == 0 or not moving:
+            canvas.draw()  # type: ignore[no-untyped-call]
+            background = canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
+        canvas.restore_region(background)  # type: ignore[no-untyped-call]
+        for artist in moving:
+            artist.draw(canvas.get_renderer())  # type: ignore[no-untyped-call]
         pixels = canvas.buffer_rgba()  # type: ignore[no-untyped-call]
         pictures.append(PIL.Image.frombytes("RGBA", canvas.get_width_height(), bytes(pixels)).convert("RGB"))
     palette = _palette(pictures)  # one for all frames: no flicker

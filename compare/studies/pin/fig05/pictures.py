@@ -13,6 +13,7 @@ from compare.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -77,7 +78,11 @@ def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
         for view in views:
             view.show(int(shown[i]))
 
-    return {"fig05-animation": gif(figure, frame, len(shown))}
+    return {
+        "fig05-animation": gif(
+            figure, frame, len(shown), moving=[one for view in views for one in view.moving]
+        )
+    }
 
 
 class _View:
@@ -87,7 +92,7 @@ class _View:
 
     def __init__(self, panel: Axes, name: str, found: Data) -> None:
         self.name = name
-        self.panel = panel
+        self.title = panel.set_title("")
         self.times = found[f"{name}: times"]
         self.states = found[f"{name}: states"]
         self.sticks: FloatArray = found[f"{name}: sticks"].reshape(-1, 2)
@@ -96,6 +101,11 @@ class _View:
         self.spokes = [panel.plot([], [], color="#cccccc", linewidth=1.0)[0] for _ in range(6)]
         (self.trail,) = panel.plot([], [], color=engine_style("reference").colour, linewidth=1.0)
         (self.pin,) = panel.plot([], [], marker="o", color=BLACK, markersize=7.0)
+
+    @property
+    def moving(self) -> tuple[Artist, ...]:
+        """All that changes."""
+        return (*self.spokes, self.trail, self.pin, self.title)
 
     def show(self, sample: int) -> None:
         """Move everything to where it is at that sample."""
@@ -108,4 +118,4 @@ class _View:
         self.pin.set_data(past[-1:, 0], past[-1:, 1])
         stuck = bool(np.any((self.sticks[:, 0] <= t) & (t <= self.sticks[:, 1])))
         self.pin.set_color(STUCK if stuck else BLACK)
-        self.panel.set_title(f"to the {self.name}, t = {t:5.1f} s, {'sticks' if stuck else 'slides'}")
+        self.title.set_text(f"to the {self.name}, t = {t:5.1f} s, {'sticks' if stuck else 'slides'}")
