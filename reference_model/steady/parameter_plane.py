@@ -65,17 +65,12 @@ class ParameterPlane:
             if name == "disc_speed" and low < 0.0 < high:
                 raise ValueError(f"disc_speed from {low:g} to {high:g} rad/s: there is no whirl at rest")
         for corner in itertools.product(*zip(self.lower, self.upper, strict=True)):
-            changes: dict[str, Any] = dict(zip(self.names, corner, strict=True))
-            whirl_radius(pin_of(replace(self.disc, **changes)))
+            whirl_radius(pin_of(self.at(corner)))
 
     def at(self, values: Iterable[float]) -> DiscOnDisc:
-        """Return the disc with the two parameters of these values.
-
-        Nothing is checked: a disc is sound wherever those at the corners are.
-        """
-        disc = object.__new__(DiscOnDisc)
-        vars(disc).update(vars(self.disc), **dict(zip(self.names, map(float, values), strict=True)))
-        return disc
+        """Return the disc with the two parameters of these values."""
+        changes: dict[str, Any] = dict(zip(self.names, map(float, values), strict=True))
+        return replace(self.disc, **changes)
 
     def lines(self, which: int) -> FloatArray:
         """Return the values of one parameter on the lines where curves are looked for, shape (LINES,)."""
