@@ -26,8 +26,8 @@ KNOWN = 4.0 * np.finfo(float).eps
 A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
 """
 
-EXACT = 1e-13
-"""Tolerance of the reference where there is no closed form."""
+EXACT = 1e-11
+"""Tolerance of the reference where there is no closed form: a thousandth of the smallest that is asked about."""
 
 SMALL_OFFSET = 1e-7
 """X0/ρ_c of the response. What is of second order in it is as small beside it; errors are ~ tolerance/X0."""
