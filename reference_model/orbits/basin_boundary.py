@@ -8,6 +8,7 @@ to look for it.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,10 +26,11 @@ from reference_model.systems import FloatArray, checked_state, finite_number
 
 COMPONENTS = ("x", "y", "vx", "vy")
 
-NEAR = 0.1
+NEAR = 0.3
 """Angle in rad within which a release counts as near to that of the orbit.
 
-A root is on the boundary whatever this is; it decides how near two starts must come for one to be looked for.
+A root is on the boundary whatever this is. It decides how near two starts must come for one to be looked for; the
+other starts are followed to their ends, which takes ten times as long.
 """
 
 SPARE = 0.1
@@ -109,6 +111,7 @@ class Separatrix:
     def point_between(self, first: FloatArray, second: FloatArray) -> FloatArray:
         """As :func:`boundary_point`."""
 
+        @functools.cache  # a search asks for its ends again
         def miss(share: float) -> float:
             return self.miss(first + share * (second - first))
 
@@ -118,15 +121,8 @@ class Separatrix:
             )
         share = float(brentq(miss, 0.0, 1.0, xtol=1e-15, rtol=1e-14))
         point = first + share * (second - first)
-        self.require_on_boundary(point)
+        _require_on_boundary(point, miss(share))
         return np.asarray(point)
-
-    def require_on_boundary(self, start: FloatArray) -> None:
-        """Raise ``RuntimeError`` if a start at which the side changes does not lead to the orbit."""
-        if abs(self.miss(start)) > JUMP:
-            raise RuntimeError(
-                f"the boundary at {start} is not in the stable set of the orbit: no release is near to that of it"
-            )
 
 
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
@@ -191,17 +187,26 @@ def basin_boundary(
     state = checked_state(orbit.system, others)
     require_whole("cells", cells, least=2)
 
-    def start(point: FloatArray) -> FloatArray:
-        result = state.copy()
-        result[places] = point
-        return result
+    @functools.cache  # a search asks for its ends again, and the curve for its points
+    def miss(*point: float) -> float:
+        start = state.copy()
+        start[places] = point
+        return separatrix.miss(start)
 
     curves = dividing_curves(
-        lambda point: separatrix.miss(start(point)), low, high, cells, error=SPARE * orbit.problem.tolerance
+        lambda point: miss(*point.tolist()), low, high, cells, error=SPARE * orbit.problem.tolerance
     )
     for point in (point for curve in curves for point in curve.points):
-        separatrix.require_on_boundary(start(point))
+        _require_on_boundary(point, miss(*point.tolist()))
     return curves
+
+
+def _require_on_boundary(point: FloatArray, miss: float) -> None:
+    """Raise ``RuntimeError`` if the start at a ``point`` at which the side changes does not lead to the orbit."""
+    if abs(miss) > JUMP:
+        raise RuntimeError(
+            f"the boundary at {point} is not in the stable set of the orbit: no release is near to that of it"
+        )
 
 
 def _checked_places(components: tuple[str, str]) -> list[int]:

@@ -18,7 +18,8 @@ TORQUE, RIPPLE = 100.0, 1.0
 SLIP, GAIN = 12.0, 0.05
 """Slip to hold in rad/s, and by which part of itself the load grows with each rad/s too much."""
 
-TOLERANCE = 8e-7
+TOLERANCE = 6.4e-6
+"""In the units of the state: the balance of energy is known to 2.5e-7 with it, where 1e-6 is asked."""
 
 LINES_APART = 0.06
 """In orders of the engine: what lies between unbalance and whirl at least, above the onset."""

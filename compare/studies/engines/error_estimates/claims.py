@@ -6,12 +6,13 @@ import functools
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY, TRUTH
+from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
 from compare.claims.measured import Measured
 from compare.claims.study import Study
 from compare.engines import Engine
-from compare.studies.engines.error_estimates.calibration import Calibration, calibrated
+from compare.studies.engines.error_estimates.calibration import Calibration, Problem, calibrated
 from compare.studies.engines.error_estimates.parameters import (
+    EXACT,
     KNOWN,
     LEAST_COVERAGE,
     MOST_OVER_ESTIMATE,
@@ -29,7 +30,7 @@ PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
 
 KNOWN_FROM = (
     "Every number with the estimate that all claims take. True errors are against closed forms, or the reference at "
-    f"tolerance {TRUTH:g}."
+    f"tolerance {EXACT:g}."
 )
 
 STUDY = Study.beside(
@@ -95,9 +96,14 @@ def over_estimate(engine: Engine, kind: str, motions: int = MOTIONS) -> Measured
 def calibration(engine: Engine, kind: str, motions: int) -> Calibration:
     """Return the calibration of one kind of problem, in its part of ``motions`` over all that can be simulated."""
     each = -(-motions // len(simulated(engine)))
-    # Of its own for each kind: every engine is asked the same questions.
-    random = np.random.default_rng([SEED, list(PROBLEMS).index(kind)])
-    return calibrated(engine, ((PROBLEMS[kind](random), between(random, *TOLERANCES)) for _ in range(each)))
+    return calibrated(engine, drawn(kind, each))
+
+
+@functools.lru_cache(maxsize=len(PROBLEMS))
+def drawn(kind: str, motions: int) -> tuple[tuple[Problem, float], ...]:
+    """Return ``motions`` problems of a kind, each with its tolerance: every engine is asked the same."""
+    random = np.random.default_rng([SEED, list(PROBLEMS).index(kind)])  # of its own for each kind
+    return tuple((PROBLEMS[kind](random), between(random, *TOLERANCES)) for _ in range(motions))
 
 
 @functools.lru_cache(maxsize=1)

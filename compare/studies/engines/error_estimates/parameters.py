@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compare.claims.error_estimates import TRUTH
+
 MOTIONS = 360
 """Random motions for an engine, as many of every kind of problem that it can simulate."""
 
@@ -25,6 +27,9 @@ KNOWN = 4.0 * np.finfo(float).eps
 
 A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
 """
+
+EXACT = 100.0 * TRUTH
+"""Tolerance of the reference where there is no closed form: a thousandth of the smallest that is asked about."""
 
 SMALL_OFFSET = 1e-7
 """X0/ρ_c of the response. What is of second order in it is as small beside it; errors are ~ tolerance/X0."""

@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.random import Generator
 
-from compare.claims.error_estimates import TRUTH
 from compare.studies.engines.error_estimates.calibration import Problem
-from compare.studies.engines.error_estimates.parameters import SAMPLES, SMALL_OFFSET, THROWS
+from compare.studies.engines.error_estimates.parameters import EXACT, SAMPLES, SMALL_OFFSET, THROWS
 from compare.studies.toolkit.free_bodies import Slowing
 from compare.studies.toolkit.random_systems import (
     any_disc,
@@ -187,7 +186,7 @@ def _place_and_time_of_rest(trajectory: Trajectory) -> FloatArray:
 def _generic(random: Generator, system: System) -> Problem:
     """Take any motion; the reference says at a far tighter tolerance where it leads."""
     start, times = any_start(random, system), np.array([0.0, _duration(random, system)])
-    return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=TRUTH).at_end)
+    return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=EXACT).at_end)
 
 
 def pin(random: Generator) -> Problem:

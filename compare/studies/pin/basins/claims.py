@@ -181,7 +181,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
     off = distances(beyond, curve)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Separatrix.of(saddle(ON_BOUNDARY))
+    sides = Separatrix.of(saddle())  # far tighter than by which they may miss it
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)

@@ -26,16 +26,16 @@ WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.
 """Where in the plane the boundary of each pin is looked for; that no other part of it lies elsewhere the ends of the
 grid say."""
 
-CELLS, ON_BOUNDARY = 10, 1e-7
-"""With which resolution and tolerance."""
+CELLS, ON_BOUNDARY = 10, 1e-6
+"""With which resolution and tolerance: splines between the points are 6e-4 m off, less than a step of the grid."""
 
-ASKED, BARELY = 64, 10.0 * ON_BOUNDARY
+ASKED, BARELY = 64, 1e-6
 """How many starts at most are asked by shooting, and by how much in rad they must miss the saddle to be on a side."""
 
 UNTIL = 3000.0
 """In s: long enough for every start to have come to its end."""
 
-SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 40).tolist())
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
 """In rad/s."""
 
 STARTS, SEED = 4000, 5
