@@ -30,13 +30,12 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 """A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
 
 
-PATIENCE = 40.0
-"""Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay.
+STABLE = 3.0
+"""Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
 
-Stability limits a step where its length times the fastest rate of decay is 6, but accuracy may do so at 0.4 already,
-and an implicit one be twenty times as long: only a trial can tell. So a step counts as its length times that rate, up
-to one.
-"""
+PATIENCE = 15
+"""Steps that stability limits before an implicit method is tried; twice as many each time that it does not pay."""
+
 
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
@@ -114,7 +113,7 @@ class Run:
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
     steps: int = 0
-    patience: float = PATIENCE
+    patience: int = PATIENCE
     _recorded: int = 0
     _looked_back: float = 0.0
 
@@ -233,7 +232,7 @@ class Stepper:
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._stiff_steps = 0.0
+        self._limited = 0  # steps that stability may have limited, less others
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond
@@ -261,9 +260,9 @@ class Stepper:
         return isinstance(self._solver, Radau) and self._solver.settled
 
     @property
-    def tedious(self) -> bool:
-        """Whether the explicit method has followed fast decays for so long that an implicit one is worth a trial."""
-        return self._stiff_steps >= self._run.patience
+    def stiff(self) -> bool:
+        """Whether stability has limited the explicit method for long."""
+        return self._limited >= self._run.patience
 
     @property
     def stiffness(self) -> float:
@@ -318,7 +317,7 @@ class Stepper:
         solver = self._solver
         t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
-        self._stiff_steps += min(self.stiffness, 1.0) if self._scales is None else 0.0
+        self._limited = max(0, self._limited + (1 if self.stiffness > STABLE else -1))
         if not self._surfaces or solver.t_bound != self._end:
             return
         landed, self._landed = self._landed, None

@@ -22,9 +22,6 @@ Rates = Callable[[list[float]], Sequence[float]]
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 """Of a step over the one before."""
 
-ROUNDING = 1e-13
-"""Relative difference of two stages that says nothing."""
-
 STAGES = DOP853.n_stages
 _WEIGHTS = np.zeros((STAGES, STAGES + 1))
 """Row s makes the unknowns of stage s + 1, of the last row those at the end, from y and h times the rates before."""
@@ -93,15 +90,11 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     def stiffness(self) -> float:
         """The length of the last step times the largest rate of decay, by its last two stages, both at its end.
 
-        0 where these are the same but for rounding.
-
         Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2.
         """
         unknowns, rates = self._last_two
         apart = math.dist(self.y.tolist(), unknowns)
-        if apart <= ROUNDING * math.hypot(*unknowns):
-            return 0.0
-        return float(self.h_previous * math.dist(self.f.tolist(), rates) / apart)
+        return float(self.h_previous * math.dist(self.f.tolist(), rates) / apart) if apart > 0.0 else 0.0
 
     def _step_impl(self) -> tuple[bool, str | None]:
         t, y, known = self.t, self.y, self._known

@@ -16,8 +16,7 @@ import numpy as np
 from scipy.integrate import DenseOutput
 
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
-from reference_model.motion.slip.landing import Landings
-from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
+from reference_model.motion.stepper import Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
@@ -30,11 +29,8 @@ TIGHTEST_IMPLICIT = 3e-13
 LOOSEST = 0.03
 """The largest error of a step in ln s."""
 
-WORTH = 8.0
-"""Length of a step times the largest rate, from which an implicit step may be worth what it costs."""
-
-COST = 10.0
-"""Work of an implicit step over that of an explicit one."""
+WORTH = 50.0
+"""Length of a step times the largest rate, from which an implicit step is worth what it costs."""
 
 
 def slide_stiffly(
@@ -84,13 +80,12 @@ def slide_stiffly(
         surfaces,
         (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
-    landings = Landings(run, motion, leave)
-    t, taken, paid = start, run.steps, False
+    t = start
     while t < run.end:
-        before = t
         try:
             solver.step(t)
         except StepError:
+            run.patience *= 2
             break
         lost = grip_lost(motion, solver, unknowns)
         t = solver.t if lost is None else lost
@@ -101,14 +96,12 @@ def slide_stiffly(
             return Outcome(t, y, let_go=True)
         if t >= run.end or leave(y):
             break
-        slow = motion.slow(y) > 0.0
-        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
+        ended = slip_ends(run, motion, t, y) if motion.slow(y) > 0.0 else None
         if ended is not None:
             return ended
-        paid = t - start > COST * step * (run.steps - taken)
-        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
+        if solver.settled and solver.stiffness < WORTH:
+            run.patience *= 2
             break
-    run.patience = PATIENCE if paid else 2 * run.patience
     return Outcome(t, y)
 
 

@@ -207,9 +207,8 @@ def test_motion_is_the_same_in_any_units(law, mass, length, time):
     plain = simulate(disc, STARTS[1], times, contact=contact)
     scaled = simulate(other, scale * np.array(STARTS[1]), time * times, contact=other_contact)
     assert kinds(plain) == kinds(scaled)
-    # The same steps but for rounding. It grows at a release, but stays below the tolerance. It may tip over where
-    # one description of slip ends, and so the few steps of the next.
-    assert scaled.solution.steps == pytest.approx(plain.solution.steps, rel=0.03)
+    # The same steps but for rounding. It grows at a release, but stays below the tolerance.
+    assert abs(scaled.solution.steps - plain.solution.steps) <= 1  # rounding may tip one over
     assert np.abs(plain.states - scaled.states / scale).max() < 1e-9
 
 
@@ -450,33 +449,3 @@ def test_contact_that_the_system_cannot_have_is_refused():
         simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact="ring")
     with pytest.raises(ValueError, match="DiscOnDisc takes 6 numbers"):
         simulate(FIG11, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
-
-
-# ---------------------------------------------------------------- a light disc on far points
-
-
-def test_point_far_out_on_a_light_disc_begins_to_slip_where_its_own_inertia_turns_the_slip():
-    # R = 200 κ: at the point the disc is 40,000 times as heavy along the arm as across it. So the direction in which
-    # it begins to slip turns at once, and slip grows a thousand times more slowly than the pull along the first one.
-    disc = DiscOnDisc(
-        mass=1.0, polar_inertia=0.0470838335426834, stiffness=1.0, damping=0.9078313152049701,
-        friction_force=0.20300231350674897, disc_speed=0.04933418323377579, offset=8.395805999767857,
-        contact_radius=43.304912771594886, shaft_damping=0.1084058576333912, shaft_speed=33.91703697093388,
-        contact_points=4,
-    )  # fmt: skip
-    start = [0.00227276, -0.00150149, 0.00215134, -0.00235045, 0.01848169, 0.04933418]
-    usual = simulate(disc, start, np.linspace(0.0, 30.0, 61))
-    tight = simulate(disc, start, np.linspace(0.0, 30.0, 61), tolerance=1e-11)
-    assert kinds(usual) == kinds(tight)
-    assert usual.phases[-2].kind == "pivot"
-    assert 25.7 < usual.phases[-1].start < 25.8
-    assert np.abs(usual.states - tight.states).max() < 4.0 * 1e-9 * disc.offset
-    # The point that was the pivot slips from there on: ever faster, and by a smooth law s = ½κt².
-    since = usual.phases[-1].start
-    delays = np.array([0.01, 0.02, 0.04])
-    later = simulate(disc, start, [0.0, *(since + delays)], tolerance=1e-11).states[1:]
-    arms = np.array([PointsOnRing(disc.contact_radius, 4).arms(angle) for angle in later[:, 2]])
-    centre = later[:, 3] + 1j * later[:, 4] - 1j * disc.disc_speed * (later[:, 0] + 1j * later[:, 1])
-    slips = np.abs(centre[:, np.newaxis] + 1j * (later[:, 5] - disc.disc_speed)[:, np.newaxis] * arms)
-    slowest = slips.min(axis=1)
-    assert slowest[1:] / slowest[:-1] == pytest.approx(4.0, rel=0.05)
