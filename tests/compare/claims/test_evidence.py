@@ -147,10 +147,7 @@ def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
     part = replace(reference, contact_only=True)
     few = {name: {"speeds": (1.5,)} for name in ("radius", "frequency")}
     found = study.measure(part, few).claims
-    assert [made.sentence.split(" with ")[1].split(" where")[0] for made in found] == [
-        "the radius μN/(βk)",
-        "the frequency k",
-    ]
+    assert [made.identity for made in found] == ["whirl-stability/radius", "whirl-stability/frequency"]
     assert {made.verdict for made in found} == {Verdict.AGREES}
 
 
