@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -33,24 +33,26 @@ def gif(
     import PIL.Image
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)  # which has no types
     figure.set_dpi(dpi)
+    update(0)
+    canvas.draw()
+    figure.set_layout_engine("none")
+    for artist in moving:
+        artist.set_animated(True)
+    canvas.draw()
+    background = canvas.copy_from_bbox(figure.bbox)
     pictures: list[PIL.Image.Image] = []
     for i in range(frames):
         update(i)
-        if i == 0:
-            canvas.draw()  # type: ignore[no-untyped-call]
-            figure.set_layout_engine("none")
-            for artist in moving:
-                artist.set_animated(True)
-        if i == 0 or not moving:
-            canvas.draw()  # type: ignore[no-untyped-call]
-            background = canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
-        canvas.restore_region(background)  # type: ignore[no-untyped-call]
+        if moving:
+            canvas.restore_region(background)
+        else:
+            canvas.draw()
         for artist in moving:
-            artist.draw(canvas.get_renderer())  # type: ignore[no-untyped-call]
-        pixels = canvas.buffer_rgba()  # type: ignore[no-untyped-call]
-        pictures.append(PIL.Image.frombytes("RGBA", canvas.get_width_height(), bytes(pixels)).convert("RGB"))
+            artist.draw(canvas.get_renderer())
+        pixels = bytes(canvas.buffer_rgba())
+        pictures.append(PIL.Image.frombytes("RGBA", canvas.get_width_height(), pixels).convert("RGB"))
     palette = _palette(pictures)  # one for all frames: no flicker
     frames_out = [picture.quantize(palette=palette, dither=PIL.Image.Dither.NONE) for picture in pictures]
     _keep_background(frames_out, pictures[0])

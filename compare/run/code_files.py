@@ -243,10 +243,10 @@ def _imports(name: str, place: Place, content: bytes, trusted: bool = False) -> 
             found += (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = _absolute(name, place, node)
-            inside = (
+            names = (
                 f"{base}.{alias.name}" for alias in node.names if alias.name != "*"
-            )  # which may be modules
-            found += (base, *(one for one in inside if located(one) is not None))
+            )  # some may be modules
+            found += (base, *(one for one in names if located(one) is not None))
     return tuple(found)
 
 

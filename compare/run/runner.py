@@ -18,6 +18,9 @@ from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES, stamp
 from compare.run.workers import Done, Failure, Workers
 
+CODE = ("compare.run", "compare.claims.as_json")
+"""What runs a study and writes its findings down: they depend on it beside the study's and the engine's own."""
+
 
 @dataclass(frozen=True)
 class Drawing:
@@ -187,7 +190,7 @@ class _Runner:
         """Return what the findings depend on, None where that is not known."""
         what = {study.name: study} if engine is None else {study.name: study, engine.name: engine}
         prints = [self._fingerprint(name, thing) for name, thing in what.items()]
-        return None if None in prints else stamp(*filter(None, prints))
+        return None if None in prints else stamp(*filter(None, prints), code=CODE)
 
     def _fingerprint(self, name: str, thing: object) -> str | None:
         """Return what ``thing`` depends on; file why that is not known."""

@@ -15,6 +15,7 @@ from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.run import workers
 from compare.run.runner import Drawing, run
+from compare.run.stamp import ROOT
 from compare.run.workers import Failure
 
 BOTH = (fake.GOOD, fake.FAILING)
@@ -135,6 +136,25 @@ def test_resume_does_not_take_what_another_version_found(tmp_path, count):
     path.write_text(json.dumps(content | {"stamp": content["stamp"].replace("numpy", "numpi")}))
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path, resume=True)
     assert count() == ["good", "good"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "measured"),
+    [(None, 1), ("compare/run/findings_store.py", 2), ("compare/claims/as_json.py", 2)],
+)
+def test_resume_does_not_take_what_other_code_has_written_down(
+    changed, measured, tmp_path, count, monkeypatch
+):
+    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings")
+    for path in (*(ROOT / "compare" / "run").glob("*.py"), ROOT / "compare" / "claims" / "as_json.py"):
+        copy = tmp_path / path.relative_to(ROOT)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_bytes(path.read_bytes())
+    if changed is not None:
+        (tmp_path / changed).write_text("# changed")
+    monkeypatch.setattr("compare.run.stamp.ROOT", tmp_path)
+    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings", resume=True)
+    assert len(count()) == measured
 
 
 def test_progress_counts_to_its_end(tmp_path):
