@@ -77,6 +77,7 @@ def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law:
 
 def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
     """Return the Jacobian over all coordinates of base and disc but the first ``hidden``, which are zero."""
+    zeros = np.zeros(len(reference))
 
     def jacobian(
         mbs: Any,
@@ -87,8 +88,9 @@ def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, 
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        zeros, factors = np.zeros(hidden), (position_factor, velocity_factor)
-        coordinates, velocities = reference + np.hstack((zeros, q)), np.hstack((zeros, q_t))
+        coordinates, velocities, factors = reference.copy(), zeros.copy(), (position_factor, velocity_factor)
+        coordinates[hidden:] += q
+        velocities[hidden:] = q_t
         derivatives = support_derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
         return -derivatives[hidden:, hidden:]  # Exudyn takes those of the left-hand side
 

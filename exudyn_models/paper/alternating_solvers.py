@@ -255,19 +255,26 @@ class _Turns:
         """Return the time at which in ``run`` something else than ``part`` creeps first, None if nothing does."""
         seen = self.contact.in_master_axes
 
-        def goes_on(time: float) -> bool:
-            return self.friction.creeping(seen, creep_at(run, time).tolist()) == part
+        def first_other(times: FloatArray) -> int | None:
+            """Return the number of the first of ``times`` at which something else creeps."""
+            states = enumerate(creep_at(run, times).tolist())
+            return next((i for i, state in states if self.friction.creeping(seen, state) != part), None)
 
         places = _suspects(seen, run) if part == WHOLE else run.times[-1:]
-        first: float | None = next((time for time in places.tolist() if not goes_on(time)), None)
-        if first is None or first == run.times[0]:
+        found = first_other(places)
+        if found is None:
+            return None
+        first = float(places[found])
+        if first == run.times[0]:
             return first
         left = float(run.times[np.searchsorted(run.times, first) - 1])
-        while True:
-            middle = (left + first) / 2.0
-            if not left < middle < first or first - left < CROSSING * (run.times[-1] - run.times[-2]):
-                return first
-            left, first = (middle, first) if goes_on(middle) else (left, middle)
+        error = max(CROSSING * float(run.times[-1] - run.times[-2]), PARTS * np.spacing(first))
+        while first - left > error:
+            inside = np.linspace(left, first, PARTS + 1)
+            found = first_other(inside[1:-1])
+            after = PARTS if found is None else found + 1
+            left, first = float(inside[after - 1]), float(inside[after])
+        return first
 
 
 CROSSING = 1e-9
@@ -279,8 +286,8 @@ GRAZING = 1e-6
 REFINEMENT = 16.0
 """By how much steps become smaller, once or several times, before a release."""
 
-INSIDE = np.linspace(0.0, 1.0, 17)[1:]
-"""Places in a step at which creep that is near to its end is looked at."""
+PARTS = 16
+"""Of a step, at whose ends creep that is near to its end is looked at."""
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
@@ -296,7 +303,7 @@ def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
     """Return times in ``run`` at which the creep may have ended: the last, and those about its maxima near ε."""
     steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
-    inside = run.times[steps, None] + np.diff(run.times)[steps, None] * INSIDE
+    inside = run.times[steps, None] + np.diff(run.times)[steps, None] * np.linspace(0.0, 1.0, PARTS + 1)[1:]
     return np.append(inside.ravel(), run.times[-1])
 
 

@@ -1,20 +1,45 @@
-"""What the tests of the studies share."""
+"""What the tests of the studies share: engines that are broken on purpose. A check is worth what it fails on."""
 
-from dataclasses import replace
+import functools
 
 from compare.engines import EVERY_KIND, Engine
-from reference_model import simulate
+from compare.judge.faults import FAULTS
+from compare.judge.faults.make import Make
+from compare.judge.faults.plain import simulate as simulate_plainly
+from compare.judge.faults.wrong_parameters import with_parameters
+
+
+def with_changed(change):
+    """Return the reference with the parameters that ``change`` returns for a system."""
+    return Engine("changed", functools.partial(with_parameters, change), EVERY_KIND)
 
 
 def altered(**factors):
     """Return the reference with parameters that are wrong by ``factors``."""
+    return with_changed(
+        lambda system: {name: factor * getattr(system, name) for name, factor in factors.items()}
+    )
 
-    def simulated(system, initial_state, times, *, tolerance=1e-9):
-        wrong = {name: factor * getattr(system, name) for name, factor in factors.items()}
-        trajectory = simulate(replace(system, **wrong), initial_state, times, tolerance=tolerance)
-        return replace(trajectory, system=system)
 
-    return Engine("altered", simulated, EVERY_KIND)
+def made(**make):
+    """Return the plain engine of the judge with one part made wrong."""
+    return Engine("made", functools.partial(simulate_plainly, make=Make(**make)), EVERY_KIND)
+
+
+def fault(name):
+    """Return a wrong engine of the judge's catalogue."""
+    return next(fault.engine for fault in FAULTS if fault.name == name)
+
+
+STEPS = {"order": 4, "step": 0.01}
+"""Fixed steps, and ε by them: coarse and quick will do for an engine that is grossly wrong."""
+
+GROSS = {
+    "wrong sign": made(friction=-1.0, **STEPS),
+    "square": made(sides=4, circumscribed=True, **STEPS),
+    "half the damping": altered(damping=0.5),
+}
+"""Mistakes that every claim about a pin is tried with."""
 
 
 def verdicts(findings):

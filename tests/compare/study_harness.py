@@ -4,10 +4,10 @@ import functools
 from dataclasses import replace
 
 import numpy as np
-from broken_engines import broken_engines
 
 from compare.claims.claim import Verdict
 from compare.engines import engines
+from compare.judge.faults import RIGHT
 
 SEES, BLIND, OPEN = Verdict.DIFFERS, Verdict.AGREES, Verdict.INCONCLUSIVE
 LEFT_OUT = None
@@ -21,8 +21,8 @@ def engine_named(name):
     The reference remembers what it has simulated, for as long as the tests run: claims that ask for the same motion,
     and engines under other names that promise less, get it once. ``test_engines`` has that equal runs are equal.
     """
-    if name in broken_engines():
-        return broken_engines()[name]
+    if name == "intact":
+        return RIGHT[1]
     (engine,) = engines([name])
     return replace(engine, function=remembering(engine.function)) if name == "reference" else engine
 

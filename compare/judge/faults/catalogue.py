@@ -76,6 +76,7 @@ CORNERS = 1e-4
 """ε in m/s of polygons: motions run along their corners for long, which a smaller one makes too costly to follow."""
 
 FORCE: tuple[Fault, ...] = (
+    made("friction-along-slip", "Friction acts along the slip, not against it.", friction=-1.0),
     made(
         "pyramid-of-4-sides",
         "Friction is bounded by a square inside of the circle.",

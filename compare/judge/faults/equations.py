@@ -57,7 +57,8 @@ def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbe
     force, moment, _ = contact(slip, turning, angle, width, strength, numbers, make)
     if abs(z.imag) > z.real:
         force *= 1.0 + make.stronger_beside
-    a = (numbers.friction * force + support(t, z, v, numbers, make)) / numbers.mass
+    friction = make.friction * numbers.friction
+    a = (friction * force + support(t, z, v, numbers, make)) / numbers.mass
     if make.energy_gain > 0.0:
         a += make.energy_gain / (2.0 * math.pi) * math.sqrt(numbers.stiffness / numbers.mass) * v
     square = z.real * z.real + z.imag * z.imag
@@ -71,7 +72,7 @@ def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbe
         spin = y[5] + numbers.omega
         shaft = -numbers.shaft_damping * (spin - numbers.shaft_speed)
         result[2] = spin
-        result[5] = (make.moment * numbers.friction * moment + shaft) / numbers.inertia
+        result[5] = (make.moment * friction * moment + shaft) / numbers.inertia
     return result
 
 

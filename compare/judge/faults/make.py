@@ -12,6 +12,8 @@ class Make(NamedTuple):
 
     Parameters
     ----------
+    friction : float
+        Factor of the friction force and of its moment; along the slip where it is negative.
     slip_width : float
         ε in m/s is no smaller than this, whatever the tolerance.
     creep_speed : float
@@ -68,6 +70,7 @@ class Make(NamedTuple):
 
     """
 
+    friction: float = 1.0
     slip_width: float = 0.0
     creep_speed: float = 0.0
     static_ratio: float = 1.0

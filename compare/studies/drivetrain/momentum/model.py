@@ -146,4 +146,5 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
         )
     )
     own = rotation.reshape(3, 3) @ (np.array(body.inertia) * spin)
-    return np.asarray(body.mass * np.cross(place, velocity) + own)
+    (x, y, z), (vx, vy, vz) = place, velocity
+    return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)

@@ -4,13 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from broken_engines import broken_engines, broken_on_discs
-from studies_under_test import altered
+from studies_under_test import GROSS, altered, fault, made
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults import FAULTS
 from compare.studies.engines.trajectories.claims import STUDY, measure, moves
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
@@ -41,19 +39,15 @@ def wrapped(system, initial_state, times, *, tolerance=1e-9):
     return replace(run, states=states)
 
 
-def fault(name):
-    """Return an engine of the judge that is wrong."""
-    return next(fault.engine for fault in FAULTS if fault.name == name)
-
-
 class TestTrajectories(StudyTests):
     study = STUDY
     sound = ("reference",)
     faults = (
         {f"{parameter} off by 1e-6": altered(**{parameter: 1.0 + 1e-6}) for parameter in OF_DISC}
-        | {name: broken_engines()[name] for name in ("wrong sign", "half the damping")}
-        | {name: broken_on_discs()[name] for name in ("moment 1 % off", "five points")}
+        | {name: GROSS[name] for name in ("wrong sign", "half the damping")}
         | {
+            "moment 1 % off": made(moment=1.01),
+            "five points": fault("one-point-too-few"),
             "angle within a turn": Engine("wrapped", wrapped, EVERY_KIND),
             "friction stronger at extreme speeds": fault("friction-stronger-at-extremes"),
         }

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from broken_engines import broken_engines
+from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.studies.pin.fig03 import parameters, theory
@@ -17,7 +17,7 @@ class TestFig03(StudyTests):
     few = dict.fromkeys(("rests", "semicircle", "vanishes", "eigenvalues", "stable"), LOADS) | {
         "rest_or_turn": {"shares": (0.98, 1.2)}
     }
-    faults = broken_engines()
+    faults = GROSS
     columns = ("rests", "semicircle", "vanishes", "rest_or_turn", "eigenvalues", "stable")
     table = {
         "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES),

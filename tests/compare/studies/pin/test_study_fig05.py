@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import PIL.Image
 import pytest
-from broken_engines import broken_engines
-from studies_under_test import altered
+from studies_under_test import GROSS, altered, fault
 from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
@@ -38,18 +37,12 @@ def never_released(system, initial_state, times, *, tolerance=1e-9):
     return replace(trajectory, states=states, phases=(*before, replace(first, end=float(times[-1]))))
 
 
-def late(system, initial_state, times, *, tolerance=1e-9):
-    """Every state is that of the sample before."""
-    trajectory = simulate(system, initial_state, times, tolerance=tolerance)
-    return replace(trajectory, states=np.vstack((trajectory.states[:1], trajectory.states[:-1])))
-
-
 class TestFig05(StudyTests):
     study = STUDY
-    faults = broken_engines() | {
+    faults = GROSS | {
         "friction 1 % off": altered(friction_force=1.01),
         "stick never ends": Engine("stick never ends", never_released),
-        "one sample late": Engine("one sample late", late),
+        "one sample late": fault("one-sample-late"),
     }
     columns = ("slides", "rests", "whirls", "first_stick", "all_sticks", "critical", "sides")
     table = {

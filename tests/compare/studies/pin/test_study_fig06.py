@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from broken_engines import broken_engines
-from studies_under_test import altered
+from studies_under_test import GROSS, altered
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
@@ -26,7 +25,7 @@ class TestFig06(StudyTests):
     study = STUDY
     few_of_faults = {"rests": {"loads": (0.04, 0.095)}, "whirls": {"loads": (0.12,)}}
     few = few_of_faults | {"curves": {"innermost": 0.3, "step": 0.25}}
-    faults = broken_engines() | {
+    faults = GROSS | {
         "friction 1 % off": altered(friction_force=0.99),
         "damping 70 % too strong": altered(damping=1.7),
     }

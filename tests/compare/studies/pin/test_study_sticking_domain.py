@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from broken_engines import broken_engines
+from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.studies.pin.sticking_domain import parameters
@@ -18,7 +18,7 @@ class TestStickingDomain(StudyTests):
     study = STUDY
     sound = ("reference", "exudyn", "intact")
     few = {"stays": SPEEDS, "holds": SPEEDS, "lets_go": SPEEDS, "largest": SEARCHED, "resonance": SEARCHED}
-    faults = broken_engines()
+    faults = GROSS
     columns = ("stays", "holds", "lets_go", "largest", "resonance")
     table = {
         "wrong sign": (SEES, SEES, SEES, SEES, SEES),

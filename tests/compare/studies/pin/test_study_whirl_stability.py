@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from broken_engines import broken_engines
+from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
@@ -24,7 +24,7 @@ class TestWhirlStability(StudyTests):
         "eigenvalues": POINTS,
         "stable": POINTS,
     }
-    faults = broken_engines()
+    faults = GROSS
     columns = ("radius", "frequency", "balance", "caught", "eigenvalues", "stable", "history")
     table = {
         # The pin whirls backwards on a circle of the right radius: only (11)'s radius does not see that.
