@@ -31,7 +31,7 @@ def fault(name):
     return next(fault.engine for fault in FAULTS if fault.name == name)
 
 
-STEPS = {"order": 4, "step": 0.01}
+STEPS = {"order": 4, "step": 0.002}
 """Fixed steps, and ε by them: coarse and quick will do for an engine that is grossly wrong."""
 
 GROSS = {

@@ -54,6 +54,7 @@ def gaining(system, initial_state, times, *, tolerance=1e-9):
 
 FAULTS = GROSS | {
     "intact": engine_named("intact"),
+    "viscous below 1e-3 m/s": fault("regularised-100-times-too-wide"),
     "friction 1 % off": altered(friction_force=1.01),
     "damping 1 % off": altered(damping=1.01),
     "mass 1 % off": altered(mass=1.01),
@@ -75,7 +76,8 @@ FAULTS_OF_DISC = {
 OF_PIN = {
     # On the way to:      equilibrium whirl SETTLES STICKS RESTING BACKWARDS
     "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES),
-    "square": (SEES, SEES, SEES, SEES, SEES, SEES),
+    "square": (SEES, SEES, SEES, OPEN, SEES, SEES),
+    "viscous below 1e-3 m/s": (LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT),
     # A pin that sticks moves with the disc whatever the parameters are, as long as friction can hold it.
     "half the damping": (SEES, SEES, SEES, BLIND, SEES, SEES),
     "friction 1 % off": (SEES, SEES, SEES, BLIND, SEES, SEES),
@@ -90,7 +92,8 @@ OF_PIN = {
 OF_DISC = {
     # Motion:                   cycle six offset sticks ring-to-rest six-to-rest
     "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES),
-    "square": (LEFT_OUT, SEES, LEFT_OUT, SEES, LEFT_OUT, SEES),
+    "square": (LEFT_OUT, SEES, LEFT_OUT, OPEN, LEFT_OUT, SEES),
+    "viscous below 1e-3 m/s": (LEFT_OUT, LEFT_OUT, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT),
     "slip and spin uncoupled": (SEES, LEFT_OUT, SEES, LEFT_OUT, SEES, LEFT_OUT),
     # Nothing but friction acts on what is thrown on a table.
     "half the damping": (SEES, SEES, SEES, BLIND, LEFT_OUT, LEFT_OUT),  # see SLIDING

@@ -32,8 +32,7 @@ class TestFig06(StudyTests):
     columns = ("rests", "whirls", "whirl_ends", "coexist", "cycle_exists", "cycle_attracts")
     table = {
         "wrong sign": (SEES, SEES, LEFT_OUT, SEES, SEES, SEES),
-        # Such pins stick, and have whirls, of their own: that both exist is right for them too.
-        "square": (SEES, SEES, NO_ORBIT, BLIND, SEES, SEES),
+        "square": (SEES, SEES, NO_WHIRL, SEES, SEES, SEES),
         # Its cycle is unstable, so that errors grow with what is measured.
         "half the damping": (SEES, SEES, SEES, BLIND, SEES, (SEES, OPEN)),
         "friction 1 % off": (SEES, SEES, LEFT_OUT, BLIND, SEES, SEES),
