@@ -125,7 +125,8 @@ def test_json_and_page_tell_what_caught_what(tmp_path):
 
 def test_a_fault_of_the_catalogue_is_caught_from_the_command_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(catalogue, "RIGHT", RIGHT[:1])
-    status = cli.status(["judge", "mass-off-by-1e-6", "--jobs", "1", "--output", str(tmp_path)])
+    arguments = ["--study", "trajectories", "--jobs", "1", "--output", str(tmp_path)]
+    status = cli.status(["judge", "mass-off-by-1e-6", *arguments])
     out = capsys.readouterr().out
     assert "1 of 1 faults caught by trajectories and by claims of another kind" in out
     assert f"1 of 1 right engines pass ({tmp_path / 'judge.html'})" in out
