@@ -2,36 +2,44 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
+import fake_studies
 import pytest
-from processes import FAKE, PATIENCE, REAL, environment
+from processes import PATIENCE, REAL, environment
+
+from compare import engines
+from compare.cli import app as cli
 
 Process = subprocess.CompletedProcess[str]
 
 
 @pytest.fixture(scope="session")
 def command() -> Callable[..., Process]:
-    """Run the command line with the paper's studies, or with the fake ones."""
+    """Run the command line as a process."""
 
-    def call(*arguments: str, fake: bool = False, cwd: Path | None = None, **variables: str) -> Process:
+    def call(*arguments: str) -> Process:
         return subprocess.run(
-            [*(FAKE if fake else REAL), *arguments],
-            env=environment(**variables),
-            cwd=cwd,
-            capture_output=True,
-            encoding="utf-8",
-            timeout=PATIENCE,
+            [*REAL, *arguments], env=environment(), capture_output=True, encoding="utf-8", timeout=PATIENCE
         )
 
     return call
 
 
 @pytest.fixture(scope="session")
-def reported(command, tmp_path_factory) -> tuple[Process, Path]:
-    """A report with every verdict, a failed engine, an array claim, a figure and an animation."""
+def reported(tmp_path_factory) -> tuple[Process, Path]:
+    """How a report ended and where it is: every verdict, a failed engine, an array claim, a figure, an animation."""
     folder = tmp_path_factory.mktemp("report")
-    engines = ("--engine", "good", "--engine", "failing")
-    return command("report", "verdicts", "agreement", *engines, "--output", str(folder), fake=True), folder
+    registered = {engine.name: engine for engine in (fake_studies.GOOD, fake_studies.FAILING)}
+    arguments = ["report", "verdicts", "agreement", "--jobs", "1", "--output", str(folder)]
+    for name in registered:
+        arguments += ["--engine", name]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engines, "_REGISTRY", registered)
+        with redirect_stdout(io.StringIO()) as out, redirect_stderr(io.StringIO()) as err:
+            status = cli.status(arguments, fake_studies.ALL)
+    return Process(arguments, status, out.getvalue(), err.getvalue()), folder

@@ -1,7 +1,7 @@
 """Small studies and engines with known verdicts, to test the machinery around the real ones.
 
-A module of its own, because functions are sent to other processes by their names. Run as a program it is the
-command line with these studies in place of the paper's.
+A module of its own, because functions are sent to other processes by their names. It imports little, because all
+that it imports is in the fingerprint of its studies; the command line with these studies is ``fake_command``.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.claims.study import Findings, Study
-from compare.cli import app as cli
-from compare.engines import Engine, register
+from compare.engines import Engine
 from compare.figures import axis, curve, engines_in, new_figure, points
 from compare.report.animation import gif
 from reference_model.trajectory import Phase, Solution, Trajectory
@@ -248,10 +247,3 @@ UNDRAWABLE = Study("undrawable", "A figure that fails", "None.", measure_agreeme
 NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", lambda engine: None, draw_nothing)
 
 ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE, PARTLY, RING_ONLY)
-
-if __name__ == "__main__":
-    import fake_studies  # by its name, for the other processes
-
-    for engine in (fake_studies.GOOD, fake_studies.ALSO_GOOD, fake_studies.FAILING):
-        register(engine)
-    cli.main(studies=fake_studies.ALL)

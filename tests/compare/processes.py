@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FAKE = [sys.executable, str(Path(__file__).with_name("fake_studies.py"))]
+FAKE = [sys.executable, str(Path(__file__).with_name("fake_command.py"))]
 REAL = [sys.executable, "-m", "compare.cli"]
 
 PATIENCE = 900.0

@@ -14,8 +14,11 @@ from compare.claims.study import Findings, Study
 from compare.cli import app as cli
 from compare.engines import Engine
 from compare.judge import detection, judge
+from compare.judge import faults as catalogue
 from compare.judge.faults import FAULTS, RIGHT, Fault
 from compare.judge.outcome import Outcome
+from compare.studies.engines.trajectories.claims import measure as measure_motions
+from compare.studies.engines.trajectories.parameters import POINTS
 from reference_model import PinOnDisc
 
 START = (0.5, 0.25, 0.0, 0.0)
@@ -120,13 +123,25 @@ def test_json_and_page_tell_what_caught_what(tmp_path):
     assert "1 of 1 faults caught" in page
 
 
-def test_faults_of_the_catalogue_are_caught_from_the_command_line(tmp_path, capsys):
-    names = ["moment-of-wrong-sign", "mass-off-by-1e-6", "no-release"]
-    status = cli.status(["judge", *names, "--jobs", "1", "--output", str(tmp_path)])
+def test_a_fault_of_the_catalogue_is_caught_from_the_command_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(catalogue, "RIGHT", RIGHT[:1])
+    arguments = ["--study", "trajectories", "--jobs", "1", "--output", str(tmp_path)]
+    status = cli.status(["judge", "mass-off-by-1e-6", *arguments])
     out = capsys.readouterr().out
-    assert "3 of 3 faults caught by trajectories and by claims of another kind" in out
-    assert f"{len(RIGHT)} of {len(RIGHT)} right engines pass ({tmp_path / 'judge.html'})" in out
+    assert "1 of 1 faults caught by trajectories and by claims of another kind" in out
+    assert f"1 of 1 right engines pass ({tmp_path / 'judge.html'})" in out
     assert status == 0
+
+
+SIX_POINTS = {"a disc on six points": POINTS["a disc on six points"]}
+
+
+def test_a_moment_of_the_wrong_sign_is_caught_and_right_engines_pass(tmp_path):
+    study = replace(STUDY, by_hand=lambda engine: measure_motions(engine, SIX_POINTS))
+    fault = next(fault for fault in FAULTS if fault.name == "moment-of-wrong-sign")
+    result = judge.judge((fault,), RIGHT, (study,), folder=tmp_path, whole=False)
+    assert [one.outcome for one in result.faults] == [Outcome.CAUGHT]
+    assert [one.outcome for one in result.right] == [Outcome.PASSES] * len(RIGHT)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,9 @@ import multiprocessing
 import os
 import signal
 import subprocess
+import sys
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 
 import fake_studies as fake
@@ -11,8 +13,10 @@ import numpy as np
 import pytest
 from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
 
+from compare import engines
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
+from compare.cli import app as cli
 from compare.run import workers
 from compare.run.runner import Drawing, run
 from compare.run.stamp import ROOT
@@ -21,13 +25,27 @@ from compare.run.workers import Failure
 BOTH = (fake.GOOD, fake.FAILING)
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(jobs, tmp_path):
-    studies = (fake.VERDICTS, fake.AGREEMENT) + ((fake.DEATH,) if jobs > 1 else ())
-    result = run(studies, BOTH, folder=tmp_path, jobs=jobs)
+@pytest.fixture(scope="module")
+def both_ways(tmp_path_factory):
+    """Runs in one and in two processes, of which one dies, and the progress that the first one told of."""
+    told = []
+    one = run(
+        (fake.VERDICTS, fake.AGREEMENT),
+        BOTH,
+        folder=tmp_path_factory.mktemp("one"),
+        progress=lambda *call: told.append(call),
+    )
+    studies = (fake.VERDICTS, fake.AGREEMENT, replace(fake.DEATH, only=("good",)))
+    two = run(studies, BOTH, folder=tmp_path_factory.mktemp("two"), jobs=2)
+    assert multiprocessing.active_children() == []
+    return one, two, told
+
+
+@pytest.mark.parametrize("way", [0, 1])
+def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_ways):
+    result = both_ways[way]
     assert not result.interrupted
     assert result.missing == ()
-    assert multiprocessing.active_children() == []
     for key in (
         ("verdicts", "theory"),
         ("verdicts", "good"),
@@ -39,11 +57,8 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(jobs, tmp_pat
     assert failure.reason == "the step size became too small at t = 3.2 s: try a larger tolerance"
     assert failure.where[-1].startswith("fake_studies.py:")
     assert "/" not in "".join(failure.where)
-    if jobs > 1:
-        for engine in ("good", "failing"):
-            assert (
-                result.outcomes["death", engine].reason == "its process came to a sudden end (exit status 7)"
-            )
+    if way == 1:
+        assert result.outcomes["death", "good"].reason == "its process came to a sudden end (exit status 7)"
 
 
 def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
@@ -63,8 +78,8 @@ def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_g
     assert multiprocessing.active_children() == []
 
 
-def test_one_and_two_processes_find_and_draw_the_same(tmp_path):
-    one, two = (run((fake.VERDICTS,), BOTH, folder=tmp_path / str(jobs), jobs=jobs) for jobs in (1, 2))
+def test_one_and_two_processes_find_and_draw_the_same(both_ways):
+    one, two, _ = both_ways
     drawing = one.drawings["verdicts"]
     assert set(drawing.figures) == {"fake-radius"}
     assert drawing.animations["fake-motion"].startswith(b"GIF89a")
@@ -157,20 +172,18 @@ def test_resume_does_not_take_what_other_code_has_written_down(
     assert len(count()) == measured
 
 
-def test_progress_counts_to_its_end(tmp_path):
-    calls = []
-    run((fake.VERDICTS,), BOTH, folder=tmp_path, progress=lambda *call: calls.append(call))
-    assert [done for done, _, _ in calls] == list(range(5))  # theory, two engines, the figures
-    assert {total for _, total, _ in calls} == {4}
+def test_progress_counts_to_its_end(both_ways):
+    _, _, told = both_ways
+    assert [done for done, _, _ in told] == list(range(8))  # theory, twice two engines, the figures of both
+    assert {total for _, total, _ in told} == {7}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
+def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
     running, output = tmp_path / "running", tmp_path / "report"
     arguments = ["report", "unending", "--engine", "good", "--engine", "also-good", "--engine", "failing"]
     process = subprocess.Popen(
-        [*FAKE, *arguments, "--jobs", jobs, "--output", str(output)],
+        [*FAKE, *arguments, "--jobs", "2", "--output", str(output)],
         env=environment(RUNNING=str(running)),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -181,8 +194,27 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
     wait_for(process, running, output / "data" / "unending--good.json")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
     out, err = process.communicate(timeout=PATIENCE)
+    assert_that_the_rest_is_missing(process.returncode, out, err, output)
+    wait_until(lambda: ended(process.pid))
 
-    assert process.returncode == 130
+
+def test_ctrl_c_in_a_single_process_does_the_same(tmp_path, monkeypatch, capsys):
+    registered = {engine.name: engine for engine in (fake.GOOD, fake.ALSO_GOOD, fake.FAILING)}
+    monkeypatch.setattr(engines, "_REGISTRY", registered)
+    monkeypatch.setenv("RUNNING", str(tmp_path / "running"))
+    monkeypatch.setattr(fake.time, "sleep", interrupt)
+    chosen = [argument for name in registered for argument in ("--engine", name)]
+    arguments = ["report", "unending", *chosen, "--jobs", "1", "--output", str(tmp_path)]
+    status = cli.status(arguments, fake.ALL)
+    assert_that_the_rest_is_missing(status, *capsys.readouterr(), tmp_path)
+
+
+def interrupt(*arguments):
+    raise KeyboardInterrupt
+
+
+def assert_that_the_rest_is_missing(status, out, err, output):
+    assert status == 130
     missing = "unending also-good, unending failing"
     assert err == f"Interrupted; missing: {missing}. The same command with --resume completes it.\n"
     assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
@@ -192,15 +224,28 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(jobs, tmp_path):
     assert states == {"good": "finished", "also-good": "missing", "failing": "missing"}
     page = (output / "index.html").read_text(encoding="utf-8")
     assert "missing: unending with also-good, unending with failing." in page
-    wait_until(lambda: ended(process.pid))
+
+
+OUTLIVING = """
+import sys, time
+from pathlib import Path
+from compare.run.workers import Workers
+
+if __name__ == "__main__":
+    with Workers(2) as workers:
+        workers.submit("first", time.sleep, 3600.0)
+        workers.submit("second", Path.touch, Path(sys.argv[1]))
+        list(workers.finished())
+"""
 
 
 @pytest.mark.skipif(os.name == "nt", reason="groups of processes are a POSIX thing")
 def test_no_process_outlives_a_killed_one(tmp_path):
-    running = tmp_path / "running"
+    running, script = tmp_path / "running", tmp_path / "script.py"
+    script.write_text(OUTLIVING)
     process = subprocess.Popen(
-        [*FAKE, "report", "unending", "--engine", "also-good", "--jobs", "2", "--output", str(tmp_path)],
-        env=environment(RUNNING=str(running)),
+        [sys.executable, str(script), str(running)],
+        env=environment(),
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,

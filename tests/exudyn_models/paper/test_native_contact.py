@@ -1,4 +1,5 @@
 import cmath
+import functools
 import math
 from dataclasses import replace
 from functools import partial
@@ -40,6 +41,17 @@ CONTACT = {
 }
 CAUGHT_DISC = replace(DISC, friction_force=0.2, offset=0.1)
 CAUGHT = [0.1, 0.0, 0.0, 0.0, 0.1, 1.5]  # is carried along with the master disc for a while
+CARRIED_ALONG = [
+    0.03087753517369676, -0.12311233141527689, 5.686215448933846,
+    0.18466849712291533, 0.04631630276054514, 1.5,
+]  # fmt: skip
+"""Where it is at 3.8 s, shortly before it is let go: rest is dear to simulate."""
+RESTING = {
+    "thrown": (TABLE_DISC, THROWN, 5.0),
+    "caught": (CAUGHT_DISC, CAUGHT, 3.1),
+    "let go": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
+}
+"""System, start and span in s of motions in which points of a disc come to rest, or do so no more."""
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 
@@ -208,47 +220,47 @@ def test_stick_phases_of_a_pin_have_errors_of_first_order_in_the_regularisation(
         assert order == pytest.approx(1.0, abs=0.1), errors
 
 
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-7])
-@pytest.mark.parametrize(("disc", "start"), [(TABLE_DISC, THROWN), (CAUGHT_DISC, CAUGHT)])
-def test_resting_points_of_a_disc_creep_as_an_integrator_for_stiff_equations_has_it(disc, start, tolerance):
-    found = simulate_with_native_contact(disc, start, [0.0, 5.0], tolerance=tolerance)
+@functools.cache
+def coming_to_rest(name, tolerance):
+    disc, start, span = RESTING[name]
+    return simulate_with_native_contact(disc, start, [0.0, span], tolerance=tolerance)
+
+
+@pytest.mark.parametrize(("name", "tolerance"), [("thrown", 1e-7), ("caught", 1e-7), ("let go", 1e-6)])
+def test_resting_points_of_a_disc_creep_as_an_integrator_for_stiff_equations_has_it(name, tolerance):
+    found = coming_to_rest(name, tolerance)
+    disc, start, span = RESTING[name]
     epsilon = found.solution.regularisation
     friction = viscous(disc, point_regularisation(epsilon, 6))
-    run = slide(disc, start, [0.0, 5.0], friction, method="Radau", rtol=1e-10, atol=1e-12)
+    run = slide(disc, start, [0.0, span], friction, method="Radau", rtol=1e-10, atol=1e-12)
     creeping = run.y[:, -1]
     # The steps make an error of one per cent of the creep, which is ε·t.
-    assert found.at_end == pytest.approx(creeping, abs=0.01 * epsilon * 5.0)
+    assert found.at_end == pytest.approx(creeping, abs=0.01 * epsilon * span)
 
 
-def test_a_disc_thrown_on_a_table_pivots_and_comes_to_rest_with_errors_of_first_order():
-    exact = reference_model.simulate(TABLE_DISC, THROWN, [0.0, 5.0], tolerance=1e-11)
-    errors = []
-    for tolerance in TOLERANCES[:3]:
-        found = simulate_with_native_contact(TABLE_DISC, THROWN, [0.0, 5.0], tolerance=tolerance)
-        assert [phase.kind for phase in found.phases] == ["slip", "pivot", "stick"]
-        assert [phase.kind for phase in exact.phases] == ["slip", "pivot", "stick"]
-        errors.append(
-            [abs(found.stick_times[0] - exact.stick_times[0]), abs(found.at_end - exact.at_end).max()]
-        )
-    for error in zip(*errors, strict=True):
-        assert observed_order(error) == pytest.approx(1.0, abs=0.1), errors
-
-
-def test_a_disc_that_is_caught_and_let_go_has_errors_of_first_order_but_for_the_time_of_its_release():
-    exact = reference_model.simulate(CAUGHT_DISC, CAUGHT, [0.0, 5.0], tolerance=1e-11)
-    assert len(exact.stick_phases) == 1
-    states, starts, ends = [], [], []
-    for tolerance in TOLERANCES[:3]:
-        found = simulate_with_native_contact(CAUGHT_DISC, CAUGHT, [0.0, 5.0], tolerance=tolerance)
-        assert len(found.stick_phases) == 1
+@pytest.mark.parametrize(
+    ("name", "kinds", "least", "most"),
+    [
+        ("thrown", ["slip", "pivot", "stick"], 0.9, 1.1),
+        ("caught", ["slip", "pivot", "slip", "stick"], 0.9, math.inf),
+        # Single points hold on to Coulomb friction to the last: the slip after it grows like t² up to ε.
+        ("let go", ["stick", "slip"], 0.35, 0.55),
+    ],
+)
+def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_the_time_of_its_release(
+    name, kinds, least, most
+):
+    disc, start, span = RESTING[name]
+    exact = reference_model.simulate(disc, start, [0.0, span], tolerance=1e-11)
+    assert [phase.kind for phase in exact.phases] == kinds
+    states, times = [], []
+    for tolerance in TOLERANCES[:2]:
+        found = coming_to_rest(name, tolerance)
+        assert [phase.kind for phase in found.phases] == kinds
         states.append(np.abs(found.at_end - exact.at_end).max())
-        start, end = np.abs(found.stick_times - exact.stick_times)
-        starts.append(start)
-        ends.append(end)
+        times.append(np.abs(found.stick_times - exact.stick_times).max())
     assert observed_order(states) == pytest.approx(1.0, abs=0.1), states
-    assert observed_order(starts) > 0.9, starts
-    # Single points hold on to Coulomb friction to the last: the slip after it grows like t² up to ε.
-    assert observed_order(ends) == pytest.approx(0.45, abs=0.1), ends
+    assert least < observed_order(times) < most, times
 
 
 @pytest.mark.parametrize(
