@@ -32,6 +32,9 @@ INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
 FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Makes Legendre coefficients of values at the start and the nodes."""
 
+DERIVATIVE = 2.0 * legendre.legval(POINTS, legendre.legder(FROM_START)).T
+"""Makes derivatives at the nodes, of 0..1, of values at the start and the nodes."""
+
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
 """Of Newton's method, before a shorter step is tried: most of the work is in the Jacobians."""
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.integrate import DenseOutput
 
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
 from reference_model.motion.stepper import TIGHTEST, Run, Sampler, Stepper
 from reference_model.systems import FloatArray
@@ -98,6 +99,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
     surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
     solver = Stepper(run, rates, initial, (0.0, math.inf), relative, surfaces)
+    landings = Landings(run, motion, leave)
     t = start
     while True:
         before = t
@@ -110,7 +112,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         y, _, s = unknowns(ending)
         if lost is not None or t >= run.end or s > 1.2 * motion.slow(y) or leave(y):
             break
-        ended = slip_ends(run, motion, t, y)
+        ended = landings.attempt(t, y) or slip_ends(run, motion, t, y)
         if ended is not None:
             return ended
         if solver.stiff:

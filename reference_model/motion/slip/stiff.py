@@ -16,6 +16,7 @@ import numpy as np
 from scipy.integrate import DenseOutput
 
 from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.slip.landing import Landings
 from reference_model.motion.stepper import Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
@@ -80,6 +81,7 @@ def slide_stiffly(
         surfaces,
         (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
+    landings = Landings(run, motion, leave)
     t = start
     while t < run.end:
         try:
@@ -96,7 +98,8 @@ def slide_stiffly(
             return Outcome(t, y, let_go=True)
         if t >= run.end or leave(y):
             break
-        ended = slip_ends(run, motion, t, y) if motion.slow(y) > 0.0 else None
+        slow = motion.slow(y) > 0.0
+        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
         if ended is not None:
             return ended
         if solver.settled and solver.stiffness < WORTH:

@@ -207,8 +207,9 @@ def test_motion_is_the_same_in_any_units(law, mass, length, time):
     plain = simulate(disc, STARTS[1], times, contact=contact)
     scaled = simulate(other, scale * np.array(STARTS[1]), time * times, contact=other_contact)
     assert kinds(plain) == kinds(scaled)
-    # The same steps but for rounding. It grows at a release, but stays below the tolerance.
-    assert abs(scaled.solution.steps - plain.solution.steps) <= 1  # rounding may tip one over
+    # The same steps but for rounding. It grows at a release, but stays below the tolerance. It may tip over where
+    # one description of slip ends, and so the few steps of the next.
+    assert scaled.solution.steps == pytest.approx(plain.solution.steps, rel=0.03)
     assert np.abs(plain.states - scaled.states / scale).max() < 1e-9
 
 
