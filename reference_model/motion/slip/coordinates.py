@@ -105,6 +105,9 @@ def never(_: list[float]) -> bool:
     return False
 
 
+FAST_AGAIN = 1.2
+"""Slip speed over that below which slip is slow, from which it is so no more."""
+
 LEAST_SLIP = 1e-100
 """A slip speed that stands for none, but gives friction a direction."""
 
