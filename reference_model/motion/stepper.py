@@ -39,6 +39,9 @@ STIFF, APART = 0.5, 20.0
 PATIENCE = 15
 """Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay."""
 
+SLOW_SPRINGS = 0.1
+"""Rate of the springs in 1/T below which steps err by less: places by errors of velocity over that rate."""
+
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
 
@@ -103,6 +106,8 @@ class Run:
         Where the descriptions hand over.
     tolerance : float
         The one that was asked for.
+    springs : float
+        Their rate in 1/T.
 
     """
 
@@ -111,6 +116,7 @@ class Run:
     seconds: Callable[[float], float]
     thresholds: Thresholds
     tolerance: float
+    springs: float
     motion: FloatArray = field(init=False)
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
@@ -121,7 +127,8 @@ class Run:
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
-        self.local_tolerance = max(self.thresholds.safety * self.tolerance, TIGHTEST)
+        share = self.thresholds.safety * min(1.0, self.springs / SLOW_SPRINGS)
+        self.local_tolerance = max(share * self.tolerance, TIGHTEST)
         self.end = float(self.times[-1])
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
