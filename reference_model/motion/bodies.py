@@ -12,8 +12,8 @@ import numpy as np
 from reference_model.contact.contact_law import NONE, IsotropicContact, Ring
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.slip.breakaway import LEAST_SLIP, begin_slip
-from reference_model.motion.slip.coordinates import Coordinates, never, stop_surfaces
+from reference_model.motion.slip.breakaway import begin_slip
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, never, stop_surfaces
 from reference_model.motion.slip.slide import slide, slide_slowly
 from reference_model.motion.stepper import Run, SwitchingSurface
 from reference_model.motion.stick import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre

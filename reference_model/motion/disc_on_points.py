@@ -22,8 +22,7 @@ from reference_model.contact.limit_surface import ComplexArray, PointsLimit
 from reference_model.motion.bodies import DiscBody
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pivot import OnePoint
-from reference_model.motion.slip.breakaway import LEAST_SLIP
-from reference_model.motion.slip.coordinates import come_to_rest, never
+from reference_model.motion.slip.coordinates import LEAST_SLIP, come_to_rest, never
 from reference_model.motion.slip.slide import slide, slide_slowly
 from reference_model.motion.stepper import Run
 from reference_model.motion.stick import GRAZING, ROUNDING

@@ -68,6 +68,7 @@ def simulate_with(
         lambda t: float(times[0] + t * unit.time),
         thresholds,
         tolerance,
+        unit.springs(system),
     )
     frame = _Frame.of(system, unit)
     _body(run, system, law, unit).go(frame.unknowns(state))

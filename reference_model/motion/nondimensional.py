@@ -55,6 +55,12 @@ class Units:
         faster = max(hard / rate, 1.0)
         return cls((length if length > 0.0 else 1.0) / faster, 1.0 / (faster * rate))
 
+    def springs(self, system: System) -> float:
+        """Return the rate of linear springs in these units; 1 if there are none, or others, which made the unit."""
+        if system.stiffness == 0.0 or not Support.of(system).linear:
+            return 1.0
+        return system.natural_frequency * self.time
+
     def of_pin(self, motion: SlipMotion) -> SlipMotion:
         """Return the equations of motion of a pin, or of a disc's centre, in these units."""
         return SlipMotion(

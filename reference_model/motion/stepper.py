@@ -33,9 +33,14 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 STABLE = 3.0
 """Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
 
-PATIENCE = 15
-"""Steps that stability limits before an implicit method is tried; twice as many each time that it does not pay."""
+STIFF, APART = 0.5, 20.0
+"""The same from which a step may be stiff that accuracy limits, and that over the change of slip from which it is."""
 
+PATIENCE = 15
+"""Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay."""
+
+SLOW_SPRINGS = 0.1
+"""Rate of the springs in 1/T below which steps err by less: places by errors of velocity over that rate."""
 
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
@@ -101,6 +106,8 @@ class Run:
         Where the descriptions hand over.
     tolerance : float
         The one that was asked for.
+    springs : float
+        Their rate in 1/T.
 
     """
 
@@ -109,6 +116,7 @@ class Run:
     seconds: Callable[[float], float]
     thresholds: Thresholds
     tolerance: float
+    springs: float
     motion: FloatArray = field(init=False)
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
@@ -119,7 +127,8 @@ class Run:
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
-        self.local_tolerance = max(self.thresholds.safety * self.tolerance, TIGHTEST)
+        share = self.thresholds.safety * min(1.0, self.springs / SLOW_SPRINGS)
+        self.local_tolerance = max(share * self.tolerance, TIGHTEST)
         self.end = float(self.times[-1])
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
@@ -232,7 +241,7 @@ class Stepper:
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._limited = 0  # steps that stability may have limited, less others
+        self._stiff_steps = 0  # less others
         self._relative_tolerance = relative_tolerance
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond
@@ -259,10 +268,15 @@ class Stepper:
         """Whether the implicit method has found the length of its steps."""
         return isinstance(self._solver, Radau) and self._solver.settled
 
-    @property
-    def stiff(self) -> bool:
-        """Whether stability has limited the explicit method for long."""
-        return self._limited >= self._run.patience
+    def stiff_for_long(self, change: float) -> bool:
+        """Tell whether the explicit method has taken many stiff steps, with relative ``change`` of slip in the last.
+
+        Stability limits such steps, or accuracy because of what decays much faster than slip changes.
+        """
+        stiffness = self.stiffness
+        stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change)
+        self._stiff_steps = max(0, self._stiff_steps + (1 if stiff else -1))
+        return self._stiff_steps >= self._run.patience
 
     @property
     def stiffness(self) -> float:
@@ -317,7 +331,6 @@ class Stepper:
         solver = self._solver
         t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
-        self._limited = max(0, self._limited + (1 if self.stiffness > STABLE else -1))
         if not self._surfaces or solver.t_bound != self._end:
             return
         landed, self._landed = self._landed, None

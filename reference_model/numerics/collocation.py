@@ -29,8 +29,11 @@ TO_SERIES = np.linalg.inv(legendre.legvander(POINTS, NODES - 1))
 INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
 """Makes integrals from 0 to the nodes, of 0..1, of values at them."""
 
-_FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
+FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Makes Legendre coefficients of values at the start and the nodes."""
+
+DERIVATIVE = 2.0 * legendre.legval(POINTS, legendre.legder(FROM_START)).T
+"""Makes derivatives at the nodes, of 0..1, of values at the start and the nodes."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
 """Of Newton's method, before a shorter step is tried: most of the work is in the Jacobians."""
@@ -248,7 +251,7 @@ class Radau:
                 return None
             if size < CONVERGED or STALLED * last < size < 0.5:  # the latter by rounding
                 self._jacobian = jacobians[-1]
-                coefficients = _FROM_START @ np.vstack((self.y, values))
+                coefficients = FROM_START @ np.vstack((self.y, values))
                 return Polynomial(self.t, self.t + h, coefficients)
             if size > STALLED * last:
                 inverse = None

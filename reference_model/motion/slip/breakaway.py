@@ -13,16 +13,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 
-from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, Outcome
 from reference_model.motion.slip.slide import slide_slowly
 from reference_model.motion.stepper import Run
 from reference_model.numerics.collocation import (
+    FROM_START,
     INTEGRAL,
     NODES,
     POINTS,
     TO_SERIES,
+    Polynomial,
     jacobians_at,
     newton_matrix,
 )
@@ -38,6 +39,9 @@ LEAST_STEP = 1e-12
 MOMENT = 1e-6
 """Time, in its unit, by which the growth of the pull is measured."""
 
+TURN = 1e-7
+"""Change of the direction of slip by which that of friction is measured."""
+
 SUDDEN = 0.05
 """Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
 
@@ -45,9 +49,6 @@ STIFF = 10.0
 """Stiffness of a step, rate times length, below which an explicit method is as good."""
 
 MOST_ITERATIONS = 12
-
-LEAST_SLIP = 1e-100
-"""A slip speed that stands for none, but gives friction a direction."""
 
 
 def begin_slip(
@@ -86,21 +87,31 @@ def begin_slip(
     """
     others, carried = np.array(y), np.array(drift)
 
-    def excess(delay: float, sense: float) -> float:
-        """Return the rate of slip along the direction for a slip that is next to none."""
-        rates = motion.rates([*(others + delay * carried), *(sense * LEAST_SLIP * direction)])
-        return float(np.dot(rates[len(others) :], direction))
+    def growth(delay: float, towards: FloatArray) -> FloatArray:
+        """Return the rates of a slip that is next to none."""
+        rates = motion.rates([*(others + delay * carried), *(LEAST_SLIP * towards)])
+        return np.array(rates[len(others) :])
 
-    first, against = max(excess(0.0, 1.0), 0.0), excess(0.0, -1.0)
+    at_first = growth(0.0, direction)
+    first, against = max(float(at_first @ direction), 0.0), float(growth(0.0, -direction) @ direction)
     if first > SUDDEN * 0.5 * (against - first):
         least = run.thresholds.reversal_slip * min(1.0, motion.slow(y))
         return slide_slowly(run, motion, t, [*y, *(least * direction)], leave)
-    gain = (excess(MOMENT, 1.0) - excess(0.0, 1.0)) / MOMENT
+    # Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change −
+    # J·turning). J need not be symmetric, so that gain is not what the change has along the direction.
+    change = (growth(MOMENT, direction) - at_first) / MOMENT
+    turned = [growth(0.0, direction + TURN * axis) for axis in np.eye(motion.slip)]
+    along = np.outer(direction, direction)
+    resistance = (at_first[:, np.newaxis] - np.transpose(turned)) / TURN @ (np.eye(motion.slip) - along)
+    solved = np.linalg.solve(resistance + 2.0 * first * (np.eye(motion.slip) - along) + along, change)
+    gain = float(solved @ direction)
+    turning = solved - gain * direction
 
     def begun(delays: FloatArray) -> FloatArray:
         """Return the unknowns to the leading order in time, shape (n, unknowns)."""
-        slip = (first * delays + 0.5 * gain * delays**2)[:, np.newaxis] * direction
-        return np.hstack((others + delays[:, np.newaxis] * carried, slip))
+        after = delays[:, np.newaxis]
+        slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
+        return np.hstack((others + after * carried, slip))
 
     start, step, expected = begun(np.zeros(1))[0], FIRST_STEP, begun
     while t < run.end:
@@ -128,12 +139,13 @@ def begin_slip(
 class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
+    It goes through the values at the nodes. To integrate the rates there would be worse: stiffness makes noise of the
+    rates from what Newton's method leaves of the values.
+
     Parameters
     ----------
-    start : array of shape (unknowns,)
-        Where it begins.
-    step : float
-        How long it lasts.
+    values : Polynomial
+        The unknowns over the time since it began.
     rates : array of shape (NODES, unknowns)
         At the nodes.
     stiffness : float
@@ -143,30 +155,33 @@ class _Piece:
 
     """
 
-    start: FloatArray
-    step: float
+    values: Polynomial
     rates: FloatArray
     stiffness: float
     falling: bool
 
     @property
     def error(self) -> float:
-        """What the last terms of the series contribute."""
-        return self.step * float(np.max(np.abs(TO_SERIES[-2:] @ self.rates)))
+        """What the last terms of the series contribute, of the values or of the rates, whichever has less noise.
+
+        As a share of the unknowns where these are large.
+        """
+        sizes = 1.0 + abs(self.values.coefficients[0])
+        by_values = abs(self.values.coefficients[-2:]) / sizes
+        by_rates = self.values.t * abs(TO_SERIES[-2:] @ self.rates) / sizes
+        return float(min(np.max(by_values), np.max(by_rates)))
 
     def change_of_step(self, tolerance: float) -> float:
         """Return the factor by which the step may change for an error of ``tolerance``."""
         return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
 
     def at(self, delays: FloatArray) -> FloatArray:
-        """Return the unknowns at ``delays`` (n,) after the start, shape (n, unknowns)."""
-        integral = legendre.legint(TO_SERIES @ self.rates, lbnd=-1)
-        growth = legendre.legval(2.0 * delays / self.step - 1.0, integral)
-        return np.asarray(self.start + 0.5 * self.step * growth.T)
+        """Return the unknowns at ``delays`` (n,) after the start, even beyond its end, shape (n, unknowns)."""
+        return self.values.beyond(delays, np.zeros(1))
 
     def beyond(self, delays: FloatArray) -> FloatArray:
         """Return the continuation to ``delays`` after its end."""
-        return self.at(self.step + delays)
+        return self.at(self.values.t + delays)
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,8 +229,7 @@ def _collocate(
         if converged.all() and np.all(abs(change) < 1e-13 * (1.0 + abs(values))):
             rates = rates_at(values.T).T
             return _Piece(
-                start,
-                step,
+                Polynomial(0.0, step, FROM_START @ np.vstack((start, values))),
                 rates,
                 stiffness=float(np.linalg.norm(jacobians[-1][others:, others:], 2)),
                 falling=bool(np.dot(values[-1][others:], rates[-1][others:]) <= 0.0),

@@ -105,6 +105,12 @@ def never(_: list[float]) -> bool:
     return False
 
 
+FAST_AGAIN = 1.2
+"""Slip speed over that below which slip is slow, from which it is so no more."""
+
+LEAST_SLIP = 1e-100
+"""A slip speed that stands for none, but gives friction a direction."""
+
 NO_WAY, LEAST_WAY = 0.1, 1e-12
 """Way that lingering slip may have left, as a share of the local tolerance and in units, for it to count as over."""
 

@@ -16,7 +16,16 @@ from functools import partial
 import numpy as np
 from scipy.integrate import DenseOutput
 
-from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
+from reference_model.motion.slip.coordinates import (
+    FAST_AGAIN,
+    LEAST_SLIP,
+    Coordinates,
+    Leave,
+    Outcome,
+    grip_lost,
+    slip_ends,
+)
+from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
 from reference_model.motion.stepper import TIGHTEST, Run, Sampler, Stepper
 from reference_model.systems import FloatArray
@@ -27,7 +36,7 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
     solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.surfaces)
     lost = None
     while t < run.end:
-        before = t
+        before, slip = t, y[-motion.slip :]
         solver.step(t)
         lost = grip_lost(motion, solver, lambda y: y)
         t = solver.t if lost is None else lost
@@ -39,9 +48,15 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
         y = solver.y.tolist()
         if (motion.speed(y) < motion.slow(y) and _falling(motion, solver)) or leave(y):
             break
-        if solver.stiff and motion.speed(y) > 0.0:
+        if solver.stiff_for_long(_change(slip, y) + t - before) and motion.speed(y) > 0.0:
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
+
+
+def _change(before: list[float], y: list[float]) -> float:
+    """Return by which share of itself slip has changed from ``before`` to that of the unknowns ``y``."""
+    after = y[-len(before) :]
+    return math.dist(before, after) / max(math.hypot(*after), LEAST_SLIP)
 
 
 def _falling(motion: Coordinates, solver: Stepper) -> bool:
@@ -98,9 +113,10 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
     surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
     solver = Stepper(run, rates, initial, (0.0, math.inf), relative, surfaces)
+    landings = Landings(run, motion, leave)
     t = start
     while True:
-        before = t
+        before, slip = t, y[-motion.slip :]
         solver.step(t)
         lost = grip_lost(motion, solver, lambda stretched: unknowns(stretched)[0])
         ending = solver.y.tolist() if lost is None else solver.dense_output()(lost).tolist()
@@ -108,12 +124,12 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         if run.pending(t):
             run.record(min(t, run.end), sampler(solver.dense_output()))
         y, _, s = unknowns(ending)
-        if lost is not None or t >= run.end or s > 1.2 * motion.slow(y) or leave(y):
+        if lost is not None or t >= run.end or s > FAST_AGAIN * motion.slow(y) or leave(y):
             break
-        ended = slip_ends(run, motion, t, y)
+        ended = landings.attempt(t, y) or slip_ends(run, motion, t, y)
         if ended is not None:
             return ended
-        if solver.stiff:
+        if solver.stiff_for_long(_change(slip, y) + t - before):
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
 

@@ -15,8 +15,16 @@ from functools import partial
 import numpy as np
 from scipy.integrate import DenseOutput
 
-from reference_model.motion.slip.coordinates import Coordinates, Leave, Outcome, grip_lost, slip_ends
-from reference_model.motion.stepper import Run, StepError, Stepper
+from reference_model.motion.slip.coordinates import (
+    FAST_AGAIN,
+    Coordinates,
+    Leave,
+    Outcome,
+    grip_lost,
+    slip_ends,
+)
+from reference_model.motion.slip.landing import Landings
+from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
@@ -29,8 +37,11 @@ TIGHTEST_IMPLICIT = 3e-13
 LOOSEST = 0.03
 """The largest error of a step in ln s."""
 
-WORTH = 50.0
-"""Length of a step times the largest rate, from which an implicit step is worth what it costs."""
+WORTH = 6.0
+"""Length of a step times the largest rate, from which stability forbids it to an explicit method."""
+
+COST = 4.0
+"""Work of an implicit step over that of an explicit one."""
 
 
 def slide_stiffly(
@@ -80,8 +91,10 @@ def slide_stiffly(
         surfaces,
         (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
     )
-    t = start
+    landings = Landings(run, motion, leave)
+    t, taken, slowly = start, run.steps, speed < motion.slow(y)
     while t < run.end:
+        before = t
         try:
             solver.step(t)
         except StepError:
@@ -94,12 +107,15 @@ def slide_stiffly(
         y = unknowns((solver.y if lost is None else solver.dense_output()(lost)).tolist())
         if lost is not None:
             return Outcome(t, y, let_go=True)
-        if t >= run.end or leave(y):
+        if t - start > COST * step * (run.steps - taken):
+            run.patience = PATIENCE
+        if t >= run.end or leave(y) or (slowly and motion.speed(y) > FAST_AGAIN * motion.slow(y)):
             break
-        ended = slip_ends(run, motion, t, y) if motion.slow(y) > 0.0 else None
+        slow = motion.slow(y) > 0.0
+        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
         if ended is not None:
             return ended
-        if solver.settled and solver.stiffness < WORTH:
+        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
             run.patience *= 2
             break
     return Outcome(t, y)

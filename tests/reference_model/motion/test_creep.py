@@ -90,6 +90,23 @@ def test_disc_on_points_without_shaft_damping_that_turns_with_the_master_disc_cr
 
 
 @pytest.mark.usefixtures("few_steps")
+def test_slow_slip_whose_direction_settles_much_faster_than_it_changes_is_followed_in_long_steps(monkeypatch):
+    # Friction turns the slip to its direction at ten times the natural frequency: too slowly for stability to limit
+    # an explicit method, and yet accuracy keeps it to steps of a twentieth of an implicit one's.
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=0.38685601, stiffness=1.0, damping=31.0448825, friction_force=48.1556219,
+        disc_speed=3.18207915, offset=0.0, contact_radius=0.0706922026, shaft_damping=1.9890612,
+        shaft_speed=0.0530970617, contact_points=24,
+    )  # fmt: skip
+    start, times = [-0.164514, 0.496446, 82.815831, -1.314042, -0.417368, 0.633226], np.linspace(0.0, 4.0, 9)
+    usual = simulate(disc, start, times)
+    assert usual.solution.steps < 100
+    monkeypatch.setattr(stepping, "STIFF", math.inf)
+    explicit = simulate(disc, start, times)
+    assert explicit.solution.steps > 300
+    assert np.abs(usual.states - explicit.states).max() < 1e-10
+
+
 @pytest.mark.parametrize("stiffer", [1e4, 1e8])
 def test_strongly_damped_pin_without_friction_follows_its_slow_root(stiffer):
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=stiffer, friction_force=0.0, disc_speed=1.0, offset=0.0)

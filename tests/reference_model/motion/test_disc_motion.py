@@ -207,8 +207,9 @@ def test_motion_is_the_same_in_any_units(law, mass, length, time):
     plain = simulate(disc, STARTS[1], times, contact=contact)
     scaled = simulate(other, scale * np.array(STARTS[1]), time * times, contact=other_contact)
     assert kinds(plain) == kinds(scaled)
-    # The same steps but for rounding. It grows at a release, but stays below the tolerance.
-    assert abs(scaled.solution.steps - plain.solution.steps) <= 1  # rounding may tip one over
+    # The same steps but for rounding. It grows at a release, but stays below the tolerance. It may tip over where
+    # one description of slip ends, and so the few steps of the next.
+    assert scaled.solution.steps == pytest.approx(plain.solution.steps, rel=0.03)
     assert np.abs(plain.states - scaled.states / scale).max() < 1e-9
 
 
@@ -449,3 +450,35 @@ def test_contact_that_the_system_cannot_have_is_refused():
         simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0], contact="ring")
     with pytest.raises(ValueError, match="DiscOnDisc takes 6 numbers"):
         simulate(FIG11, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
+
+
+# ---------------------------------------------------------------- a light disc on far points
+
+
+def test_point_far_out_on_a_light_disc_begins_to_slip_where_its_own_inertia_turns_the_slip():
+    # R = 200 κ: at the point the disc is 40,000 times as heavy along the arm as across it. So the direction in which
+    # it begins to slip turns at once, and slip grows a thousand times more slowly than the pull along the first one.
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=0.0470838335426834, stiffness=1.0, damping=0.9078313152049701,
+        friction_force=0.20300231350674897, disc_speed=0.04933418323377579, offset=8.395805999767857,
+        contact_radius=43.304912771594886, shaft_damping=0.1084058576333912, shaft_speed=33.91703697093388,
+        contact_points=4,
+    )  # fmt: skip
+    turning = [
+        8.37217697420397, 0.1602771829526167, 1.6415536817565413,
+        0.02141761400553637, -0.0007147354594546074, 0.058912476458336485,
+    ]  # fmt: skip
+    start = simulate(disc, turning, [0.0, 0.1])
+    assert kinds(start) == ["pivot", "slip"]
+    release = start.phases[1].start
+    assert release == pytest.approx(0.04195287800, abs=1e-10)
+    delays = np.array([0.01, 0.02, 0.04])
+    later = simulate(disc, turning, [0.0, *(release + delays)], tolerance=1e-11).states[1:]
+    usual = simulate(disc, turning, [0.0, *(release + delays)]).states[1:]
+    assert np.abs(usual - later).max() < 1e-9 * disc.offset
+    # The point that was the pivot slips from there on, by a smooth law s = ½κt².
+    arms = np.array([PointsOnRing(disc.contact_radius, 4).arms(angle) for angle in later[:, 2]])
+    centre = later[:, 3] + 1j * later[:, 4] - 1j * disc.disc_speed * (later[:, 0] + 1j * later[:, 1])
+    slips = np.abs(centre[:, np.newaxis] + 1j * (later[:, 5] - disc.disc_speed)[:, np.newaxis] * arms)
+    slowest = slips.min(axis=1)
+    assert slowest[1:] / slowest[:-1] == pytest.approx(4.0, rel=0.05)

@@ -515,6 +515,21 @@ def test_motion_continued_from_its_own_end_is_the_motion_in_one_piece():
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_places_keep_to_the_tolerance_on_a_disc_that_turns_much_faster_than_the_springs():
+    # An error of velocity, a share of ω·L, would be one of place 57 times as large as a share of L.
+    pin = PinOnDisc(
+        mass=1.0,
+        stiffness=1.0,
+        damping=0.11150754,
+        friction_force=0.06107226,
+        disc_speed=-57.613787,
+        offset=0.0,
+    )
+    start, times = [39.56501, 51.794526, -31.507546, 74.691881], np.linspace(0.0, 100.0, 101)
+    usual, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
+    assert np.abs(usual.states - tight.states)[:, :2].max() < 1e-9 * tight.radius.max()
+
+
 def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
     pin = replace(FIG_5)
     object.__setattr__(pin, "mass", 1e-300)  # which is refused where a pin is made

@@ -31,7 +31,7 @@ DISC = DiscOnDisc(
 
 def descriptions(system):
     """All coordinates in which the motion of a system is written."""
-    run = Run(np.linspace(0.0, 1.0, 3), system.state_size, float, Thresholds(), 1e-9)
+    run = Run(np.linspace(0.0, 1.0, 3), system.state_size, float, Thresholds(), 1e-9, 1.0)
     if isinstance(system, PinOnDisc):
         return [PinBody(run, SlipMotion.of(system)).coordinates]
     law = contact_of(system)
