@@ -12,7 +12,6 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
-import numba
 from llvmlite import binding
 from numba.core import event, sigutils, typed_passes, types
 from numba.core.codegen import JITCodeLibrary
@@ -21,9 +20,11 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 
+from reference_model.numerics.compiled_once import Kept
+
 
 class Part(CPUDispatcher):
-    """A function that is compiled into those that call it; when Python calls it, one that does is made."""
+    """A function that is compiled into those that call it; and by itself, and kept, if Python calls it."""
 
     def __init__(
         self,
@@ -39,15 +40,9 @@ class Part(CPUDispatcher):
         return self.called_by_python(*args)
 
     @cached_property
-    def called_by_python(self) -> Any:
-        """The function that calls it."""
-        part = self
-
-        @numba.njit
-        def caller(*args: Any) -> Any:
-            return part(*args)
-
-        return caller
+    def called_by_python(self) -> Kept:
+        """The same function, compiled for Python."""
+        return Kept(self.py_func, targetoptions={"error_model": "numpy"})
 
     def compile(self, sig: Any) -> Any:
         """Translate for arguments of these types, which stand for all of their values."""

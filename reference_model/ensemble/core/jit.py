@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from reference_model.numerics.compiled_cache import known_by_content
+from reference_model.numerics.compiled_once import Kept
 from reference_model.numerics.compiled_parts import Part, PartCompiler
 
 PART: Any = {"error_model": "numpy", "pipeline_class": PartCompiler}
@@ -41,6 +41,4 @@ def written_out(function: Function) -> Function:
 
 def outermost(function: Function) -> Function:
     """Compile ``function``, which Python calls, at its first call, or take what an earlier process left."""
-    dispatcher = numba.njit(error_model="numpy", nogil=True, cache=True)(function)
-    known_by_content(dispatcher)
-    return cast(Function, dispatcher)
+    return cast(Function, Kept(function, targetoptions={"error_model": "numpy", "nogil": True}))
