@@ -60,9 +60,6 @@ class Part(CPUDispatcher):
 class _PartLibrary(JITCodeLibrary):
     """What a part comes to; it is finished only where it is taken up."""
 
-    def add_llvm_module(self, module: Any) -> None:
-        self._final_module.link_in(module)
-
     def add_linking_library(self, library: Any) -> None:
         self._linking_libraries.append(library)
 
