@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | judge | simulate | sweep | errata``.
+"""The command line: ``friction-discs list | report | judge | simulate | sweep | errata | compile``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -27,6 +27,7 @@ try:
         printing,
         say,
     )
+    from compare.cli.compiling import compile_kernels
     from compare.cli.judge import judge
     from compare.cli.listing import errata, list_studies
     from compare.cli.report import report
@@ -47,6 +48,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command("list", cls=Command)(list_studies)
+app.command("compile", cls=Command)(compile_kernels)
 for command in (report, judge, errata):
     app.command(cls=Command)(command)
 app.add_typer(simulate, name="simulate")
@@ -106,6 +108,7 @@ def friction_discs(
       friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs sweep basin pin
       friction-discs errata
+      friction-discs compile
     """
     if version:
         from compare.run.stamp import version_of

@@ -159,7 +159,8 @@ class _Contents:
         if isinstance(thing, ByName):
             self._code.add(thing.module)
         function = getattr(thing, "py_func", None)
-        if kind.__module__.partition(".")[0] == "numba" and isinstance(function, FunctionType):
+        compiled = any(base.__module__.partition(".")[0] == "numba" for base in kind.__mro__)
+        if compiled and isinstance(function, FunctionType):
             self._code.add("numba")
             self._add_all("compiled", (function, dict(thing.targetoptions)))
             return

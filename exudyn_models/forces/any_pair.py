@@ -73,7 +73,8 @@ def friction_derivatives_on_nodes(
         slip_change = map_change @ velocities + velocity_factor * to_slip[:, j]
         force_change = by_slip[:, :3].copy() @ slip_change + by_slip[:, 3] * turn
         for i in range(3):
-            by_nodes[:, j] += force[i] * map_change[i] + force_change[i] * to_slip[i]
+            for k in range(size):
+                by_nodes[k, j] += force[i] * map_change[i, k] + force_change[i] * to_slip[i, k]
             motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
         motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
     return by_nodes, motion_by_nodes

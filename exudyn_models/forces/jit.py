@@ -13,7 +13,7 @@ import numba
 import numba.core.datamodel.models
 import numba.extending
 
-from reference_model.numerics.compiled_cache import known_by_content
+from reference_model.numerics.compiled_parts import Part
 
 extending: Any = numba.extending  # not typed throughout
 
@@ -21,10 +21,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compiled(function: Function) -> Function:
-    """Compile ``function`` at its first call, or take what an earlier process left."""
-    dispatcher = numba.njit(cache=True, error_model="numpy")(function)
-    known_by_content(dispatcher)
-    return cast(Function, dispatcher)
+    """Compile ``function`` into what is compiled and calls it; and by itself, and keep it, if Python calls it."""
+    return cast(Function, Part(function, targetoptions={"error_model": "numpy"}))
 
 
 class Floats(numba.types.UniTuple):
@@ -54,4 +52,4 @@ def taking_lists(function: Callable[..., Any], *sizes: int | type[float] | None)
     floats: Any = Floats
     kinds = {None: numba.none, float: numba.float64}
     signature = tuple(kinds[size] if size in kinds else floats(numba.float64, size) for size in sizes)
-    return cast(Callable[..., Any], cast(Any, function).compile(signature))
+    return cast(Callable[..., Any], cast(Any, function).called_by_python.compile(signature))

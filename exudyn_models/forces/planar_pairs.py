@@ -101,9 +101,11 @@ def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_f
         dx, dy, angle, dvx, dvy, master_spin, disc_spin = derivatives[i]
         by_nodes[i, 3] = position_factor * dx + velocity_factor * dvx
         by_nodes[i, 4] = position_factor * dy + velocity_factor * dvy
-        by_nodes[i, :2] = -by_nodes[i, 3:5]
+        by_nodes[i, 0], by_nodes[i, 1] = -by_nodes[i, 3], -by_nodes[i, 4]
         by_nodes[i, 2] = velocity_factor * master_spin
         by_nodes[i, 5] = position_factor * angle + velocity_factor * disc_spin
     result = np.zeros((6, 6))
-    result[:2], result[2], result[3:] = by_nodes[:2], -by_nodes[3], -by_nodes[:3]
+    for j in range(6):
+        result[0, j], result[1, j], result[2, j] = by_nodes[0, j], by_nodes[1, j], -by_nodes[3, j]
+        result[3, j], result[4, j], result[5, j] = -by_nodes[0, j], -by_nodes[1, j], -by_nodes[2, j]
     return result

@@ -7,6 +7,9 @@ angular momentum, however the axes lie, and the derivatives of the forces follow
 
 J is made of sums, products, sines and cosines, whose derivatives are found to all digits from a step along the
 imaginary axis (Squire & Trapp, SIAM Review 40 (1998) 110).
+
+Numbers are put into arrays one by one: for a slice numba would compile the text of an error of shapes, which takes as
+long as all the rest.
 """
 
 from __future__ import annotations
@@ -60,9 +63,11 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[:, i]
-        lever = np.cross(disc_place - place, axis)  # (ω×d)·e = ω·(d×e)
-        result[i, :before] = -axis[:before]
-        result[i, size : size + first] = axis[:first]
+        lever = _lever(place, disc_place, axis)  # (ω×d)·e = ω·(d×e)
+        for k in range(before):
+            result[i, k] = -axis[k]
+        for k in range(first):
+            result[i, size + k] = axis[k]
         for k in range(size - before):
             result[i, before + k] = -_product(lever, turning[:, k])
     for k in range(size - before):
@@ -101,19 +106,23 @@ def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
     """Return position and axes of a body, and the columns that turn rates of its coordinates into ω."""
     place, axes, turning = np.zeros(3, q.dtype), np.zeros((3, 3), q.dtype), np.zeros((3, 3), q.dtype)
     first = TRANSLATIONS[kind]
-    place[:first] = q[:first]
+    for i in range(first):
+        place[i] = q[i]
     if kind == ROTATION_VECTOR:
         _rotate_by_vector(q[3:], axes)
-        turning[:] = axes  # the velocities are ω in the body's axes
+        for i in range(3):
+            for j in range(3):
+                turning[i, j] = axes[i, j]  # the velocities are ω in the body's axes
     elif kind == TAIT_BRYAN:
-        cx, cy, cz = np.cos(q[3:])
-        sx, sy, sz = np.sin(q[3:])
+        cx, cy, cz = np.cos(q[3]), np.cos(q[4]), np.cos(q[5])
+        sx, sy, sz = np.sin(q[3]), np.sin(q[4]), np.sin(q[5])
         axes[0, 0], axes[0, 1], axes[0, 2] = cy * cz, -cy * sz, sy
         axes[1, 0], axes[1, 1], axes[1, 2] = cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy
         axes[2, 0], axes[2, 1], axes[2, 2] = sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy
         turning[0, 0] = 1.0
         turning[1, 1], turning[2, 1] = cx, sx
-        turning[:, 2] = axes[:, 2]
+        for i in range(3):
+            turning[i, 2] = axes[i, 2]
     else:
         c, s = np.cos(q[first]), np.sin(q[first])
         axes[0, 0], axes[0, 1] = c, -s
@@ -141,6 +150,13 @@ def _rotate_by_vector(v: Array, axes: Array) -> None:
 
 
 @compiled
-def _product(a: Array, b: Array) -> Any:
+def _lever(start: Array, end: Array, axis: Array) -> tuple[Any, Any, Any]:
+    """Return the cross product of what is between two places and an axis."""
+    x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    return y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]
+
+
+@compiled
+def _product(a: Array | tuple[Any, Any, Any], b: Array) -> Any:
     """Return a·b without the complex conjugate."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

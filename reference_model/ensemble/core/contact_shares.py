@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numba.extending import overload
 
-from reference_model.ensemble.core.jit import inlined
+from reference_model.ensemble.core.jit import INLINED, inlined
 
 LEAST = 1e-300
 """Stands for a speed of zero where something is divided by it."""
@@ -84,7 +84,7 @@ def points_shares(
     raise NotImplementedError
 
 
-@overload(points_shares, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+@overload(points_shares, jit_options=INLINED, strict=False)
 def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any]:
     lines = ["def shares(ux, uy, rim, around):", "    fx = fy = moment = power = 0.0"]
     for i in range(0, len(around), 2):

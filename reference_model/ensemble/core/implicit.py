@@ -20,7 +20,7 @@ import numpy as np
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
-from reference_model.ensemble.core.linear import solve
+from reference_model.ensemble.core.linear import complex_zeros, solve, zeros
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES
@@ -78,9 +78,9 @@ def collocate_with(
     draws slip to its direction at the end, or -1 if there is no convergence.
     """
     d = len(start)
-    linear, rest = np.empty((NODES, d, NODES, d)), np.empty((NODES, d))
-    matrix, change = linear.reshape(NODES * d, NODES * d), rest.reshape(NODES * d)
-    slopes = np.empty((NODES, d, d))
+    matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
+    linear, rest = matrix.reshape(NODES, d, NODES, d), change.reshape(NODES, d)
+    slopes = zeros(NODES * d * d).reshape(NODES, d, d)
     by_place = -law.stiffness - (law.damping + 1j * law.disc_speed) * 1j * law.disc_speed
     by_slip = -(law.damping + 1j * law.disc_speed)
     turns = _turns(law.disc_speed, step)
@@ -126,7 +126,7 @@ def collocate_with(
 @scalar
 def _turns(disc_speed: float, step: float) -> ComplexArray:
     """Return how the master disc has turned up to the nodes, e^(iωt)."""
-    turns = np.empty(NODES, dtype=np.complex128)
+    turns = complex_zeros(NODES)
     for j in range(NODES):
         turn = disc_speed * step * PLACES[j]
         turns[j] = complex(math.cos(turn), math.sin(turn))
@@ -136,7 +136,7 @@ def _turns(disc_speed: float, step: float) -> ComplexArray:
 @scalar
 def _reach(step: float, by_place: complex, turns: ComplexArray) -> ComplexArray:
     """Return the derivative of step times the pull at a node by slip at another, through the place."""
-    reach = np.empty((NODES, NODES), dtype=np.complex128)
+    reach = complex_zeros(NODES * NODES).reshape(NODES, NODES)
     for i in range(NODES):
         for k in range(NODES):
             total = 0j
@@ -251,7 +251,8 @@ def stride_with(
     Of no length: not worth it.
     """
     d = len(start)
-    w, f, power = np.zeros((NODES, d)), np.zeros((NODES, d)), np.zeros(NODES)
+    w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
+    power = zeros(NODES)
     s = length_of(start)
     while span >= least:
         carried = (

@@ -11,19 +11,24 @@ from typing import Any, TypeVar, cast
 
 import numba
 
-from reference_model.numerics.compiled_cache import known_by_content
+from reference_model.numerics.compiled_once import Kept
+from reference_model.numerics.compiled_parts import Part, PartCompiler
+
+PART: Any = {"error_model": "numpy", "pipeline_class": PartCompiler}
+INLINED: Any = {**PART, "forceinline": True}
+"""Of overloads, to be compiled as what is ``scalar`` or ``inlined``."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def inlined(function: Function) -> Function:
     """Compile ``function`` into each of its callers, so that a loop over lanes that calls it can be vectorised."""
-    return cast(Function, numba.njit(error_model="numpy", forceinline=True)(function))
+    return cast(Function, Part(function, targetoptions={"error_model": "numpy", "forceinline": True}))
 
 
 def scalar(function: Function) -> Function:
     """Compile ``function`` as one that its callers call: it is rare, and large."""
-    return cast(Function, numba.njit(error_model="numpy", inline="never")(function))
+    return cast(Function, Part(function, targetoptions={"error_model": "numpy"}))
 
 
 def written_out(function: Function) -> Function:
@@ -36,6 +41,4 @@ def written_out(function: Function) -> Function:
 
 def outermost(function: Function) -> Function:
     """Compile ``function``, which Python calls, at its first call, or take what an earlier process left."""
-    dispatcher = numba.njit(error_model="numpy", nogil=True, cache=True)(function)
-    known_by_content(dispatcher)
-    return cast(Function, dispatcher)
+    return cast(Function, Kept(function, targetoptions={"error_model": "numpy", "nogil": True}))

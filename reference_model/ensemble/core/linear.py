@@ -6,12 +6,28 @@ import math
 
 import numpy as np
 
+from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import scalar
 from reference_model.systems import FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6
 """Largest entries of a power at which it is judged."""
+
+
+# Of every kind of shape numba would compile making an array anew.
+
+
+@scalar
+def zeros(n: int) -> FloatArray:
+    """Return an array of zeros, shape (n,), which may be given another shape."""
+    return np.zeros(n)
+
+
+@scalar
+def complex_zeros(n: int) -> ComplexArray:
+    """Return an array of complex zeros, shape (n,), which may be given another shape."""
+    return np.zeros(n, dtype=np.complex128)
 
 
 @scalar
@@ -47,7 +63,7 @@ def powers_vanish(matrix: FloatArray) -> bool:
     It is squared until they do, or grow.
     """
     n = len(matrix)
-    power, square = matrix.copy(), np.empty((n, n))
+    power, square = matrix.copy(), zeros(n * n).reshape(n, n)
     for _ in range(SQUARINGS):
         largest = 0.0
         for i in range(n):

@@ -17,6 +17,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
+from reference_model.ensemble.core.jit import INLINED, PART
 from reference_model.systems import FloatArray
 
 LANES = 16
@@ -81,13 +82,13 @@ def clear(record: Any) -> None:
 # All are written out for the fields of the record: a loop over them would have to know them by number.
 
 
-@overload(at, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+@overload(at, jit_options=INLINED, strict=False)
 def _at(rows: types.Record, lane: Any) -> Callable[..., Any]:
     values = "".join(f"rows.{name}[lane], " for name in rows.fields)
     return _written_out("rows, lane", [f"return ({values})"])
 
 
-@overload(put, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+@overload(put, jit_options=INLINED, strict=False)
 def _put(rows: types.Record, lane: Any, numbers: Any) -> Callable[..., Any]:
     named = isinstance(numbers, types.BaseNamedTuple)
     values = [f"numbers.{name}" if named else f"numbers[{i}]" for i, name in enumerate(rows.fields)]
@@ -95,12 +96,12 @@ def _put(rows: types.Record, lane: Any, numbers: Any) -> Callable[..., Any]:
     return _written_out("rows, lane, numbers", lines)
 
 
-@overload(fill, jit_options={"error_model": "numpy"}, strict=False)
+@overload(fill, jit_options=PART, strict=False)
 def _fill(record: types.Record, numbers: Any) -> Callable[..., Any]:
     return _written_out("record, numbers", [f"record.{name} = numbers.{name}" for name in record.fields])
 
 
-@overload(clear, jit_options={"error_model": "numpy"}, strict=False)
+@overload(clear, jit_options=PART, strict=False)
 def _clear(record: types.Record) -> Callable[..., Any]:
     return _written_out("record", list(_zeros("record", record)))
 

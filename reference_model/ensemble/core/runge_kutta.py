@@ -8,13 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import reduce
 from typing import Any, TypeVar
 
+import numba
 from numba.extending import overload
 from scipy.integrate import DOP853
 
-from reference_model.ensemble.core.jit import inlined
+from reference_model.ensemble.core.jit import INLINED, inlined
 from reference_model.motion.stepper import TIGHTEST
+
+intrinsic: Any = numba.extending.intrinsic  # not typed throughout
+types: Any = numba.types
 
 Tuple = tuple[float, ...]
 Constants = TypeVar("Constants")
@@ -42,28 +47,53 @@ def tolerance_of_steps(tolerance: float) -> float:
     return max(LOCAL * tolerance, TIGHTEST)
 
 
-def weighted(weights: Tuple, rates: tuple[Tuple, ...]) -> Tuple:
+# Sums over tuples are written as machine instructions, as many as there are terms: of the same in Python each term
+# would pass through all of numba, and loops over tuples would not become straight-line code.
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
     """Return Σ weights[j]·rates[j], of every unknown; compiled code only."""
-    raise NotImplementedError
+    size = len(rates[0])
+
+    def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _packed(
+            context, builder, signature, _sums(builder, *arguments, stages=len(weights), size=size)
+        )
+
+    return types.UniTuple(types.float64, size)(weights, rates), sums
 
 
-def moved(y: Tuple, h: float, weights: Tuple, rates: tuple[Tuple, ...]) -> Tuple:
+@intrinsic  # type: ignore[untyped-decorator]
+def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
     """Return y + h·Σ weights[j]·rates[j]; rates may be longer than y; compiled code only."""
-    raise NotImplementedError
+    size = len(y)
+
+    def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        before, step, *others = arguments
+        ends = [
+            builder.fadd(builder.extract_value(before, v), builder.fmul(step, change))
+            for v, change in enumerate(_sums(builder, *others, stages=len(weights), size=size))
+        ]
+        return _packed(context, builder, signature, ends)
+
+    return types.UniTuple(types.float64, size)(y, types.float64, weights, rates), sums
 
 
-# Sums over tuples are written out for their lengths: loops over tuples would not become straight-line code.
+def _sums(builder: Any, weights: Any, rates: Any, *, stages: int, size: int) -> list[Any]:
+    """Return Σ weights[j]·rates[j] of the first ``size`` unknowns, added up in order."""
+    sums = []
+    for v in range(size):
+        terms = [
+            builder.fmul(builder.extract_value(weights, j), builder.extract_value(rates, (j, v)))
+            for j in range(stages)
+        ]
+        sums.append(reduce(builder.fadd, terms))
+    return sums
 
 
-@overload(weighted, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
-def _weighted(weights: Any, rates: Any) -> Callable[..., Any]:
-    return _written_out("weights, rates", [_sum_of(len(weights), v) for v in range(len(rates[0]))])
-
-
-@overload(moved, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
-def _moved(y: Any, h: Any, weights: Any, rates: Any) -> Callable[..., Any]:
-    terms = [f"y[{v}] + h * ({_sum_of(len(weights), v)})" for v in range(len(y))]
-    return _written_out("y, h, weights, rates", terms)
+def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> Any:
+    return context.make_tuple(builder, signature.return_type, values)
 
 
 def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
@@ -71,17 +101,13 @@ def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
     raise NotImplementedError
 
 
-@overload(squares, jit_options={"forceinline": True, "error_model": "numpy"}, strict=False)
+@overload(squares, jit_options=INLINED, strict=False)
 def _squares(differences: Any, before: Any, after: Any) -> Callable[..., Any]:
     terms = [
         f"(differences[{v}] / (1.0 + max(abs(before[{v}]), abs(after[{v}])))) ** 2"
         for v in range(len(before))
     ]
     return _written_out("differences, before, after", [" + ".join(terms)])
-
-
-def _sum_of(stages: int, unknown: int) -> str:
-    return " + ".join(f"weights[{j}] * rates[{j}][{unknown}]" for j in range(stages))
 
 
 def _written_out(arguments: str, terms: list[str]) -> Callable[..., Any]:

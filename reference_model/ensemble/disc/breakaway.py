@@ -21,6 +21,7 @@ from reference_model.ensemble.core.implicit import (
 )
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.linear import zeros
 from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
 from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
@@ -43,10 +44,10 @@ def grown(
     change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time
     gain = (n.conjugate() * change).real
     along = np.array((n.real, n.imag, turning))
-    start, rate = np.zeros(3), np.zeros(3)
+    start, rate = zeros(3), zeros(3)
     for k in range(3):
         rate[k] = first * along[k]
-    w, f, power = np.zeros((NODES, 3)), np.zeros((NODES, 3)), np.zeros(NODES)
+    w, f, power = zeros(NODES * 3).reshape(NODES, 3), zeros(NODES * 3).reshape(NODES, 3), zeros(NODES)
     t = turn = work = 0.0
     step = FIRST_STEP
     while t < longest:

@@ -11,7 +11,7 @@ import numpy as np
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
-from reference_model.ensemble.core.linear import powers_vanish, solve
+from reference_model.ensemble.core.linear import powers_vanish, solve, zeros
 from reference_model.systems import FloatArray
 
 APART = 1e-5
@@ -29,8 +29,8 @@ def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bo
         y = np.array((radius, along.real, along.imag, r, 0.0))
     else:
         y = np.array((z.real, z.imag, v.real, v.imag, r))
-    slopes, power = np.empty((DIMENSION, DIMENSION)), np.empty((DIMENSION, DIMENSION))
-    matrix, column = np.empty((DIMENSION, DIMENSION)), np.empty(DIMENSION)
+    slopes, power, matrix = _square(), _square(), _square()
+    column = zeros(DIMENSION)
     for j in range(DIMENSION):
         y[j] += APART
         more = _rates(y, law, circle)
@@ -51,6 +51,11 @@ def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bo
         for i in range(DIMENSION):
             power[i, j] = column[i]
     return powers_vanish(power)
+
+
+@scalar
+def _square() -> FloatArray:
+    return zeros(DIMENSION * DIMENSION).reshape(DIMENSION, DIMENSION)
 
 
 @scalar

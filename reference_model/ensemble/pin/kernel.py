@@ -12,6 +12,7 @@ from reference_model.ensemble.checkpoints import EVERY, SLIPS, Checkpoints
 from reference_model.ensemble.core.jit import inlined, outermost, scalar
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
+from reference_model.ensemble.core.linear import complex_zeros
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
@@ -174,7 +175,7 @@ def run_pins(
 
     ``known`` (1,) are ``KnownEnds``; the others are the items of ``Aims``.
     """
-    series = np.zeros((6, MOST_TERMS + 2), dtype=np.complex128)
+    series = complex_zeros(6 * (MOST_TERMS + 2)).reshape(6, MOST_TERMS + 2)
     _run_with(task, Aims(tolerance, early, once, known[0], series, checkpoints), results, first, last)
 
 

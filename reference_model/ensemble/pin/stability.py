@@ -10,13 +10,11 @@ x is largest, are followed for one turn together with the motion itself by the c
 
 from __future__ import annotations
 
-import numpy as np
-
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.dense_output import size_of
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import PinLaw
-from reference_model.ensemble.core.linear import powers_vanish
+from reference_model.ensemble.core.linear import complex_zeros, powers_vanish, zeros
 from reference_model.systems import FloatArray
 
 STRIDE, STABLE = 0.5, 1.5
@@ -36,14 +34,14 @@ COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 
 @scalar
 def orbit_attracts(z: complex, v: complex, period: float, law: PinLaw) -> bool:
     """Tell whether the orbit attracts on which a pin has place z and velocity v where x is largest."""
-    derivative = np.zeros((3, 3))
+    derivative = zeros(9).reshape(3, 3)
     return return_derivative(z, v, period, law, derivative) and powers_vanish(derivative)
 
 
 @scalar
 def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: FloatArray) -> bool:
     """Put the derivative of the return map in (x, y, ẏ) into ``derivative``; tell whether the turn could be made."""
-    work = np.zeros((4, 4, 2), dtype=np.complex128)
+    work = complex_zeros(32).reshape(4, 4, 2)
     y, stage, change, rates = work[0], work[1], work[2], work[3]
     y[0, 0], y[0, 1], y[1, 0], y[2, 0], y[3, 1] = z, v, 1.0, 1j, 1j
     left = period

@@ -20,7 +20,7 @@ from compare.engines import EVERY_KIND
 
 
 def test_help_of_every_command_has_an_example(capsys):
-    for name in ("list", "report", "judge", "simulate", "simulate pin", "simulate disc", "errata"):
+    for name in ("list", "report", "judge", "simulate", "simulate pin", "simulate disc", "errata", "compile"):
         assert cli.status([*name.split(), "--help"]) == 0
         assert f"friction-discs {name}" in capsys.readouterr().out
 
@@ -76,6 +76,15 @@ def test_help_starts_without_the_heavy_libraries():
     process = subprocess.run([REAL[0], "-c", code], env=environment(), capture_output=True, encoding="utf-8")
     assert process.stdout.startswith("Usage: friction-discs")
     assert process.stdout.splitlines()[-1] == "[]"
+
+
+def test_compile_makes_every_kernel_once(monkeypatch, capsys):
+    made = []
+    every = [(name, lambda name=name: made.append(name)) for name in ("pins", "rings")]
+    monkeypatch.setattr("compare.run.kernels.kernels", lambda: iter(every))
+    assert cli.status(["compile"]) == 0
+    assert made == ["pins", "rings"]
+    assert capsys.readouterr() == ("All 2 kernels are compiled and kept.\n", "")
 
 
 def test_errata_prints_both_forms_and_both_errors(capsys):

@@ -9,6 +9,7 @@ from processes import ROOT
 
 import compare.cli.sweep.run
 import compare.judge.judge
+import compare.run.kernels
 import compare.run.runner
 from compare.cli import app as cli
 from compare.engines import Engine
@@ -69,6 +70,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(Engine, "simulate", stop)
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
+    monkeypatch.setattr(compare.run.kernels, "kernels", stop)
 
 
 @pytest.mark.parametrize(

@@ -298,6 +298,7 @@ import numba, numpy as np, logging
 from numpy import hypot
 from functools import cache, partial
 from pathlib import Path
+from reference_model.numerics.compiled_parts import Part
 
 LOG, HERE, NAMES = logging.getLogger("mine"), Path("here"), {{"a", "b", "c", "d"}}
 
@@ -305,13 +306,17 @@ LOG, HERE, NAMES = logging.getLogger("mine"), Path("here"), {{"a", "b", "c", "d"
 def force(x):
     return {factor} * x
 
+@Part
+def shifted(x):
+    return x + {shift}
+
 @cache
 def table(n):
     return np.zeros(n)
 
 def simulate(x):
     LOG.info(HERE, NAMES)
-    return force(x) + hypot(table(3)[0], x) + np.sin(x)
+    return force(x) + shifted(x) + hypot(table(3)[0], x) + np.sin(x)
 
 INSTANCE = partial(simulate, np.arange(3.0), kinds=NAMES)
 """
@@ -325,7 +330,7 @@ print(fingerprint(mine.simulate, PACKAGES), fingerprint(mine.INSTANCE, PACKAGES)
 
 
 def test_a_compiled_function_is_known_by_its_code_in_every_process(module, tmp_path):
-    mine = module(mine=COMPILED.format(factor=2.0))
+    mine = module(mine=COMPILED.format(factor=2.0, shift=1.0))
     here = [printed(mine.simulate), printed(mine.INSTANCE)]
     process = subprocess.run(
         [sys.executable, "-c", PRINT],
@@ -335,8 +340,9 @@ def test_a_compiled_function_is_known_by_its_code_in_every_process(module, tmp_p
         text=True,
     )
     assert (process.stdout.split(), process.stderr) == (here, "")
-    other = module(mine=COMPILED.format(factor=3.0))
-    assert {printed(other.simulate), printed(other.INSTANCE)}.isdisjoint(here)
+    for factor, shift in ((3.0, 1.0), (2.0, 2.0)):
+        other = module(mine=COMPILED.format(factor=factor, shift=shift))
+        assert {printed(other.simulate), printed(other.INSTANCE)}.isdisjoint(here)
 
 
 def printed(thing):

@@ -185,9 +185,9 @@ def test_while_the_pull_is_constant_the_time_to_rest_is_exact():
 
 def test_the_step_of_all_lanes_is_vectorised():
     packed = {"x86_64": r"v?sqrtpd", "AMD64": r"v?sqrtpd", "aarch64": r"fsqrt\s+v", "arm64": r"fsqrt\s+v"}
-    advance = pin_lanes.advance
-    advance.compile((numba.from_dtype(layout(pin_lanes.PinLanes)), numba.none))
-    assembly = "\n".join(advance.inspect_asm().values())
+    caller = numba.njit(lambda lanes: pin_lanes.advance(lanes, None))
+    caller.compile((numba.from_dtype(layout(pin_lanes.PinLanes)),))
+    assembly = "\n".join(caller.inspect_asm().values())
     # Thirteen right-hand sides and four roots for the error, each in one vector at least.
     assert len(re.findall(packed[platform.machine()], assembly)) >= 16
     assert not re.search(r"v?sqrtsd", assembly)

@@ -1,0 +1,123 @@
+"""Functions that Python calls: compiled once on a machine, whoever needs them, and kept on disk.
+
+Of several processes that need one at once, the first compiles it and the others wait for that and load it.
+"""
+
+from __future__ import annotations
+
+import gc
+import multiprocessing
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from numba.core.registry import CPUDispatcher
+
+from reference_model.numerics.compiled_cache import known_by_content
+
+LONG = 1.0
+"""Time in s after which a terminal is told that something is being compiled."""
+
+ABANDONED = 120.0
+"""Age in s from which on a lock is that of a process that was killed: nothing takes so long to compile."""
+
+LOOK_AGAIN = 0.05
+"""Time in s between two looks at a lock."""
+
+
+class Kept(CPUDispatcher):
+    """A compiled function that is taken from disk if all that it is made of is as it was."""
+
+    def __init__(
+        self,
+        py_func: Callable[..., Any],
+        locals: dict[str, Any] | None = None,
+        targetoptions: dict[str, Any] | None = None,
+    ) -> None:
+        super().__init__(
+            py_func, locals or {}, {"nopython": True, "boundscheck": None, **(targetoptions or {})}
+        )
+        self.enable_caching()
+        known_by_content(self)
+
+    def compile(self, sig: Any) -> Any:
+        """Return the compiled function for arguments of these types."""
+        if self._is_kept(sig):
+            return super().compile(sig)
+        folder = Path(self._files.cache_path)
+        with _locked(folder / f"{self._files._cache_file._index_name}.lock"):
+            if self._is_kept(sig):  # by now
+                return super().compile(sig)
+            with _told(folder), _without_garbage_collection():
+                return super().compile(sig)
+
+    def _is_kept(self, sig: Any) -> bool:
+        target: Any = self.targetctx
+        return self._files._index_key(sig, target.codegen()) in self._files._cache_file._load_index()
+
+    @property
+    def _files(self) -> Any:
+        """The cache, numba's own."""
+        return self._cache  # type: ignore[attr-defined]
+
+
+@contextmanager
+def _locked(lock: Path) -> Iterator[None]:
+    """Hold a lock between processes. It saves work and nothing else: one that can't be had is done without."""
+    held = False
+    with suppress(OSError):
+        lock.parent.mkdir(parents=True, exist_ok=True)
+        while not held:
+            try:
+                os.close(os.open(lock, os.O_CREAT | os.O_EXCL))
+                held = True
+            except FileExistsError:
+                if time.time() - lock.stat().st_mtime > ABANDONED:
+                    lock.unlink(missing_ok=True)
+                time.sleep(LOOK_AGAIN)
+    try:
+        yield
+    finally:
+        if held:
+            lock.unlink(missing_ok=True)
+
+
+@contextmanager
+def _told(folder: Path) -> Iterator[None]:
+    """Tell a terminal, once, if what is done takes long."""
+    timer = threading.Timer(LONG, _tell, (folder,))
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+_told_already = threading.Lock()
+
+
+def _tell(folder: Path) -> None:
+    if (
+        sys.stderr.isatty()
+        and multiprocessing.parent_process() is None
+        and _told_already.acquire(blocking=False)
+    ):
+        print(f"Compiling for this machine, once: it is kept in {folder}", file=sys.stderr)
+
+
+@contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """Leave garbage for later: looking for it again and again takes a tenth of the time that compiling does."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
