@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -61,7 +60,7 @@ def sweep_command() -> None:
 
 
 @sweep.command("basin", cls=Command)
-@taking(Request, output=Path("basin"))
+@taking(Request, output="basin")
 def sweep_basin(
     request: Request,
     start: Start = "",
@@ -104,7 +103,7 @@ def sweep_basin(
 
 
 @sweep.command("map", cls=Command)
-@taking(Request, output=Path("map"))
+@taking(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
     """Find what motions end as over a plane of two parameters, with the boundaries that formulas draw there.
 
@@ -133,7 +132,7 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 
 
 @sweep.command("uncertainty", cls=Command)
-@taking(Request, output=Path("uncertainty"))
+@taking(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
     """Find how likely the whirl is, how large it is, and what that depends on, where parameters are uncertain.
 
@@ -163,7 +162,7 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 
 @sweep.command("figures", cls=Command)
 def sweep_figures(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished sweep.")],
+    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
 ) -> None:
     """Draw the figures of a finished sweep once more and print its results.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from compare.figures import (
     paper_style,
     saved,
 )
+from compare.sweep.compute.files import Files
 from compare.sweep.compute.run import CURVES, RESULT
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.plan import Basin, Map, Plan, RandomBasin, Uncertainty
@@ -46,28 +46,30 @@ MOST_PIXELS = 2000
 MOST_DOTS = 20_000
 """Of random starts that are drawn."""
 
+MOST_DRAWS = 1 << 20
+"""Independent draws from which the distribution of a radius is taken: any first ones are a sample of all."""
+
 BINS = 60
 
 CURVE_DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0.0, (6.0, 1.5, 1.0, 1.5)))
 
 
-def write_figures(store: SweepStore, folder: Path) -> tuple[Path, ...]:
-    """Draw the results of a finished sweep into ``folder``, as SVG and PNG; return the files.
+def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
+    """Draw the results of a finished sweep into ``folder``, as SVG and PNG; return where they are.
 
     Raises ``ValueError`` if the sweep is not finished.
     """
     result = store.get(RESULT)
     if result is None:
-        raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
-    written = []
+        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+    contents = {}
     with paper_style():
         drawn = figures(store.plan, result, store.get(CURVES))
     for name, figure in drawn.items():
         for suffix, content in zip((".svg", ".png"), saved(figure), strict=True):
-            path = folder / f"{name}{suffix}"
-            path.write_bytes(content)
-            written.append(path)
-    return tuple(written)
+            contents[f"{name}{suffix}"] = content
+    folder.write(contents)
+    return tuple(folder.below(name) for name in contents)
 
 
 def figures(plan: Plan, result: xr.Dataset, curves: xr.Dataset | None) -> dict[str, Figure]:
@@ -86,7 +88,7 @@ def figures(plan: Plan, result: xr.Dataset, curves: xr.Dataset | None) -> dict[s
 def basin(plan: Basin, result: xr.Dataset) -> Figure:
     """Draw what every start ends as."""
     figure, (axes,) = new_figure(width=7.4, height=5.4)
-    draw_ends(axes, plan, result["end"].values)
+    draw_ends(axes, plan, result["end"])
     label_plane(axes, plan)
     legend(figure, result)
     return figure
@@ -128,7 +130,7 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
 
     handles = []
     for end in EndState:
-        if not np.any(result["end"].values == end):
+        if result["count"][end] == 0:
             continue
         label = end.name.lower().replace("_", " ")
         if "share" in result:
@@ -150,11 +152,11 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
     )
     rows = np.array(panels, dtype=object).reshape(len(plan.starts), 4)
     for i, row in enumerate(rows):
-        draw_ends(row[0], plan, result["end"].values[i])
+        draw_ends(row[0], plan, result["end"][i])
         start = ", ".join(f"{value:g}" for value in plan.starts[i])
         row[0].set_title(f"end of the motion from ({start})", fontsize=10.0)
         for panel, (name, words) in zip(row[1:], shown, strict=True):
-            image = _image(panel, plan, result[name].values[i], cmap="viridis")
+            image = _image(panel, plan, result[name][i], cmap="viridis")
             figure.colorbar(image, ax=panel)
             panel.set_title(words, fontsize=10.0)
         for panel in row:
@@ -188,7 +190,7 @@ def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
 def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     """Draw the distribution of the largest radius by the ends, and the sensitivities."""
     figure, (left, right) = new_figure(ncols=2, width=11.5, height=4.6)
-    radii, ends = result["largest_radius"].values, result["end"].values
+    radii, ends = (result[name][:MOST_DRAWS].values for name in ("largest_radius", "end"))
     known = np.isfinite(radii)
     there = [end for end in EndState if np.any(ends[known] == end)]
     if there:
@@ -200,7 +202,8 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
             edgecolor=BLACK,
             linewidth=0.3,
         )
-    left.set(xlabel="largest radius of the end state in m", ylabel="draws")
+    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" of the first {MOST_DRAWS}"
+    left.set(xlabel="largest radius of the end state in m", ylabel=f"draws{which}")
     places = np.arange(len(plan.varied))
     bars = (
         ("first", "largest_radius", BLUE),
@@ -229,7 +232,7 @@ def _image(axes: Axes, plan: Basin | Map, values: Any, **look: Any) -> Any:
     half_x, half_y = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
     axes.grid(False)
     return axes.imshow(
-        values[every],
+        values[every].values,
         origin="lower",
         aspect="auto",
         interpolation="nearest",

@@ -10,6 +10,7 @@ import xarray as xr
 from compare.sweep.compute.run import CHECK, RESULT
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.plan import Uncertainty
+from compare.sweep.show.figures import MOST_DRAWS
 from reference_model.ensemble import EndState
 from reference_model.systems import COLUMNS
 
@@ -19,13 +20,13 @@ QUANTILES = (0.05, 0.5, 0.95)
 def summary(store: SweepStore) -> Iterator[str]:
     """Yield the lines of what a finished sweep found."""
     result, check = _group(store, RESULT), _group(store, CHECK)
-    ends = result["end"].values
+    total = result["end"].size
     if "simulated" in result:
-        yield f"{np.count_nonzero(result['simulated'].values)} of {ends.size} starts simulated"
+        yield f"{np.count_nonzero(result['simulated'].values)} of {total} starts simulated"
     else:
-        yield f"{ends.size} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
+        yield f"{total} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
     for end in EndState:
-        count = np.count_nonzero(ends == end)
+        count = int(result["count"][end])
         if count == 0:
             continue
         line = f"  {end.name.lower().replace('_', ' '):14}"
@@ -49,14 +50,15 @@ def same_ends(store: SweepStore) -> bool:
 
 
 def _uncertainty(result: xr.Dataset) -> Iterator[str]:
-    radii = result["largest_radius"].values
+    radii = result["largest_radius"][:MOST_DRAWS].values
     radii = radii[np.isfinite(radii)]
     if radii.size:
         values = ", ".join(
             f"{100.0 * part:g} %: {value:.4g} m"
             for part, value in zip(QUANTILES, np.quantile(radii, QUANTILES), strict=True)
         )
-        yield f"largest radius below which a part of the draws lies: {values}"
+        which = "draws" if result.sizes["sample"] <= MOST_DRAWS else f"first {MOST_DRAWS} draws"
+        yield f"largest radius below which a part of the {which} lies: {values}"
     for quantity in result["quantity"].values:
         words = "largest radius" if quantity == "largest_radius" else "whirl or not"
         for name in result["uncertain"].values:
@@ -96,5 +98,5 @@ def _differing(check: xr.Dataset) -> np.ndarray:
 def _group(store: SweepStore, name: str) -> xr.Dataset:
     group = store.get(name)
     if group is None:
-        raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
+        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
     return group
