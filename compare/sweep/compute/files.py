@@ -15,6 +15,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "s3": {
         # a listing that was kept would not have what others have written since
         "use_listings_cache": False,
+        # files are small: to ask for their size first, so as to fetch parts side by side, costs a second request
+        "max_concurrency": 1,
         # a server that is gone for half a minute loses nothing
         "config_kwargs": {"retries": {"mode": "standard", "max_attempts": 10}},
     },
