@@ -44,16 +44,22 @@ def of_sample(ends: Ends) -> dict[EndState, Share]:
 
 def of_counts(counts: IntArray) -> dict[EndState, Share]:
     """Return the shares among independent random starts of which so many ended as each of ``EndState``."""
-    from scipy.stats import binomtest  # takes long to load, and grids do without
-
     total, doubtful = int(np.sum(counts)), int(counts[EndState.UNDECIDED])
     shares = {}
     for end in EndState:
         count = int(counts[end])
-        most = count if end == EndState.UNDECIDED else count + doubtful
-        low, high = (binomtest(k, total).proportion_ci(CONFIDENCE, method="wilson") for k in (count, most))
-        shares[end] = Share(count / total, float(low.low), float(high.high))
+        shares[end] = of_count(count, total, 0 if end == EndState.UNDECIDED else doubtful)
     return shares
+
+
+def of_count(count: int, total: int, doubtful: int = 0) -> Share:
+    """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may belong to it."""
+    from scipy.stats import binomtest  # takes long to load, and grids do without
+
+    low, high = (
+        binomtest(k, total).proportion_ci(CONFIDENCE, method="wilson") for k in (count, count + doubtful)
+    )
+    return Share(count / total, float(low.low), float(high.high))
 
 
 def of_grid(ends: Ends) -> dict[EndState, Share]:

@@ -18,6 +18,7 @@ from compare.cli.sweep.options import (
     Rows,
     Start,
     Starts,
+    Values,
     Varied,
     XAxis,
     YAxis,
@@ -40,6 +41,13 @@ MAPS = {
     "disc": ("disc_speed=1.05:1.95:64", "friction_force=0.005:0.06:64"),
 }
 """Axes x and y unless others are asked for."""
+
+ALONG = {"pin": "disc_speed=1.05:3:100", "disc": "disc_speed=1.05:1.95:100"}
+SCATTERED = {
+    "pin": ("x=uniform(-0.3, 0.5)", "vx=uniform(-0.4, 0.4)"),
+    "disc": ("x=uniform(-0.1, 0.1)", "vx=uniform(-0.1, 0.1)"),
+}
+"""Axis and random starts of a continuation unless others are asked for."""
 
 sweep = typer.Typer(rich_markup_mode=None)
 
@@ -158,6 +166,46 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
         _check_given_once({"--set": request.set_names(), "--start": _names_of(start)}, "--vary", names)
         state = _start(request.system, start, components(common["system"]))
     return request.run(Uncertainty(**common, start=state, varied=varied, samples=samples))
+
+
+@sweep.command("continuation", cls=Command)
+@taking(Request, output="continuation")
+def sweep_continuation(
+    request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
+) -> int:
+    """Find what random starts end as along one parameter, and which motions continue each other.
+
+    The starts are the same at each value. Beside the motions are those that formulas and continuation give, the
+    unstable ones too.
+
+    \b
+    Axis and starts, unless others are given:
+      pin   --x disc_speed=1.05:3:100 --vary "x=uniform(-0.3, 0.5)" --vary "vx=uniform(-0.4, 0.4)"
+      disc  --x disc_speed=1.05:1.95:100 --vary "x=uniform(-0.1, 0.1)" --vary "vx=uniform(-0.1, 0.1)"
+    \b
+    Example:
+      friction-discs sweep continuation pin --x friction_force=0.02:0.12:50 --samples 4000
+    """
+    from compare.engines import one_of
+    from compare.sweep.define.axes import Axis
+    from compare.sweep.define.distributions import Uncertain
+    from compare.sweep.define.plan import Continuation
+    from compare.sweep.define.quantities import components, parameters
+
+    with refused():
+        common = request.common()
+        axis = Axis.parse(x or ALONG[request.system], "parameter", parameters(common["system"]))
+        _check_given_once({"--set": request.set_names()}, "--x", [axis.name])
+        for end in (axis.low, axis.high):
+            changed(common["system"], [f"{axis.name}={end!r}"])
+        varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or SCATTERED[request.system])
+        names = [one.name for one in varied]
+        _check_varied(names)
+        for name in names:
+            one_of("component", name, components(common["system"]))
+        _check_given_once({"--start": _names_of(start)}, "--vary", names)
+        state = _start(request.system, start, components(common["system"]))
+    return request.run(Continuation(**common, start=state, x=axis, varied=varied, samples=samples))
 
 
 @sweep.command("figures", cls=Command)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 COARSE = 65
 
-MOST_CHUNK, MOST_SAMPLES = 10_000_000, 2**27
+MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**27, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
 """As of ``simulate``."""
@@ -97,6 +97,12 @@ Rows = Annotated[
         metavar="N",
         help="A power of 2; N·(2 + number of uncertain quantities) trajectories are simulated.",
         parser=rows,
+    ),
+]
+Values = Annotated[
+    int,
+    typer.Option(
+        metavar="N", help="Random starts at each value.", parser=whole("samples", 1, MOST_AT_A_VALUE)
     ),
 ]
 Until = Annotated[

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from compare.claims import shares
 from compare.claims.shares import Share
+from compare.sweep.compute.branches import known_branches
 from compare.sweep.compute.curves import curves
+from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.round import Arrays, Chunks, Round
 from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
 from compare.sweep.compute.store import Large, flags, write_piece
 from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import BASES, Basin, Map, Plan, RandomBasin, Uncertainty
+from compare.sweep.define.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import RESULTS, components, units
 from compare.sweep.define.refinement import Grid
 from reference_model.ensemble import EndState
@@ -60,12 +62,14 @@ class Part(NamedTuple):
 class Labelled(NamedTuple):
     """What is known of a block when it is written.
 
-    The digests of its files; how many trajectories ended as each of ``EndState``; what it adds to the sensitivities.
+    The digests of its files; how many trajectories ended as each of ``EndState``, shape (rows, ends), a row for each
+    value of a continuation and else a single one; what it adds to the sensitivities; the motions at each value.
     """
 
     digests: dict[str, str]
     counts: NDArray[np.int64]
     moments: Moments | None
+    motions: list[list[Motion]]
 
 
 def blocks_of(plan: Plan) -> list[Block]:
@@ -76,6 +80,10 @@ def blocks_of(plan: Plan) -> list[Block]:
         rows = min(plan.samples // GROUPS, 1 << (BLOCK // plan.row).bit_length() - 1)
         ranges = _ranges(plan.samples, rows)
         return [Block(i * plan.row, j * plan.row, (slice(BASES * i, BASES * j),)) for i, j in ranges]
+    if isinstance(plan, Continuation):
+        ranges = _ranges(plan.x.points, _rows(plan))
+        across = plan.samples
+        return [Block(i * across, j * across, (slice(i, j), slice(0, across))) for i, j in ranges]
     assert isinstance(plan, Basin | Map)
     rows, across = _rows(plan), plan.x.points
     planes = len(plan.starts) if isinstance(plan, Map) else 1
@@ -94,8 +102,10 @@ def _ranges(count: int, size: int) -> list[tuple[int, int]]:
     return [(first, min(first + size, count)) for first in range(0, count, size)]
 
 
-def _rows(plan: Basin | Map) -> int:
-    """Return how many rows of a plane make a block."""
+def _rows(plan: Basin | Map | Continuation) -> int:
+    """Return how many rows of a plane, or values of a continuation, make a block."""
+    if isinstance(plan, Continuation):
+        return max(1, min(plan.x.points, BLOCK // plan.samples))
     return max(1, min(plan.y.points, BLOCK // plan.x.points))
 
 
@@ -109,6 +119,9 @@ def large_of(plan: Plan) -> dict[str, Large]:
         pieces = (_rows(plan), plan.x.points)
         if isinstance(plan, Map):
             dimensions, shape, pieces = ("start", *dimensions), plan.shape, (1, *pieces)
+    elif isinstance(plan, Continuation):
+        dimensions, shape = (plan.x.name, "sample"), (plan.x.points, plan.samples)
+        pieces = (_rows(plan), plan.samples)
     else:
         assert isinstance(plan, RandomBasin | Uncertainty)
         block = blocks_of(plan)[0].where[0].stop
@@ -153,7 +166,7 @@ def label(
 ) -> Labelled:
     """Write the labelled results of a block; ``grid``: what a basin came to there, ends and which are simulated."""
     found = {name: _found(name, block, parts) for name in SHOWN}
-    sensitive = None
+    sensitive, motions = None, list[list[Motion]]()
     numbers = range(block.first, block.last)
     values: Values = dict(found)
     if isinstance(plan, Basin):
@@ -163,6 +176,9 @@ def label(
         least, largest = found["least_radius"], found["largest_radius"]
         with np.errstate(invalid="ignore"):
             values["modulation"] = np.where(largest == 0.0, 0.0, (largest - least) / (largest + least))
+    elif isinstance(plan, Continuation):
+        table = [found[name].reshape(-1, plan.samples) for name in ("end", "least_radius", "largest_radius")]
+        motions = [motions_of(*row) for row in zip(*table, strict=True)]
     elif isinstance(plan, RandomBasin):
         states, _ = plan.trajectories(numbers)
         places = list(components(plan.system))
@@ -174,7 +190,9 @@ def label(
         values = plan.values(drawn) | {name: all_[drawn - block.first] for name, all_ in found.items()}
     shape = tuple(at.stop - at.start for at in block.where)
     digests = write_piece(arrays, {name: one.reshape(shape) for name, one in values.items()}, block.where)
-    return Labelled(digests, shares.counted(values["end"]), sensitive)
+    ends = values["end"].reshape(-1, plan.samples) if isinstance(plan, Continuation) else [values["end"]]
+    counts = np.array([shares.counted(row) for row in ends])
+    return Labelled(digests, counts, sensitive, motions)
 
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
@@ -197,7 +215,8 @@ def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArra
 
 def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Dataset:
     """Return what is labelled of the whole sweep, from what is known of its blocks in their order."""
-    counts = np.sum([one.counts for one in found], axis=0)
+    rows = np.concatenate([one.counts for one in found])
+    counts = np.sum(rows, axis=0)
     variables: Variables = {"count": (("end_state",), counts, {"long_name": "how many end like this"})}
     coordinates: dict[str, Any] = {"end_state": ENDS}
     if isinstance(plan, Basin | Map):
@@ -209,6 +228,13 @@ def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Da
     elif isinstance(plan, Map):
         coordinates["component"] = list(components(plan.system))
         variables["initial_state"] = (("start", "component"), np.array(plan.starts))
+    elif isinstance(plan, Continuation):
+        coordinates |= _coordinates(plan.system, (plan.x,))
+        columns = [_shares(shares.of_counts(row), shares.SAMPLE) for row in rows]
+        for name, (_, _, *attributes) in columns[0].items():
+            values = np.array([column[name][1] for column in columns])
+            variables[name] = ((plan.x.name, "end_state"), values, *attributes)
+        variables |= _motions(plan, [motions for one in found for motions in one.motions])
     else:
         variables |= _shares(shares.of_counts(counts), shares.SAMPLE)
     if isinstance(plan, Uncertainty):
@@ -217,6 +243,50 @@ def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Da
         for name, values in indices(blocks)._asdict().items():
             variables[f"sobol_{name}"] = (("quantity", "uncertain"), values)
     return xr.Dataset(variables, coords=coordinates)
+
+
+def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables:
+    """Return the motions that continue each other, NaN where one is not there."""
+    branches = matched(found, lambda motion: motion.end)
+    ends = [next(iter(branch.values())).end for branch in branches]
+    variables: Variables = {
+        "motion_end": (("motion",), np.array(ends, dtype="u1"), flags("end")),
+        **_along(plan, "motion", branches, ("least", "largest")),
+    }
+    intervals = np.full((3, len(branches), plan.x.points), np.nan)
+    for j, branch in enumerate(branches):
+        for i, motion in branch.items():
+            intervals[:, j, i] = shares.of_count(motion.starts, plan.samples)
+    for name, values in zip(
+        ("motion_share", "motion_share_low", "motion_share_high"), intervals, strict=True
+    ):
+        variables[name] = (("motion", plan.x.name), values)
+    return variables
+
+
+def _along(
+    plan: Continuation, name: str, branches: Sequence[Mapping[int, Any]], fields: Sequence[str]
+) -> Variables:
+    """Return fields of motions along the axis, each of shape (branches, values)."""
+    variables: Variables = {}
+    for field in fields:
+        values = np.full((len(branches), plan.x.points), np.nan)
+        for j, branch in enumerate(branches):
+            for i, motion in branch.items():
+                values[j, i] = getattr(motion, field)
+        attributes = {"long_name": f"{field} radius", "units": "m"} if field != "stable" else {}
+        variables[f"{name}_{field}"] = ((name, plan.x.name), values, attributes)
+    return variables
+
+
+def branches_of(plan: Continuation) -> xr.Dataset:
+    """Return the motions that formulas and continuation give; ``known_stable`` is 1 where one is stable, else 0."""
+    found = known_branches(plan)
+    meanings = [next(iter(branch.values())).meaning for branch in found]
+    return xr.Dataset(
+        _along(plan, "known", found, ("least", "largest", "stable")),
+        coords=_coordinates(plan.system, (plan.x,)) | {"known": np.array(meanings, dtype=str)},
+    )
 
 
 def curves_of(plan: Map) -> xr.Dataset:

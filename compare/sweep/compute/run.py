@@ -10,18 +10,27 @@ import numpy as np
 import xarray as xr
 
 from compare.sweep.compute.executors import Executor, InProcess, Task
-from compare.sweep.compute.results import Labelled, blocks_of, curves_of, label, labels_of, large_of, parts_of
+from compare.sweep.compute.results import (
+    Labelled,
+    blocks_of,
+    branches_of,
+    curves_of,
+    label,
+    labels_of,
+    large_of,
+    parts_of,
+)
 from compare.sweep.compute.round import Chunks, Round
 from compare.sweep.compute.store import SweepStore, flags
 from compare.sweep.compute.work import Plain, recompute, simulate_chunk
-from compare.sweep.define.plan import Map
+from compare.sweep.define.plan import Continuation, Map, Plan
 from compare.sweep.define.quantities import components
 from compare.sweep.define.refinement import Grid
 
 CHECKED = 20
 """Trajectories of a sweep that the plain reference simulates again."""
 
-CHECK, RESULT, CURVES = "check", "result", "curves"
+CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
 """Groups of a store besides its rounds."""
 
 Progress = Callable[[str, int, int], None]
@@ -33,15 +42,23 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))
-    if isinstance(store.plan, Map) and store.get(CURVES) is None:
-        store.put(CURVES, curves_of(store.plan))
+    for name, dataset in _theory(store.plan).items():
+        if store.get(name) is None:
+            store.put(name, dataset())
     if store.get(RESULT) is None:
         _label(store, rounds, grid, executor, progress)
 
 
+def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
+    """Return what formulas say of a plan: the group that it is in, and how it comes about."""
+    if isinstance(plan, Map):
+        return {CURVES: lambda: curves_of(plan)}
+    return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
+
+
 def finished(store: SweepStore) -> bool:
     """Return whether all of the sweep is there as it was written; what is not is in ``store.broken``."""
-    groups = (CHECK, RESULT, *((CURVES,) if isinstance(store.plan, Map) else ()))
+    groups = (CHECK, RESULT, *_theory(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None
     with suppress(StopIteration):

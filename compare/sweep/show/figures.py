@@ -21,9 +21,9 @@ from compare.figures import (
     saved,
 )
 from compare.sweep.compute.files import Files
-from compare.sweep.compute.run import CURVES, RESULT
+from compare.sweep.compute.run import BRANCHES, CURVES, RESULT
 from compare.sweep.compute.store import SweepStore
-from compare.sweep.define.plan import Basin, Map, Plan, RandomBasin, Uncertainty
+from compare.sweep.define.plan import Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import symbol, units
 from reference_model.ensemble import EndState
 
@@ -64,7 +64,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
         raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
     contents = {}
     with paper_style():
-        drawn = figures(store.plan, result, store.get(CURVES))
+        drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))
     for name, figure in drawn.items():
         for suffix, content in zip((".svg", ".png"), saved(figure), strict=True):
             contents[f"{name}{suffix}"] = content
@@ -72,17 +72,19 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
     return tuple(folder.below(name) for name in contents)
 
 
-def figures(plan: Plan, result: xr.Dataset, curves: xr.Dataset | None) -> dict[str, Figure]:
-    """Return the figures of a sweep by their names."""
+def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
+    """Return the figures of a sweep by their names; ``theory`` is what formulas say of a map or a continuation."""
     if isinstance(plan, Basin):
         return {"basin": basin(plan, result)}
     if isinstance(plan, RandomBasin):
         return {"basin": random_basin(plan, result)}
     if isinstance(plan, Uncertainty):
         return {"uncertainty": uncertainty(plan, result)}
+    assert theory is not None
+    if isinstance(plan, Continuation):
+        return {"continuation": continuation(plan, result, theory)}
     assert isinstance(plan, Map)
-    assert curves is not None
-    return {"map": parameter_map(plan, result, curves)}
+    return {"map": parameter_map(plan, result, theory)}
 
 
 def basin(plan: Basin, result: xr.Dataset) -> Figure:
@@ -133,7 +135,7 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
         if result["count"][end] == 0:
             continue
         label = end.name.lower().replace("_", " ")
-        if "share" in result:
+        if "share" in result and result["share"].ndim == 1:
             share, low, high = (
                 100.0 * float(result[name].values[end]) for name in ("share", "share_low", "share_high")
             )
@@ -221,6 +223,40 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     right.set_xticks(places, [f"${symbol(uncertain.name)}$" for uncertain in plan.varied])
     right.set(ylabel="Sobol's index")
     right.legend(fontsize=8.5)
+    legend(figure, result)
+    return figure
+
+
+def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
+    """Draw the shares of the motions, and their radii beside those that formulas and continuation give."""
+    figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
+    values = plan.x.values
+    for j, end in enumerate(result["motion_end"].values):
+        colour = COLOURS[EndState(end)] if end != EndState.UNDECIDED else BLACK
+        share, low, high = (result[f"motion_share{which}"].values[j] for which in ("", "_low", "_high"))
+        left.fill_between(values, low, high, color=colour, alpha=0.4, linewidth=0.0)
+        left.plot(values, share, color=colour, marker=".")
+        for which in ("least", "largest"):
+            right.plot(values, result[f"motion_{which}"].values[j], ".", color=colour, markersize=7.0)
+    for j, meaning in enumerate(branches["known"].values):
+        stable = branches["known_stable"].values[j]
+        for which in ("least", "largest"):
+            radius = branches[f"known_{which}"].values[j]
+            for kind, dashes in ((1.0, "-"), (0.0, "--")):
+                right.plot(
+                    values,
+                    np.where(stable == kind, radius, np.nan),
+                    color=BLACK,
+                    linestyle=dashes,
+                    linewidth=1.0,
+                )
+        there = np.flatnonzero(np.isfinite(radius))
+        right.annotate(
+            str(meaning), (values[there[-1]], radius[there[-1]]), fontsize=8.5, ha="right", va="bottom"
+        )
+    name = axis(symbol(plan.x.name), units(plan.system)[plan.x.name])
+    left.set(xlabel=name, ylabel="share of the starts", ylim=(0.0, 1.0))
+    right.set(xlabel=name, ylabel="least and largest radius in m")
     legend(figure, result)
     return figure
 

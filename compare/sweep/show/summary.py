@@ -9,7 +9,8 @@ import xarray as xr
 
 from compare.sweep.compute.run import CHECK, RESULT
 from compare.sweep.compute.store import SweepStore
-from compare.sweep.define.plan import Uncertainty
+from compare.sweep.define.plan import Continuation, Uncertainty
+from compare.sweep.define.quantities import units
 from compare.sweep.show.figures import MOST_DRAWS
 from reference_model.ensemble import EndState
 from reference_model.systems import COLUMNS
@@ -30,17 +31,19 @@ def summary(store: SweepStore) -> Iterator[str]:
         if count == 0:
             continue
         line = f"  {end.name.lower().replace('_', ' '):14}"
-        if "share" in result:
+        if "share" in result and result["share"].ndim == 1:
             share, low, high = (
                 100.0 * float(result[name][end]) for name in ("share", "share_low", "share_high")
             )
             yield f"{line} {share:8.4f} %, between {low:.4f} and {high:.4f} %"
         else:
             yield f"{line} {count}"
-    if "share" in result:
+    if "share" in result and result["share"].ndim == 1:
         yield f"  bounds: {result['share_low'].attrs['long_name']}"
     if isinstance(store.plan, Uncertainty):
         yield from _uncertainty(result)
+    if isinstance(store.plan, Continuation):
+        yield from _continuation(store.plan, result)
     yield _checked(store, check)
 
 
@@ -74,6 +77,20 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
                 )
             else:
                 yield f"  {words} by {name}: does not vary"
+
+
+def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
+    """Yield from where to where each motion goes, and what it is at both ends."""
+    name, unit = plan.x.name, units(plan.system)[plan.x.name]
+    for j, end in enumerate(result["motion_end"].values):
+        share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
+        first, last = np.flatnonzero(np.isfinite(share))[[0, -1]]
+        low, high = plan.x.values[[first, last]]
+        yield (
+            f"  {EndState(end).name.lower().replace('_', ' '):14} {name} from {low:.4g} to {high:.4g} {unit}: "
+            f"largest radius {largest[first]:.4g} to {largest[last]:.4g} m, "
+            f"share {100.0 * share[first]:.2f} to {100.0 * share[last]:.2f} %"
+        )
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
