@@ -54,7 +54,7 @@ sweep = typer.Typer(rich_markup_mode=None)
 
 @sweep.callback()
 def sweep_command() -> None:
-    """Simulate many trajectories: basins of attraction, maps over two parameters, uncertain parameters.
+    """Simulate many trajectories: basins of attraction, maps, uncertain parameters, motions along a parameter.
 
     What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
     store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
