@@ -1,34 +1,45 @@
-"""What a Dask cluster costs a sweep: 100 chunks of random starts of Fig. 5, in this process and on local workers.
+"""What a Dask cluster costs a sweep of random starts of Fig. 5, and how much memory the command needs on one.
 
-Run with ``python benchmarks/sweep_cluster.py``; takes about a minute. Needs the extra ``cluster``.
+Run with ``python benchmarks/sweep_cluster.py``; takes some five minutes on two cores, and writes what it finds into
+``docs/sweeps.md``. Needs the extra ``cluster``. With other work on the machine only processor times and memory can be
+compared: throughputs are those of a processor, of all processes together.
 """
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 import tempfile
-import time
 from pathlib import Path
-from typing import NamedTuple
 
 import psutil
 from distributed import LocalCluster
-from rich.console import Console
-from rich.table import Table
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli.options import cores
 from compare.sweep.compute.executors import Cluster, Executor, InProcess
-from compare.sweep.compute.run import simulated
+from compare.sweep.compute.run import run
 from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
 
-CHUNKS = 100
+ROOT = Path(__file__).parents[1]
+
+CHUNKS = 50
 SIZES = (2000, 8000, 32768)
 
+LARGE = (1_000_000, 10_000_000)
+"""Trajectories of the sweeps of which the command's memory is measured."""
 
-def plan_of(size: int) -> RandomBasin:
-    """Return 100 chunks of the starts of the basin of Fig. 5."""
+NODES, CORES, PROJECTED = 64, 64, 10**9
+
+PLACE = re.compile(r"(<!-- written by benchmarks/sweep_cluster.py -->\n).*?(<!-- end -->)", flags=re.DOTALL)
+
+
+def plan_of(samples: int) -> RandomBasin:
+    """Return starts of the basin of Fig. 5."""
     return RandomBasin(
         system=FIG5,
         duration=300.0,
@@ -37,24 +48,17 @@ def plan_of(size: int) -> RandomBasin:
         start=(0.0, 0.0, 0.0, 0.0),
         x=Axis("x", -0.3, 0.5, 2),
         y=Axis("vx", -0.4, 0.4, 2),
-        samples=CHUNKS * size,
+        samples=samples,
     )
 
 
-class Cost(NamedTuple):
-    """Seconds by the clock, and of all processors together."""
-
-    clock: float
-    processors: float
-
-
-def cost(executor: Executor, size: int) -> Cost:
-    """Return what the simulation of all chunks takes, with their way to the disk."""
+def cost(executor: Executor, size: int) -> float:
+    """Return the seconds of all processors together for a sweep of chunks of ``size``, written and labelled."""
     with tempfile.TemporaryDirectory() as folder:
-        store = SweepStore.create(Path(folder) / "sweep.zarr", plan_of(size), size)
-        clock, processors = time.perf_counter(), used()
-        simulated(store, executor, lambda what, done, total: None)
-        return Cost(time.perf_counter() - clock, used() - processors)
+        store = SweepStore.create(Path(folder) / "sweep.zarr", plan_of(CHUNKS * size), size)
+        before = used()
+        run(store, executor, lambda what, done, total: None)
+        return used() - before
 
 
 def used() -> float:
@@ -64,11 +68,28 @@ def used() -> float:
     return sum(time.user + time.system for time in times)
 
 
-def main() -> None:
-    """Print the table."""
-    table = Table(
-        "starts a chunk", "in process", "Dask", "of processors: in process", "Dask", "overhead", "a chunk"
-    )
+def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
+    """Return the largest memory in MB of the command, and the seconds it had a processor itself."""
+    with tempfile.TemporaryDirectory() as folder:
+        more = [] if scheduler is None else ["--scheduler", scheduler]
+        command = ["sweep", "basin", "pin", "--random", str(samples), "--output", folder, *more]
+        process = subprocess.Popen(
+            [sys.executable, "-m", "compare.cli", *command], stdout=subprocess.DEVNULL, cwd=ROOT
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        if status != 0:
+            raise RuntimeError(f"the sweep of {samples} ended with {status}")
+        return usage.ru_maxrss / 1000.0, usage.ru_utime + usage.ru_stime
+
+
+def written() -> str:
+    """Return what docs/sweeps.md says, measured."""
+    lines = [
+        f"On {cores()} workers, {CHUNKS} chunks of starts of Fig. 5, in seconds of all processors together:",
+        "",
+        "| starts a chunk | in process | workers | throughput |",
+        "|---|---|---|---|",
+    ]
     with (
         LocalCluster(n_workers=cores(), threads_per_worker=1, dashboard_address=None) as local,
         Cluster(local.scheduler_address) as cluster,
@@ -78,20 +99,29 @@ def main() -> None:
             cost(executor, 10)
         for size in SIZES:
             here, there = (cost(executor, size) for executor in executors)
-            overhead = there.processors - here.processors
-            table.add_row(
-                str(size),
-                *(
-                    f"{seconds:.2f} s"
-                    for seconds in (here.clock, there.clock, here.processors, there.processors)
-                ),
-                f"{100.0 * overhead / here.processors:.1f} %",
-                f"{1e3 * overhead / CHUNKS:.1f} ms",
-            )
-    Console(width=120).print(table)
-    print(
-        f"{cores()} cores, {CHUNKS} chunks; with other work on the machine only processor times can be compared"
-    )
+            lines.append(f"| {size:,} | {here:.1f} s | {there:.1f} s | {here / there:.3f} |")
+        each = there / (CHUNKS * size)
+        found = [(samples, *memory(local.scheduler_address, samples)) for samples in LARGE]
+    lines += ["", "| starts | memory of the command | its own processor time |", "|---|---|---|"]
+    lines += [f"| {samples:,} | {most:.0f} MB | {own:.0f} s |" for samples, most, own in found]
+    (few, _, short), (many, _, long) = found
+    own = (long - short) / (many - few)
+    busy, command = each * PROJECTED / (NODES * CORES), own * PROJECTED
+    lines += [
+        "",
+        f"Projected from these, not measured, for {PROJECTED:,} such trajectories on {NODES} nodes of {CORES} cores: "
+        f"the workers take {busy:.0f} s ({1e6 * each:.1f} µs of a core a trajectory), the command {command:.0f} s of "
+        f"its own beside them ({1e6 * own:.2f} µs a trajectory, what it takes longer for {many:,} than for {few:,}).",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Measure, print and write."""
+    text = written()
+    print(text)
+    place = ROOT / "docs" / "sweeps.md"
+    place.write_text(PLACE.sub(lambda found: found[1] + text + found[2], place.read_text("utf-8")), "utf-8")
 
 
 if __name__ == "__main__":

@@ -30,6 +30,7 @@ from reference_model.formulas.power_balance import PowerBalance, power_balance
 from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
 from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
 from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
+from reference_model.orbits.shock import Shock, smallest_shock
 from reference_model.simulation import simulate
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
@@ -56,6 +57,7 @@ __all__ = [
     "PowerBalance",
     "Ring",
     "SelfCentredEquilibrium",
+    "Shock",
     "SimulationError",
     "Solution",
     "SpinningEquilibrium",
@@ -73,6 +75,7 @@ __all__ = [
     "self_centred_equilibria",
     "simulate",
     "smallest_load_with_whirl",
+    "smallest_shock",
     "stick_slip_orbits",
     "sticking_radius",
     "whirl_branch",

@@ -11,6 +11,7 @@ from reference_model.ensemble import EndState
 
 Ends = NDArray[np.uint8]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 CONFIDENCE = 0.95
 
@@ -31,20 +32,34 @@ class Share(NamedTuple):
     high: float
 
 
+def counted(ends: Ends) -> IntArray:
+    """Return how many of ``ends`` are which, in the order of ``EndState``."""
+    return np.bincount(ends.ravel(), minlength=len(EndState))
+
+
 def of_sample(ends: Ends) -> dict[EndState, Share]:
     """Return the shares among independent random starts of the ends ``ends``, shape (n,)."""
+    return of_counts(counted(ends))
+
+
+def of_counts(counts: IntArray) -> dict[EndState, Share]:
+    """Return the shares among independent random starts of which so many ended as each of ``EndState``."""
+    total, doubtful = int(np.sum(counts)), int(counts[EndState.UNDECIDED])
+    shares = {}
+    for end in EndState:
+        count = int(counts[end])
+        shares[end] = of_count(count, total, 0 if end == EndState.UNDECIDED else doubtful)
+    return shares
+
+
+def of_count(count: int, total: int, doubtful: int = 0) -> Share:
+    """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may belong to it."""
     from scipy.stats import binomtest  # takes long to load, and grids do without
 
-    counts = {end: int(np.count_nonzero(ends == end)) for end in EndState}
-    doubtful = counts[EndState.UNDECIDED]
-    shares = {}
-    for end, count in counts.items():
-        most = count if end == EndState.UNDECIDED else count + doubtful
-        low, high = (
-            binomtest(k, ends.size).proportion_ci(CONFIDENCE, method="wilson") for k in (count, most)
-        )
-        shares[end] = Share(count / ends.size, float(low.low), float(high.high))
-    return shares
+    low, high = (
+        binomtest(k, total).proportion_ci(CONFIDENCE, method="wilson") for k in (count, count + doubtful)
+    )
+    return Share(count / total, float(low.low), float(high.high))
 
 
 def of_grid(ends: Ends) -> dict[EndState, Share]:

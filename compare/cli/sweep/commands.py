@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -19,6 +18,7 @@ from compare.cli.sweep.options import (
     Rows,
     Start,
     Starts,
+    Values,
     Varied,
     XAxis,
     YAxis,
@@ -42,12 +42,19 @@ MAPS = {
 }
 """Axes x and y unless others are asked for."""
 
+ALONG = {"pin": "disc_speed=1.05:3:100", "disc": "disc_speed=1.05:1.95:100"}
+SCATTERED = {
+    "pin": ("x=uniform(-0.3, 0.5)", "vx=uniform(-0.4, 0.4)"),
+    "disc": ("x=uniform(-0.1, 0.1)", "vx=uniform(-0.1, 0.1)"),
+}
+"""Axis and random starts of a continuation unless others are asked for."""
+
 sweep = typer.Typer(rich_markup_mode=None)
 
 
 @sweep.callback()
 def sweep_command() -> None:
-    """Simulate many trajectories: basins of attraction, maps over two parameters, uncertain parameters.
+    """Simulate many trajectories: basins of attraction, maps, uncertain parameters, motions along a parameter.
 
     What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
     store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
@@ -61,7 +68,7 @@ def sweep_command() -> None:
 
 
 @sweep.command("basin", cls=Command)
-@taking(Request, output=Path("basin"))
+@taking(Request, output="basin")
 def sweep_basin(
     request: Request,
     start: Start = "",
@@ -104,7 +111,7 @@ def sweep_basin(
 
 
 @sweep.command("map", cls=Command)
-@taking(Request, output=Path("map"))
+@taking(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
     """Find what motions end as over a plane of two parameters, with the boundaries that formulas draw there.
 
@@ -133,7 +140,7 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 
 
 @sweep.command("uncertainty", cls=Command)
-@taking(Request, output=Path("uncertainty"))
+@taking(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
     """Find how likely the whirl is, how large it is, and what that depends on, where parameters are uncertain.
 
@@ -161,9 +168,49 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
     return request.run(Uncertainty(**common, start=state, varied=varied, samples=samples))
 
 
+@sweep.command("continuation", cls=Command)
+@taking(Request, output="continuation")
+def sweep_continuation(
+    request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
+) -> int:
+    """Find what random starts end as along one parameter, and which motions continue each other.
+
+    The starts are the same at each value. Beside the motions are those that formulas and continuation give, the
+    unstable ones too.
+
+    \b
+    Axis and starts, unless others are given:
+      pin   --x disc_speed=1.05:3:100 --vary "x=uniform(-0.3, 0.5)" --vary "vx=uniform(-0.4, 0.4)"
+      disc  --x disc_speed=1.05:1.95:100 --vary "x=uniform(-0.1, 0.1)" --vary "vx=uniform(-0.1, 0.1)"
+    \b
+    Example:
+      friction-discs sweep continuation pin --x friction_force=0.02:0.12:50 --samples 4000
+    """
+    from compare.engines import one_of
+    from compare.sweep.define.axes import Axis
+    from compare.sweep.define.distributions import Uncertain
+    from compare.sweep.define.plan import Continuation
+    from compare.sweep.define.quantities import components, parameters
+
+    with refused():
+        common = request.common()
+        axis = Axis.parse(x or ALONG[request.system], "parameter", parameters(common["system"]))
+        _check_given_once({"--set": request.set_names()}, "--x", [axis.name])
+        for end in (axis.low, axis.high):
+            changed(common["system"], [f"{axis.name}={end!r}"])
+        varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or SCATTERED[request.system])
+        names = [one.name for one in varied]
+        _check_varied(names)
+        for name in names:
+            one_of("component", name, components(common["system"]))
+        _check_given_once({"--start": _names_of(start)}, "--vary", names)
+        state = _start(request.system, start, components(common["system"]))
+    return request.run(Continuation(**common, start=state, x=axis, varied=varied, samples=samples))
+
+
 @sweep.command("figures", cls=Command)
 def sweep_figures(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished sweep.")],
+    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
 ) -> None:
     """Draw the figures of a finished sweep once more and print its results.
 

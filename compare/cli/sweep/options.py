@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from compare.cli.command import refused
-from compare.cli.options import Folder, Settings, Tolerance, changed, chosen_from, count, positive, whole
+from compare.cli.options import Settings, Tolerance, changed, chosen_from, count, positive, whole
 from compare.cli.sweep.run import CHUNK, run_sweep
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 COARSE = 65
 
-MOST_CHUNK, MOST_SAMPLES = 10_000_000, 2**27
+MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**31, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
 """As of ``simulate``."""
@@ -100,6 +99,12 @@ Rows = Annotated[
         parser=rows,
     ),
 ]
+Values = Annotated[
+    int,
+    typer.Option(
+        metavar="N", help="Random starts at each value.", parser=whole("samples", 1, MOST_AT_A_VALUE)
+    ),
+]
 Until = Annotated[
     float | None,
     typer.Option(
@@ -130,6 +135,13 @@ Scheduler = Annotated[
         show_default="the cores of this machine",
     ),
 ]
+Output = Annotated[
+    str,
+    typer.Option(
+        metavar="DIR|URL",
+        help="Folder for the results, shared by all machines that compute, or s3://BUCKET/NAME.",
+    ),
+]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with the sweep that is there.")]
 
 
@@ -144,7 +156,7 @@ class Request:
     seed: Seed = 1
     chunk: Chunk = None
     scheduler: Scheduler = None
-    output: Folder = Path("sweep")
+    output: Output = "sweep"
     resume: Resume = False
 
     def common(self) -> dict[str, Any]:

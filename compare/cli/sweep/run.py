@@ -22,6 +22,7 @@ from compare.cli.progress import trajectories
 
 if TYPE_CHECKING:
     from compare.sweep.compute.executors import Executor
+    from compare.sweep.compute.files import Files
     from compare.sweep.compute.store import SweepStore
     from compare.sweep.define.plan import Plan
 
@@ -32,63 +33,82 @@ CHUNK = 32768
 """Trajectories in a chunk, unless another number is asked for."""
 
 
-def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, folder: Path, resume: bool) -> int:
+def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
     """Run a sweep, or the rest of it; print and draw its results."""
     from compare.run.workers import lacks_memory
     from compare.sweep.compute.executors import ClusterError
-    from compare.sweep.compute.run import OtherCodeError, run
+    from compare.sweep.compute.files import Files, StoreError
+    from compare.sweep.compute.run import run
     from compare.sweep.compute.store import SweepStore
+    from compare.sweep.compute.work import OtherCodeError
 
-    path = folder / STORE
     with refused():
-        check_folder(folder)
-        store = _there(path, plan, chunk, resume)
+        folder = _checked(place)
+        files = Files.at(folder.below(STORE))
+        store = _there(files, plan, chunk, resume)
     try:
         with _executor(scheduler) as executor, trajectories() as progress:
             if store is None:
-                store = SweepStore.create(path, plan, chunk or CHUNK)
+                store = SweepStore.create(files.url, plan, chunk or CHUNK)
             run(store, executor, progress)
+    except FileExistsError:
+        return say(_already(files), BAD_INPUT)
     except (ClusterError, OtherCodeError) as error:
         return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
-    except (OSError, MemoryError) as error:
+    except (OSError, MemoryError, StoreError) as error:
         if lacks_memory(error):
             return say(
                 "there is not enough memory. The same command with --resume goes on.", SOMETHING_DIFFERS
             )
-        reason = error.strerror or str(error)  # type: ignore[union-attr]
         return say(
-            f"can't write to {str(path)!r}: {reason}. What is written stays valid; "
-            "the same command with --resume goes on.",
-            BAD_INPUT,
+            f"{error}. What is written stays valid; the same command with --resume goes on.", BAD_INPUT
         )
     except KeyboardInterrupt:
         return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
     finally:
         if store is not None and store.broken:
-            say(f"{str(path)!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
+            say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
     return finish(store, folder)
 
 
-def _there(path: Path, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
+def _checked(place: str) -> Files:
+    """Return the files at a folder or URL; raise ``ValueError`` where none can be written."""
+    from compare.sweep.compute.files import Files, StoreError, is_remote
+
+    files = Files.at(place)
+    if not is_remote(place):
+        check_folder(Path(place))
+        return files
+    try:
+        files.write({f"{STORE}.try": b""})
+        files.remove(f"{STORE}.try")
+    except StoreError as error:
+        raise ValueError(str(error)) from None
+    return files
+
+
+def _already(files: Files) -> str:
+    return f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+
+
+def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
     from compare.sweep.compute.stamp import sweep_stamp
-    from compare.sweep.compute.store import SweepStore
+    from compare.sweep.compute.store import SweepStore, is_free
 
-    if not path.exists():
+    if is_free(files):
         return None
-    store = SweepStore.open(path)
+    store = SweepStore.open(files.url)
     if store.plan != plan:
-        raise ValueError(f"{str(path)!r} belongs to another sweep: take another --output")
+        raise ValueError(f"{files.url!r} belongs to another sweep: take another --output")
     if not resume:
-        raise ValueError(
-            f"{str(path)!r} is there already: --resume goes on with it, or take another --output"
-        )
+        raise ValueError(_already(files))
     if store.stamp != sweep_stamp():
         raise ValueError(
-            f"{str(path)!r} was computed by other code or libraries ({store.stamp}): take another --output"
+            f"{files.url!r} was computed by other code or libraries ({store.stamp}): take another --output"
         )
     if chunk not in (None, store.chunk):
-        raise ValueError(f"chunk = {chunk}: {str(path)!r} has chunks of {store.chunk}")
+        raise ValueError(f"chunk = {chunk}: {files.url!r} has chunks of {store.chunk}")
     return store
 
 
@@ -110,7 +130,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
         yield cluster
 
 
-def finish(store: SweepStore, folder: Path) -> int:
+def finish(store: SweepStore, folder: Files) -> int:
     """Print and draw the results; return whether the plain reference finds the same."""
     from compare.sweep.show.figures import write_figures
     from compare.sweep.show.summary import same_ends, summary
@@ -119,16 +139,18 @@ def finish(store: SweepStore, folder: Path) -> int:
     with printing():
         for line in summary(store):
             print(line)
-        print(f"Results: {store.path}; figures: {', '.join(str(path) for path in written)}")
+        print(f"Results: {store.path}; figures: {', '.join(written)}")
     return FINE if same_ends(store) else SOMETHING_DIFFERS
 
 
-def redraw(folder: Path) -> None:
+def redraw(place: str) -> None:
     """Draw and print a finished sweep once more; raise ``BadInputError`` for one that is not finished."""
+    from compare.sweep.compute.files import Files
     from compare.sweep.compute.store import SweepStore
 
     with refused():
-        store = SweepStore.open(folder / STORE)
+        folder = Files.at(place)
+        store = SweepStore.open(folder.below(STORE))
         _check_finished(store)
     finish(store, folder)
 
@@ -140,6 +162,6 @@ def _check_finished(store: SweepStore) -> None:
         return
     if store.broken:
         raise ValueError(
-            f"{str(store.path)!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
+            f"{store.path!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
         )
-    raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
+    raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")

@@ -1,9 +1,9 @@
-"""Results of a whole sweep as labelled arrays."""
+"""Results of a whole sweep as labelled arrays, written block by block wherever there is room."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 
 from compare.claims import shares
 from compare.claims.shares import Share
+from compare.sweep.compute.branches import known_branches
 from compare.sweep.compute.curves import curves
-from compare.sweep.compute.store import Round, flags
+from compare.sweep.compute.motions import Motion, matched, motions_of
+from compare.sweep.compute.round import Arrays, Chunks, Round
+from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
+from compare.sweep.compute.store import Large, flags, write_piece
 from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import BASES, Basin, Map, Plan, RandomBasin, Uncertainty
+from compare.sweep.define.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import RESULTS, components, units
 from compare.sweep.define.refinement import Grid
 from reference_model.ensemble import EndState
@@ -22,6 +26,9 @@ from reference_model.systems import System
 
 SHOWN = ("end", "time", "least_radius", "largest_radius", "slip_power")
 """What of a trajectory is labelled; its state stays with its round."""
+
+BLOCK = 1 << 17
+"""Trajectories of a block, about: few enough to be nothing beside the libraries in memory."""
 
 ENDS = [end.name.lower() for end in EndState]
 
@@ -33,84 +40,253 @@ ends as a whirl and 0 elsewhere.
 """
 
 Variables = dict[str, tuple[Any, ...]]
+Values = dict[str, NDArray[Any]]
 
 
-def result_of(plan: Plan, rounds: Sequence[Round], grid: Grid | None) -> xr.Dataset:
-    """Return the labelled results of ``plan``, all of whose rounds are done; ``grid`` is what a basin came to."""
-    if isinstance(plan, Basin) and grid is not None:
-        return _basin(plan, rounds, grid)
-    (only,) = rounds
-    if isinstance(plan, Map):
-        return _map(plan, only)
+class Block(NamedTuple):
+    """Trajectories ``first`` to ``last`` of a plan, and where they stand in the labelled arrays."""
+
+    first: int
+    last: int
+    where: tuple[slice, ...]
+
+
+class Part(NamedTuple):
+    """Trajectories of a block that were simulated in one round: their places there, and in the block."""
+
+    chunks: Chunks
+    where: slice
+    places: slice | NDArray[np.int64]
+
+
+class Labelled(NamedTuple):
+    """What is known of a block when it is written.
+
+    The digests of its files; how many trajectories ended as each of ``EndState``, shape (rows, ends), a row for each
+    value of a continuation and else a single one; what it adds to the sensitivities; the motions at each value.
+    """
+
+    digests: dict[str, str]
+    counts: NDArray[np.int64]
+    moments: Moments | None
+    motions: list[list[Motion]]
+
+
+def blocks_of(plan: Plan) -> list[Block]:
+    """Return the blocks of a plan's trajectories, which no number of chunks or threads changes."""
+    if isinstance(plan, RandomBasin):
+        return [Block(i, j, (slice(i, j),)) for i, j in _ranges(plan.samples, BLOCK)]
     if isinstance(plan, Uncertainty):
-        return _uncertainty(plan, only)
-    assert isinstance(plan, RandomBasin)
-    return _random_basin(plan, only)
+        rows = min(plan.samples // GROUPS, 1 << (BLOCK // plan.row).bit_length() - 1)
+        ranges = _ranges(plan.samples, rows)
+        return [Block(i * plan.row, j * plan.row, (slice(BASES * i, BASES * j),)) for i, j in ranges]
+    if isinstance(plan, Continuation):
+        ranges = _ranges(plan.x.points, _rows(plan))
+        across = plan.samples
+        return [Block(i * across, j * across, (slice(i, j), slice(0, across))) for i, j in ranges]
+    assert isinstance(plan, Basin | Map)
+    rows, across = _rows(plan), plan.x.points
+    planes = len(plan.starts) if isinstance(plan, Map) else 1
+    blocks = []
+    for plane in range(planes):
+        before = plane * plan.y.points
+        for i, j in _ranges(plan.y.points, rows):
+            where: tuple[slice, ...] = (slice(i, j), slice(0, across))
+            if isinstance(plan, Map):
+                where = (slice(plane, plane + 1), *where)
+            blocks.append(Block((before + i) * across, (before + j) * across, where))
+    return blocks
 
 
-def _basin(plan: Basin, rounds: Sequence[Round], grid: Grid) -> xr.Dataset:
-    dimensions = (plan.y.name, plan.x.name)
+def _ranges(count: int, size: int) -> list[tuple[int, int]]:
+    return [(first, min(first + size, count)) for first in range(0, count, size)]
+
+
+def _rows(plan: Basin | Map | Continuation) -> int:
+    """Return how many rows of a plane, or values of a continuation, make a block."""
+    if isinstance(plan, Continuation):
+        return max(1, min(plan.x.points, BLOCK // plan.samples))
+    return max(1, min(plan.y.points, BLOCK // plan.x.points))
+
+
+def large_of(plan: Plan) -> dict[str, Large]:
+    """Return the labelled arrays that have a value for each trajectory."""
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    pieces: tuple[int, ...]
+    if isinstance(plan, Basin | Map):
+        dimensions, shape = (plan.y.name, plan.x.name), (plan.y.points, plan.x.points)
+        pieces = (_rows(plan), plan.x.points)
+        if isinstance(plan, Map):
+            dimensions, shape, pieces = ("start", *dimensions), plan.shape, (1, *pieces)
+    elif isinstance(plan, Continuation):
+        dimensions, shape = (plan.x.name, "sample"), (plan.x.points, plan.samples)
+        pieces = (_rows(plan), plan.samples)
+    else:
+        assert isinstance(plan, RandomBasin | Uncertainty)
+        block = blocks_of(plan)[0].where[0].stop
+        dimensions, pieces = ("sample",), (block,)
+        shape = (plan.samples * (BASES if isinstance(plan, Uncertainty) else 1),)
+
+    def large(dtype: str, attributes: dict[str, Any]) -> Large:
+        return Large(dimensions, shape, pieces, dtype, attributes)
+
+    found: dict[str, Large] = {}
+    if isinstance(plan, RandomBasin | Uncertainty):
+        inputs = plan.varied if isinstance(plan, Uncertainty) else (plan.x, plan.y)
+        found = {one.name: large("f8", {"units": units(plan.system)[one.name]}) for one in inputs}
+    for name in SHOWN:
+        attributes = {"long_name": RESULTS[name].meaning, "units": RESULTS[name].unit}
+        found[name] = large(RESULTS[name].dtype, attributes | flags(name))
+    if isinstance(plan, Map):
+        found["modulation"] = large("f8", {"long_name": "(largest − least)/(largest + least) radius"})
+    if isinstance(plan, Basin):
+        meaning = {"long_name": "whether the trajectory was simulated; the others end as those around them"}
+        found["simulated"] = large("?", meaning)
+    return found
+
+
+def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
+    """Return the trajectories of a block among those of the rounds."""
+    parts = []
+    for one in rounds:
+        if isinstance(one.numbers, range):  # all there are
+            where = slice(block.first, block.last)
+            parts.append(Part(one.chunks, where, slice(None)))
+        else:
+            start, stop = np.searchsorted(one.numbers, (block.first, block.last)).tolist()
+            if start < stop:
+                where = slice(start, stop)
+                parts.append(Part(one.chunks, where, one.numbers[where] - block.first))
+    return parts
+
+
+def label(
+    arrays: Arrays, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
+) -> Labelled:
+    """Write the labelled results of a block; ``grid``: what a basin came to there, ends and which are simulated."""
+    found = {name: _found(name, block, parts) for name in SHOWN}
+    sensitive, motions = None, list[list[Motion]]()
+    numbers = range(block.first, block.last)
+    values: Values = dict(found)
+    if isinstance(plan, Basin):
+        assert grid is not None
+        values["end"], values["simulated"] = (part.ravel() for part in grid)
+    elif isinstance(plan, Map):
+        least, largest = found["least_radius"], found["largest_radius"]
+        with np.errstate(invalid="ignore"):
+            values["modulation"] = np.where(largest == 0.0, 0.0, (largest - least) / (largest + least))
+    elif isinstance(plan, Continuation):
+        table = [found[name].reshape(-1, plan.samples) for name in ("end", "least_radius", "largest_radius")]
+        motions = [motions_of(*row) for row in zip(*table, strict=True)]
+    elif isinstance(plan, RandomBasin):
+        states, _ = plan.trajectories(numbers)
+        places = list(components(plan.system))
+        values |= {axis.name: states[:, places.index(axis.name)] for axis in (plan.x, plan.y)}
+    else:
+        assert isinstance(plan, Uncertainty)
+        sensitive = moments(_sensitive(plan, found, _found("states", block, parts)))
+        drawn = np.arange(block.first, block.last).reshape(-1, plan.row)[:, :BASES].ravel()
+        values = plan.values(drawn) | {name: all_[drawn - block.first] for name, all_ in found.items()}
+    shape = tuple(at.stop - at.start for at in block.where)
+    digests = write_piece(arrays, {name: one.reshape(shape) for name, one in values.items()}, block.where)
+    ends = values["end"].reshape(-1, plan.samples) if isinstance(plan, Continuation) else [values["end"]]
+    counts = np.array([shares.counted(row) for row in ends])
+    return Labelled(digests, counts, sensitive, motions)
+
+
+def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
+    """Return a result of the trajectories of a block, shape (n,) or (n, components); NaN or 0 where there is none."""
+    found = [(part.places, part.chunks.read(name, part.where)) for part in parts]
+    more = found[0][1].shape[1:] if found else ()
+    dtype = np.dtype(RESULTS[name].dtype)
+    values = np.full((block.last - block.first, *more), np.nan if dtype.kind == "f" else 0, dtype)
+    for places, there in found:
+        values[places] = there
+    return values
+
+
+def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArray[Any]:
+    """Return that of which sensitivities are given, shape (results, rows, 2 + quantities)."""
+    last_radius = np.hypot(*states[:, :2].T)
+    radius = np.where(found["end"] == EndState.UNDECIDED, last_radius, found["largest_radius"])
+    return np.stack((radius, found["end"] == EndState.WHIRL)).reshape(len(SENSITIVE), -1, plan.row)
+
+
+def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Dataset:
+    """Return what is labelled of the whole sweep, from what is known of its blocks in their order."""
+    rows = np.concatenate([one.counts for one in found])
+    counts = np.sum(rows, axis=0)
+    variables: Variables = {"count": (("end_state",), counts, {"long_name": "how many end like this"})}
+    coordinates: dict[str, Any] = {"end_state": ENDS}
+    if isinstance(plan, Basin | Map):
+        axes = (plan.y, plan.x)
+        coordinates |= _coordinates(plan.system, axes)
+    if isinstance(plan, Basin):
+        assert grid is not None
+        variables |= _shares(shares.of_grid(grid.ends), shares.GRID)
+    elif isinstance(plan, Map):
+        coordinates["component"] = list(components(plan.system))
+        variables["initial_state"] = (("start", "component"), np.array(plan.starts))
+    elif isinstance(plan, Continuation):
+        coordinates |= _coordinates(plan.system, (plan.x,))
+        columns = [_shares(shares.of_counts(row), shares.SAMPLE) for row in rows]
+        for name, (_, _, *attributes) in columns[0].items():
+            values = np.array([column[name][1] for column in columns])
+            variables[name] = ((plan.x.name, "end_state"), values, *attributes)
+        variables |= _motions(plan, [motions for one in found for motions in one.motions])
+    else:
+        variables |= _shares(shares.of_counts(counts), shares.SAMPLE)
+    if isinstance(plan, Uncertainty):
+        coordinates |= {"quantity": list(SENSITIVE), "uncertain": [one.name for one in plan.varied]}
+        blocks = [one.moments for one in found if one.moments is not None]
+        for name, values in indices(blocks)._asdict().items():
+            variables[f"sobol_{name}"] = (("quantity", "uncertain"), values)
+    return xr.Dataset(variables, coords=coordinates)
+
+
+def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables:
+    """Return the motions that continue each other, NaN where one is not there."""
+    branches = matched(found, lambda motion: motion.end)
+    ends = [next(iter(branch.values())).end for branch in branches]
+    variables: Variables = {
+        "motion_end": (("motion",), np.array(ends, dtype="u1"), flags("end")),
+        **_along(plan, "motion", branches, ("least", "largest")),
+    }
+    intervals = np.full((3, len(branches), plan.x.points), np.nan)
+    for j, branch in enumerate(branches):
+        for i, motion in branch.items():
+            intervals[:, j, i] = shares.of_count(motion.starts, plan.samples)
+    for name, values in zip(
+        ("motion_share", "motion_share_low", "motion_share_high"), intervals, strict=True
+    ):
+        variables[name] = (("motion", plan.x.name), values)
+    return variables
+
+
+def _along(
+    plan: Continuation, name: str, branches: Sequence[Mapping[int, Any]], fields: Sequence[str]
+) -> Variables:
+    """Return fields of motions along the axis, each of shape (branches, values)."""
     variables: Variables = {}
-    for name in SHOWN[1:]:
-        values = np.full(grid.ends.shape, np.nan)
-        for one in rounds:
-            values.flat[np.asarray(one.numbers)] = one.read(name)
-        variables[name] = _variable(name, dimensions, values)
-    variables["end"] = _variable("end", dimensions, grid.ends)
-    attributes = {"long_name": "whether the trajectory was simulated; the others end as those around them"}
-    variables["simulated"] = (dimensions, grid.simulated, attributes)
+    for field in fields:
+        values = np.full((len(branches), plan.x.points), np.nan)
+        for j, branch in enumerate(branches):
+            for i, motion in branch.items():
+                values[j, i] = getattr(motion, field)
+        attributes = {"long_name": f"{field} radius", "units": "m"} if field != "stable" else {}
+        variables[f"{name}_{field}"] = ((name, plan.x.name), values, attributes)
+    return variables
+
+
+def branches_of(plan: Continuation) -> xr.Dataset:
+    """Return the motions that formulas and continuation give; ``known_stable`` is 1 where one is stable, else 0."""
+    found = known_branches(plan)
+    meanings = [next(iter(branch.values())).meaning for branch in found]
     return xr.Dataset(
-        variables | _shares(shares.of_grid(grid.ends), shares.GRID),
-        coords=_coordinates(plan.system, (plan.y, plan.x)) | {"end_state": ENDS},
+        _along(plan, "known", found, ("least", "largest", "stable")),
+        coords=_coordinates(plan.system, (plan.x,)) | {"known": np.array(meanings, dtype=str)},
     )
-
-
-def _random_basin(plan: RandomBasin, found: Round) -> xr.Dataset:
-    states, _ = plan.trajectories(found.numbers)
-    places = list(components(plan.system))
-    variables: Variables = {
-        axis.name: _input(plan.system, axis.name, states[:, places.index(axis.name)])
-        for axis in (plan.x, plan.y)
-    }
-    variables |= {name: _variable(name, ("sample",), found.read(name)) for name in SHOWN}
-    variables |= _shares(shares.of_sample(variables["end"][1]), shares.SAMPLE)
-    return xr.Dataset(variables, coords={"end_state": ENDS})
-
-
-def _map(plan: Map, found: Round) -> xr.Dataset:
-    dimensions = ("start", plan.y.name, plan.x.name)
-    variables = {name: _variable(name, dimensions, found.read(name).reshape(plan.shape)) for name in SHOWN}
-    least, largest = variables["least_radius"][1], variables["largest_radius"][1]
-    with np.errstate(invalid="ignore"):
-        modulation = np.where(largest == 0.0, 0.0, (largest - least) / (largest + least))
-    attributes = {"long_name": "(largest − least)/(largest + least) radius"}
-    variables["modulation"] = (dimensions, modulation, attributes)
-    variables["initial_state"] = (("start", "component"), np.array(plan.starts))
-    return xr.Dataset(
-        variables,
-        coords=_coordinates(plan.system, (plan.y, plan.x)) | {"component": list(components(plan.system))},
-    )
-
-
-def _uncertainty(plan: Uncertainty, found: Round) -> xr.Dataset:
-    """Return the independent draws, and the sensitivities that come from all trajectories."""
-    from compare.sweep.compute.sensitivity import indices
-
-    tables = {name: found.read(name).reshape(plan.samples, plan.row) for name in SHOWN}
-    draws = np.arange(plan.samples * plan.row).reshape(plan.samples, plan.row)[:, :BASES].ravel()
-    variables: Variables = {
-        name: _input(plan.system, name, values) for name, values in plan.values(draws).items()
-    }
-    for name, table in tables.items():
-        variables[name] = _variable(name, ("sample",), table[:, :BASES].ravel())
-    variables |= _shares(shares.of_sample(variables["end"][1]), shares.SAMPLE)
-    last_radius = np.hypot(*found.read("states")[:, :2].T).reshape(plan.samples, plan.row)
-    radius = np.where(tables["end"] == EndState.UNDECIDED, last_radius, tables["largest_radius"])
-    sensitive = np.stack((radius, tables["end"] == EndState.WHIRL))
-    for name, values in indices(sensitive)._asdict().items():
-        variables[f"sobol_{name}"] = (("quantity", "uncertain"), values)
-    names = [uncertain.name for uncertain in plan.varied]
-    return xr.Dataset(variables, coords={"end_state": ENDS, "quantity": list(SENSITIVE), "uncertain": names})
 
 
 def curves_of(plan: Map) -> xr.Dataset:
@@ -126,15 +302,6 @@ def curves_of(plan: Map) -> xr.Dataset:
         },
         coords={"curve": [curve.meaning for curve in found]},
     )
-
-
-def _variable(name: str, dimensions: tuple[str, ...], values: NDArray[Any]) -> tuple[Any, ...]:
-    attributes = {"long_name": RESULTS[name].meaning, "units": RESULTS[name].unit}
-    return dimensions, values, attributes | flags(name)
-
-
-def _input(system: System, name: str, values: NDArray[Any]) -> tuple[Any, ...]:
-    return ("sample",), values, {"units": units(system)[name]}
 
 
 def _coordinates(system: System, axes: Sequence[Axis]) -> dict[str, Any]:

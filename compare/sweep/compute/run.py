@@ -5,30 +5,36 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from compare.sweep.compute.executors import Executor, Task
-from compare.sweep.compute.results import curves_of, result_of
-from compare.sweep.compute.store import Round, SweepStore, flags
-from compare.sweep.compute.work import Chunk, Plain, compute, recompute
-from compare.sweep.define.plan import Map
+from compare.sweep.compute.executors import Executor, InProcess, Task
+from compare.sweep.compute.results import (
+    Labelled,
+    blocks_of,
+    branches_of,
+    curves_of,
+    label,
+    labels_of,
+    large_of,
+    parts_of,
+)
+from compare.sweep.compute.round import Chunks, Round
+from compare.sweep.compute.store import SweepStore, flags
+from compare.sweep.compute.work import Plain, recompute, simulate_chunk
+from compare.sweep.define.plan import Continuation, Map, Plan
 from compare.sweep.define.quantities import components
+from compare.sweep.define.refinement import Grid
 
 CHECKED = 20
 """Trajectories of a sweep that the plain reference simulates again."""
 
-CHECK, RESULT, CURVES = "check", "result", "curves"
+CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
 """Groups of a store besides its rounds."""
 
 Progress = Callable[[str, int, int], None]
 """Takes what is done, how much of it, and how much there is."""
-
-
-class OtherCodeError(RuntimeError):
-    """Workers have another version of the code than this process; the message says so."""
 
 
 def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
@@ -36,27 +42,38 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))
-    if isinstance(store.plan, Map) and store.get(CURVES) is None:
-        store.put(CURVES, curves_of(store.plan))
+    for name, dataset in _theory(store.plan).items():
+        if store.get(name) is None:
+            store.put(name, dataset())
     if store.get(RESULT) is None:
-        store.put(RESULT, result_of(store.plan, rounds, grid))
+        _label(store, rounds, grid, executor, progress)
+
+
+def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
+    """Return what formulas say of a plan: the group that it is in, and how it comes about."""
+    if isinstance(plan, Map):
+        return {CURVES: lambda: curves_of(plan)}
+    return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
 
 
 def finished(store: SweepStore) -> bool:
     """Return whether all of the sweep is there as it was written; what is not is in ``store.broken``."""
-    groups = (CHECK, RESULT, *((CURVES,) if isinstance(store.plan, Map) else ()))
+    groups = (CHECK, RESULT, *_theory(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None
     with suppress(StopIteration):
         for i in itertools.count():
             found = store.look(i, plan.send(ends))  # type: ignore[arg-type]  # None starts it
-            if found is None or not np.all(found.done):
+            if found is None:
                 return False
-            ends = found.read("end")
+            _look_at_chunks(store, i, found, InProcess())
+            if not np.all(found.done):
+                return False
+            ends = found.ends
     return not missing
 
 
-def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tuple[list[Round], Any]:
+def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tuple[list[Round], Grid | None]:
     """Simulate what is missing; return all rounds, and what the plan returns after the last."""
     plan = store.plan.rounds()
     rounds: list[Round] = []
@@ -67,12 +84,24 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
         except StopIteration as last:
             return rounds, last.value
         rounds.append(store.round(len(rounds), numbers))
+        _look_at_chunks(store, len(rounds) - 1, rounds[-1], executor)
         _simulate(store, rounds, executor, progress)
-        ends = rounds[-1].read("end")
+        ends = rounds[-1].ends
+
+
+def _look_at_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
+    """Note which chunks of round ``i`` are done, and which of those that were written are broken."""
+    tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.marked)
+    broken = []
+    for chunk, whole in executor.run(tasks):
+        found.done[chunk] = whole
+        if not whole:
+            broken.append(chunk)
+    store.tell_broken(i, sorted(broken), len(found.chunks))
 
 
 def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress) -> None:
-    """Simulate the missing chunks of the last of ``rounds``."""
+    """Have the missing chunks of the last of ``rounds`` simulated and written."""
     current = rounds[-1]
     what = f"round {len(rounds)}" if len(rounds) > 1 else "trajectories"
     total = len(current.numbers)
@@ -81,20 +110,36 @@ def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, pr
 
     def tasks() -> Iterator[Task]:
         for chunk in np.flatnonzero(~current.done).tolist():
-            yield Task(chunk, compute, (store.plan, current.numbers_of(chunk), executor.threads), True)
+            numbers = current.numbers_of(chunk)
+            arguments = (current.chunks, chunk, store.plan, numbers, executor.threads, store.stamp)
+            yield Task(chunk, simulate_chunk, arguments, True)
 
-    for chunk, found in executor.run(tasks()):
-        _require_same_code(store, found)
-        current.write(chunk, found.results)
-        finished += len(current.numbers_of(chunk))
+    for chunk, count in executor.run(tasks()):
+        current.done[chunk] = True
+        finished += count
         progress(what, finished, total)
 
 
-def _require_same_code(store: SweepStore, found: Chunk) -> None:
-    if found.stamp != store.stamp:
-        raise OtherCodeError(
-            f"a worker has other code or libraries ({found.stamp}) than this process ({store.stamp})"
-        )
+def _label(
+    store: SweepStore, rounds: Sequence[Round], grid: Grid | None, executor: Executor, progress: Progress
+) -> None:
+    """Have the results labelled, block by block."""
+    plan, large = store.plan, large_of(store.plan)
+    arrays = store.begin(RESULT, xr.Dataset(), large)
+    blocks = blocks_of(plan)
+
+    def tasks() -> Iterator[Task]:
+        for i, block in enumerate(blocks):
+            of_grid = None if grid is None else (grid.ends[block.where], grid.simulated[block.where])
+            yield Task(i, label, (arrays, plan, block, parts_of(block, rounds), of_grid), True)
+
+    found: dict[int, Labelled] = {}
+    for i, labelled in executor.run(tasks()):
+        found[i] = labelled
+        progress("labelled results", len(found), len(blocks))
+    in_order = [found[i] for i in range(len(blocks))]
+    digests = {name: digest for one in in_order for name, digest in one.digests.items()}
+    store.end(RESULT, labels_of(plan, in_order, grid), large, digests)
 
 
 def _checked(
@@ -109,7 +154,7 @@ def _checked(
     where = [(rounds[i], int(place)) for i, place in zip(of_round, places, strict=True)]
     numbers = [int(one.numbers[place]) for one, place in where]
     time, end, states = (
-        [one.read(name, place) for one, place in where] for name in ("time", "end", "states")
+        [one.chunks.read(name, place) for one, place in where] for name in ("time", "end", "states")
     )
     tasks = [
         Task(i, recompute, (store.plan, numbers[i], float(time[i]), int(end[i])), False) for i in range(count)

@@ -1,12 +1,13 @@
-"""Which uncertain quantity an uncertain result depends on: Sobol's indices by SciPy."""
+"""Which uncertain quantity an uncertain result depends on: Sobol's indices (Saltelli et al. 2010), block by block."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import sobol_indices, t
 
 from compare.claims.shares import CONFIDENCE
 from compare.sweep.define.plan import BASES
@@ -32,24 +33,82 @@ class Indices(NamedTuple):
     total_error: FloatArray
 
 
-def indices(results: FloatArray) -> Indices:
-    """Return the indices of ``results``, shape (results, rows, 2 + quantities), in the order of the plan.
+class Moments(NamedTuple):
+    """What a block of rows adds to the indices.
 
-    The number of rows is a power of 2, at least ``LEAST_SAMPLES``.
+    Of the results f_A and f_B of both draws, for each result: number of rows, ``mean``, sum of ``squares`` of their
+    deviations from it, ``least`` and ``largest`` of all there are. With f_M of each mixture, of shape (results,
+    quantities): sums of (f_B − mean)(f_M − f_A), of f_M − f_A, and of its square.
     """
-    first, total = _indices(results)
-    groups = np.array([_indices(group) for group in np.split(results, GROUPS, axis=1)])
+
+    rows: int
+    mean: FloatArray
+    squares: FloatArray
+    least: FloatArray
+    largest: FloatArray
+    product: FloatArray
+    change: FloatArray
+    change_squared: FloatArray
+
+
+def moments(results: FloatArray) -> Moments:
+    """Return what rows of ``results``, shape (results, rows, 2 + quantities), in the order of the plan, come to."""
+    bases, change = results[..., :BASES], results[..., BASES:] - results[..., :1]
+    mean = np.mean(bases, axis=(1, 2))
+    deviations = bases - mean[:, np.newaxis, np.newaxis]
+    return Moments(
+        rows=results.shape[1],
+        mean=mean,
+        squares=np.sum(deviations**2, axis=(1, 2)),
+        least=np.min(results, axis=(1, 2)),
+        largest=np.max(results, axis=(1, 2)),
+        product=np.sum(deviations[..., 1:] * change, axis=1),
+        change=np.sum(change, axis=1),
+        change_squared=np.sum(change**2, axis=1),
+    )
+
+
+def indices(blocks: Sequence[Moments]) -> Indices:
+    """Return the indices from blocks of equally many rows in their order; ``GROUPS`` divides how many there are."""
+    size = len(blocks) // GROUPS
+    grouped = [reduce(_together, blocks[i * size : (i + 1) * size]) for i in range(GROUPS)]
+    of_groups = np.array([_indices(group) for group in grouped])
+    whole = reduce(_together, grouped)
+    first, total = _indices(whole)
+    from scipy.stats import t  # takes long, and most sweeps do without
+
     width = t.ppf(0.5 + 0.5 * CONFIDENCE, GROUPS - 1) / math.sqrt(GROUPS)
-    errors = width * np.std(groups, axis=0, ddof=1)
-    varies = np.ptp(results, axis=(1, 2)) > 0.0
+    errors = width * np.std(of_groups, axis=0, ddof=1)
+    varies = whole.largest > whole.least
     for array in (first, total, *errors):
         array[~varies] = np.nan
     return Indices(first, total, errors[0], errors[1])
 
 
-def _indices(results: FloatArray) -> tuple[FloatArray, FloatArray]:
-    f_a, f_b = results[..., 0], results[..., 1]
-    f_ab = np.moveaxis(results[..., BASES:], -1, 0)
-    found = sobol_indices(func={"f_A": f_a, "f_B": f_b, "f_AB": f_ab}, n=results.shape[1])
-    shape = (results.shape[0], results.shape[2] - BASES)
-    return found.first_order.reshape(shape), found.total_order.reshape(shape)
+def _together(one: Moments, other: Moments) -> Moments:
+    """Return the moments of the rows of both, by the formulas of Chan, Golub and LeVeque 1983."""
+    rows = one.rows + other.rows
+    apart = other.mean - one.mean
+    mean = one.mean + apart * (other.rows / rows)
+    return Moments(
+        rows=rows,
+        mean=mean,
+        squares=one.squares + other.squares + BASES * apart**2 * (one.rows * other.rows / rows),
+        least=np.minimum(one.least, other.least),
+        largest=np.maximum(one.largest, other.largest),
+        product=_about(one, mean) + _about(other, mean),
+        change=one.change + other.change,
+        change_squared=one.change_squared + other.change_squared,
+    )
+
+
+def _about(of: Moments, mean: FloatArray) -> FloatArray:
+    """Return the sum of (f_B − ``mean``)(f_M − f_A), about another mean than its own."""
+    return of.product + (of.mean - mean)[:, np.newaxis] * of.change
+
+
+def _indices(of: Moments) -> tuple[FloatArray, FloatArray]:
+    """Return first and total order, shape (results, quantities)."""
+    variance = of.squares[:, np.newaxis] / BASES
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a result that does not vary
+        return of.product / variance, 0.5 * of.change_squared / variance

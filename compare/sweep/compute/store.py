@@ -1,23 +1,25 @@
-"""Results of a sweep on disk: a Zarr store of xarray Datasets, valid at every moment.
+"""Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets, valid at every moment.
 
-- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, written chunk by chunk. A chunk counts
-  when ``checksum`` is that of its contents, which is written after all of it.
+- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose chunks are written by those who
+  simulate them (:mod:`compare.sweep.compute.round`).
 - ``check``, ``result``, ``curves``: written when all chunks are done.
 
-A group is made under another name and renamed when it is whole, with a checksum of its files. The attributes of the
-store have the plan, the code that computed it and its libraries, and their checksum. What does not have the contents
-that it was written with is computed again, and ``SweepStore.broken`` says so.
+A group is there once it has the file ``.zgroup``, which is written last, and as long as its files have the checksum
+in its attributes. The attributes of the store have the plan, the code that computed it and its libraries, and their
+checksum; who writes them first is the one who makes the store. What does not have the contents that it was written
+with is computed again, and ``SweepStore.broken`` says so.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import shutil
+import secrets
+import tempfile
 from collections.abc import Iterable, Mapping
+from fnmatch import fnmatch
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -25,6 +27,8 @@ import zarr
 from numpy.typing import NDArray
 
 from compare.run.stamp import version_of
+from compare.sweep.compute.files import Files, told
+from compare.sweep.compute.round import CHECKSUM, DESCRIPTION, Arrays, Chunks, Round, description_of
 from compare.sweep.compute.stamp import sweep_stamp
 from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
@@ -35,22 +39,36 @@ FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
 MOST_NAMED = 10
 """Chunks that a sentence lists."""
 
-PART = "part"
-"""Name of a group that is being written."""
-
 ROUND = "round-{}"
 
 MISSING = {"f8": np.nan, "u1": 255, "i8": -1}
 """What an array has where nothing is written, by its type: no result is like this."""
 
-
-CHECKSUM = "checksum"
+GROUP, GROUP_CONTENT = ".zgroup", json.dumps({"zarr_format": FORMAT["zarr_format"]}).encode()
 
 FILES_OF_GROUP = (".z*", "*/.z*", "*/[0-9]*")
-"""Those of a group that is written at once; what else may lie in a folder makes no difference."""
+"""Those of a group of which all is written before it counts; what else may lie in a folder makes no difference."""
 
-FILES_OF_ROUND = (".zgroup", "*/.z*", "component/[0-9]*")
+FILES_OF_ROUND = (
+    GROUP,
+    "component/0",
+    *(f"{name}/{file}" for name in (*RESULTS, CHECKSUM, "component") for file in (".zarray", ".zattrs")),
+)
 """Those of a round that are there before its chunks."""
+
+
+class Large(NamedTuple):
+    """An array that is written piece by piece: its dimensions, shape, and that of its pieces, type and attributes.
+
+    ``missing`` is what it has where nothing is written, None if all of it will be.
+    """
+
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    pieces: tuple[int, ...]
+    dtype: str
+    attributes: dict[str, Any]
+    missing: float | None = None
 
 
 class SweepStore:
@@ -58,8 +76,8 @@ class SweepStore:
 
     Parameters
     ----------
-    path : Path
-        Folder of the store.
+    files : Files
+        Of the store.
     plan : Plan
         What is computed.
     chunk : int
@@ -69,16 +87,23 @@ class SweepStore:
 
     """
 
-    def __init__(self, path: Path, plan: Plan, chunk: int, stamp: str) -> None:
-        self.path, self.plan, self.chunk, self.stamp = path, plan, chunk, stamp
+    def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str) -> None:
+        self.files, self.plan, self.chunk, self.stamp = files, plan, chunk, stamp
         self.broken: list[str] = []  # what is not as it was written, in words
         self._whole: set[str] = set()
+        self._description = description_of(files)
+
+    @property
+    def path(self) -> str:
+        """Where it is, in words."""
+        return self.files.url
 
     @classmethod
-    def create(cls, path: Path, plan: Plan, chunk: int) -> SweepStore:
-        """Make a store where nothing is yet; ``FileExistsError`` where something is."""
-        made = path.with_name(f"{path.name}.{PART}")
-        shutil.rmtree(made, ignore_errors=True)
+    def create(cls, path: str | Path, plan: Plan, chunk: int) -> SweepStore:
+        """Make a store where nothing is yet; ``FileExistsError`` where something is, or another was the first."""
+        files = Files.at(path)
+        if not is_free(files):
+            raise FileExistsError(files.url)
         libraries = ("friction-discs", "numpy", "scipy", "numba", "xarray", "zarr")
         attributes = {
             "title": f"friction-discs sweep: {plan.kind}",
@@ -86,19 +111,19 @@ class SweepStore:
             "chunk": chunk,
             "stamp": sweep_stamp(),
             "versions": json.dumps({name: version_of(name) for name in libraries}),
+            "id": secrets.token_hex(8),
         }
         attributes[CHECKSUM] = _checksum_of_text(attributes)
-        xr.Dataset(attrs=attributes).to_zarr(made, mode="w", **FORMAT)
-        os.rename(made, path)
-        return cls(path, plan, chunk, sweep_stamp())
+        files.write({GROUP: GROUP_CONTENT})
+        files.claim(DESCRIPTION, json.dumps(attributes).encode())
+        return cls(files, plan, chunk, sweep_stamp())
 
     @classmethod
-    def open(cls, path: Path) -> SweepStore:
+    def open(cls, path: str | Path) -> SweepStore:
         """Open a store; raise ``ValueError`` if there is none of a sweep, or its description is broken."""
+        files = Files.at(path)
         try:  # not by Zarr, which would look at all groups, and one of them may be broken
-            group, attributes = (
-                json.loads((path / name).read_text("utf-8")) for name in (".zgroup", ".zattrs")
-            )
+            group, attributes = (json.loads(files.read(name) or b"") for name in (GROUP, DESCRIPTION))
             whole = group["zarr_format"] == FORMAT["zarr_format"]
             whole = attributes.pop(CHECKSUM) == _checksum_of_text(attributes) and whole
             plan = plan_from_json(json.loads(attributes["plan"]))
@@ -106,197 +131,179 @@ class SweepStore:
         except (OSError, AttributeError, KeyError, TypeError, ValueError):
             whole = False
         if not whole:
-            raise ValueError(f"{str(path)!r} is no store of a sweep, or its description is broken")
-        return cls(path, plan, chunk, stamp)
+            raise ValueError(f"{files.url!r} is no store of a sweep, or its description is broken")
+        return cls(files, plan, chunk, stamp)
 
     def round(self, i: int, numbers: Numbers) -> Round:
         """Return round ``i`` of the trajectories ``numbers``, made if it is not there, mended if it is broken."""
-        found = self.look(i, numbers)
-        if found is None:
+        if not self.has(i):
             name = ROUND.format(i)
-            if (self.path / name).exists():
-                self._mend_round(name, len(numbers))
-            else:
-                self._make_round(name, len(numbers))
-            found = self.look(i, numbers)
-            assert found is not None
-        return found
+            self._seal(name, self._describe(name, *self._template(len(numbers))))
+        return self._round(i, numbers)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
         """Return round ``i`` of the trajectories ``numbers``, or None if it is not there or can't be read."""
+        return self._round(i, numbers) if self.has(i) else None
+
+    def has(self, i: int) -> bool:
+        """Return whether round ``i`` is described; what its chunks are is another question."""
         name = ROUND.format(i)
-        if not (self.path / name).exists():
-            return None
-        if _checksum_in(self.path / name) != _checksum(self.path / name, FILES_OF_ROUND):
-            self.broken.append(f"the description of {name}")
-            return None
-        found = Round(self.path / name, numbers, self.chunk)
-        if found.broken:
-            shown = ", ".join(map(str, found.broken[:MOST_NAMED]))
-            more = f" and {len(found.broken) - MOST_NAMED} more" if len(found.broken) > MOST_NAMED else ""
-            self.broken.append(f"of {len(found.done)} chunks of {name} these: {shown}{more}")
-        return found
+        if self.files.read(f"{name}/{GROUP}") is None:
+            return False
+        if name not in self._whole:
+            if self._checksum_in(name) != _checksum(self._digests(name, FILES_OF_ROUND)):
+                self.broken.append(f"the description of {name}")
+                return False
+            self._whole.add(name)
+        return True
 
-    def _make_round(self, name: str, count: int) -> None:
-        """Make arrays without chunks; they grow to their size before the group gets its name."""
-        self._make_template(count)
-        os.rename(self.path / PART, self.path / name)
-
-    def _mend_round(self, name: str, count: int) -> None:
-        """Write again what was there before the chunks, which are looked at afterwards."""
-        self._make_template(count)
-        for file in _files(self.path / PART, (*FILES_OF_ROUND, ".zattrs")):
-            target = self.path / name / file.relative_to(self.path / PART)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(file, target)
-        shutil.rmtree(self.path / PART)
-
-    def _make_template(self, count: int) -> None:
-        variables: dict[str, Any] = {}
-        encoding: dict[str, Any] = {}
-        shapes: dict[str, tuple[int, ...]] = {}
-        state = list(components(self.plan.system))
-        for variable, result in RESULTS.items():
-            more = (len(state),) if variable == "states" else ()
-            dimensions = ("trajectory", "component")[: 1 + len(more)]
-            attributes = {"long_name": result.meaning, "units": result.unit} | flags(variable)
-            variables[variable] = (dimensions, np.zeros((0, *more), result.dtype), attributes)
-            encoding[variable] = {"chunks": (self.chunk, *more), "_FillValue": MISSING[result.dtype]}
-            shapes[variable] = (count, *more)
-        meaning = "of all that is written of the chunk, 0 where nothing is"
-        variables[CHECKSUM] = ("chunk", np.zeros(0, "u8"), {"long_name": meaning})
-        encoding[CHECKSUM] = {"chunks": (1,), "_FillValue": 0}
-        shapes[CHECKSUM] = (-(-count // self.chunk),)
-        template = xr.Dataset(variables, coords={"component": state})
-        self._write(PART, template, encoding)
-        group = _arrays(self.path / PART)
-        for variable, shape in shapes.items():
-            group[variable].resize(shape)
-        _write_checksum(self.path / PART, FILES_OF_ROUND)
+    def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
+        """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
+        if chunks:
+            shown = ", ".join(map(str, chunks[:MOST_NAMED]))
+            more = f" and {len(chunks) - MOST_NAMED} more" if len(chunks) > MOST_NAMED else ""
+            self.broken.append(f"of {count} chunks of {ROUND.format(i)} these: {shown}{more}")
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
         """Write a group, in place of an older one."""
-        self._write(PART, dataset, {})
-        _write_checksum(self.path / PART, FILES_OF_GROUP)
-        shutil.rmtree(self.path / name, ignore_errors=True)
-        os.rename(self.path / PART, self.path / name)
-        self._whole.add(name)
+        self.files.remove(name)
+        self._seal(name, self._describe(name, dataset, {}))
 
-    def _write(self, name: str, dataset: xr.Dataset, encoding: Mapping[str, Any]) -> None:
-        shutil.rmtree(self.path / name, ignore_errors=True)
-        dataset.to_zarr(
-            self.path, group=name, mode="w", encoding=dict(encoding), write_empty_chunks=True, **FORMAT
-        )
+    def begin(self, name: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> Arrays:
+        """Begin a group, in place of an older one, with arrays that others write; :meth:`end` ends it."""
+        self.files.remove(name)
+        self._describe(name, dataset, large)
+        return self._arrays(name)
+
+    def end(
+        self, name: str, dataset: xr.Dataset, large: Mapping[str, Large], digests: Mapping[str, str]
+    ) -> None:
+        """End a group with what else is to be in it; ``digests`` are those of the files that others wrote."""
+        self._seal(name, self._describe(name, dataset, large) | dict(digests))
 
     def get(self, name: str) -> xr.Dataset | None:
-        """Return a group, or None if it is not there or broken."""
-        folder = self.path / name
-        if not folder.exists():
+        """Return a group, of which nothing is read yet, or None if it is not there or broken."""
+        if self.files.read(f"{name}/{GROUP}") is None:
             return None
-        if name not in self._whole and _checksum_in(folder) != _checksum(folder, FILES_OF_GROUP):
-            self.broken.append(name)
-            return None
-        self._whole.add(name)
-        group: xr.Dataset = xr.open_zarr(self.path, group=name, consolidated=False, chunks=None)
+        if name not in self._whole:
+            if self._checksum_in(name) != _checksum(self._digests(name, self._names(name))):
+                self.broken.append(name)
+                return None
+            self._whole.add(name)
+        group: xr.Dataset = xr.open_zarr(
+            self.files.below(name), consolidated=False, chunks=None, storage_options=self.files.options
+        )
         return group
 
+    def _arrays(self, name: str) -> Arrays:
+        return Arrays(self.files, self._description, name)
 
-class Round:
-    """The trajectories of a round on disk.
+    def _round(self, i: int, numbers: Numbers) -> Round:
+        return Round(Chunks(self._arrays(ROUND.format(i)), len(numbers), self.chunk), numbers)
 
-    ``done`` says for each chunk whether it is there with the contents that it was written with; ``broken`` are the
-    numbers of those that were written and are not.
-    """
+    def _template(self, count: int) -> tuple[xr.Dataset, dict[str, Large]]:
+        """Return what a round of ``count`` trajectories has besides its chunks."""
+        state = list(components(self.plan.system))
+        large: dict[str, Large] = {}
+        for name, result in RESULTS.items():
+            more = (len(state),) if name == "states" else ()
+            attributes = {"long_name": result.meaning, "units": result.unit} | flags(name)
+            dimensions = ("trajectory", "component")[: 1 + len(more)]
+            missing = MISSING[result.dtype]
+            large[name] = Large(
+                dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes, missing
+            )
+        meaning = {"long_name": "of all that is written of the chunk, 0 where nothing is"}
+        large[CHECKSUM] = Large(("chunk",), (-(-count // self.chunk),), (1,), "u8", meaning, 0)
+        return xr.Dataset(coords={"component": state}), large
 
-    def __init__(self, path: Path, numbers: Numbers, chunk: int) -> None:
-        self.numbers = numbers
-        self._chunk = chunk
-        self._arrays = _arrays(path)
-        marks = [self._mark(i) for i in range(-(-len(numbers) // chunk))]
-        found = [mark != 0 and mark == self._checksum(i) for i, mark in enumerate(marks)]
-        self.done: NDArray[np.bool_] = np.array(found, dtype=bool)
-        self.broken = [i for i, mark in enumerate(marks) if mark != 0 and not found[i]]
+    def _describe(self, name: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> dict[str, str]:
+        """Write all of a group but its pieces and what makes it count; return the digests of its files."""
+        with tempfile.TemporaryDirectory() as folder:
+            _make(folder, dataset, large)
+            made = Path(folder)
+            contents = {
+                path.relative_to(made).as_posix(): path.read_bytes()
+                for path in made.rglob("*")
+                if path.is_file() and path.parent != made
+            }
+        self.files.write({f"{name}/{file}": content for file, content in contents.items()})
+        return {file: digest_of(content) for file, content in ({GROUP: GROUP_CONTENT} | contents).items()}
 
-    def numbers_of(self, chunk: int) -> Numbers:
-        """Return the numbers of the trajectories of a chunk."""
-        return self.numbers[self._slice(chunk)]
+    def _seal(self, name: str, digests: Mapping[str, str]) -> None:
+        """Write the checksum of a group, and then that it is there."""
+        attributes = {CHECKSUM: _checksum(digests)}
+        self.files.write({f"{name}/{DESCRIPTION}": json.dumps(attributes).encode()})
+        self.files.write({f"{name}/{GROUP}": GROUP_CONTENT})
+        self._whole.add(name)
 
-    def write(self, chunk: int, results: Mapping[str, NDArray[Any]]) -> None:
-        """Write a chunk, and then that it is written."""
-        for name, values in results.items():
-            self._arrays[name][self._slice(chunk)] = values
-        self._arrays[CHECKSUM][chunk] = _checksum_of_arrays(chunk, results)
-        self.done[chunk] = True
+    def _names(self, group: str) -> Iterable[str]:
+        names = (name[len(group) + 1 :] for name in self.files.names(group))
+        return (name for name in names if any(fnmatch(name, pattern) for pattern in FILES_OF_GROUP))
 
-    def read(self, name: str, where: int | slice = slice(None)) -> NDArray[Any]:
-        """Return results of trajectories in the order of ``numbers``."""
-        return np.asarray(self._arrays[name][where])
+    def _digests(self, group: str, names: Iterable[str]) -> dict[str, str]:
+        """Return the digests of files of a group, but for its attributes, which hold what they come to."""
+        contents = ((name, self.files.read(f"{group}/{name}")) for name in names if name != DESCRIPTION)
+        return {name: digest_of(content) for name, content in contents if content is not None}
 
-    def _mark(self, chunk: int) -> int | None:
-        """Return the checksum that was written with a chunk, 0 if there is none, None if it can't be read."""
+    def _checksum_in(self, group: str) -> str | None:
+        """Return the checksum that a group was written with, None if there is none that can be read."""
         try:
-            return int(self._arrays[CHECKSUM][chunk])
-        except MemoryError:
-            raise
-        except Exception:  # whatever is raised by a file that may have any contents
+            return str(json.loads(self.files.read(f"{group}/{DESCRIPTION}") or b"")[CHECKSUM])
+        except (ValueError, KeyError, TypeError):
             return None
 
-    def _checksum(self, chunk: int) -> int | None:
-        """Return the checksum of what is there of a chunk, None if it can't be read."""
-        try:
-            return _checksum_of_arrays(chunk, {name: self.read(name, self._slice(chunk)) for name in RESULTS})
-        except MemoryError:
-            raise
-        except Exception:  # as above
-            return None
 
-    def _slice(self, chunk: int) -> slice:
-        return slice(chunk * self._chunk, min((chunk + 1) * self._chunk, len(self.numbers)))
+def is_free(files: Files) -> bool:
+    """Return whether nothing is there, but what one leaves who is killed before a store has its description."""
+    return set(files.inside()) <= {GROUP}
 
 
-def _checksum_of_arrays(chunk: int, results: Mapping[str, NDArray[Any]]) -> int:
-    """Return the checksum of the results of a chunk, which is never 0."""
-    digest = hashlib.blake2b(str(chunk).encode(), digest_size=8)
-    for name, result in RESULTS.items():
-        digest.update(np.ascontiguousarray(results[name], dtype=result.dtype).tobytes())
-    return int.from_bytes(digest.digest(), "little") or 1
+def write_piece(
+    arrays: Arrays, values: Mapping[str, NDArray[Any]], where: tuple[slice, ...]
+) -> dict[str, str]:
+    """Write a piece of each array of a group; return the digests of its files."""
+    digests = {}
+    with told(arrays.files.url):
+        for name, piece in values.items():
+            array = arrays.open(name)
+            array[where] = piece
+            place = ".".join(str(at.start // size) for at, size in zip(where, array.chunks, strict=True))
+            content = arrays.files.read(f"{arrays.group}/{name}/{place}")
+            if content is not None:  # it is not if nothing differs from what is missing
+                digests[f"{name}/{place}"] = digest_of(content)
+    return digests
+
+
+def digest_of(content: bytes) -> str:
+    """Return the digest of the contents of a file."""
+    return hashlib.blake2b(content, digest_size=8).hexdigest()
+
+
+def _checksum(digests: Mapping[str, str]) -> str:
+    """Return the checksum of the files of a group from their digests."""
+    return _checksum_of_text(digests)
 
 
 def _checksum_of_text(attributes: Mapping[str, Any]) -> str:
-    return hashlib.blake2b(json.dumps(attributes, sort_keys=True).encode(), digest_size=8).hexdigest()
+    return digest_of(json.dumps(attributes, sort_keys=True).encode())
 
 
-def _files(folder: Path, patterns: Iterable[str]) -> list[Path]:
-    """Return the files below ``folder`` whose paths are like one of ``patterns``."""
-    return sorted({file for pattern in patterns for file in folder.glob(pattern) if file.is_file()})
-
-
-def _checksum(folder: Path, patterns: Iterable[str]) -> str:
-    """Return the checksum of files of a group, but for its attributes, which hold this."""
-    digest = hashlib.blake2b(digest_size=8)
-    for file in _files(folder, patterns):
-        if file != folder / ".zattrs":
-            digest.update(f"{file.relative_to(folder).as_posix()} {file.stat().st_size} ".encode())
-            digest.update(file.read_bytes())
-    return digest.hexdigest()
-
-
-def _write_checksum(folder: Path, patterns: Iterable[str]) -> None:
-    (folder / ".zattrs").write_text(json.dumps({CHECKSUM: _checksum(folder, patterns)}), encoding="utf-8")
-
-
-def _checksum_in(folder: Path) -> str | None:
-    """Return the checksum that a group was written with, None if there is none that can be read."""
-    try:
-        content = json.loads((folder / ".zattrs").read_text(encoding="utf-8"))
-        return str(content[CHECKSUM])
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-
-
-def _arrays(path: Path) -> dict[str, Any]:
-    """Return the arrays of a group by their names, open to be changed in place."""
-    return dict(zarr.open_group(str(path), mode="r+").arrays())
+def _make(folder: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> None:
+    """Write a group into a folder, with large arrays without pieces."""
+    dataset, encoding = dataset.copy(), dict[str, Any]()
+    for name, array in large.items():
+        # of length 0, and as long as it has it a dimension of its own
+        dimensions = (f"{name}, to grow", *array.dimensions[1:])
+        dataset[name] = (dimensions, np.zeros((0, *array.shape[1:]), array.dtype), array.attributes)
+        encoding[name] = {"chunks": array.pieces}
+        if array.missing is not None:
+            encoding[name]["_FillValue"] = array.missing
+    dataset.to_zarr(folder, mode="w", encoding=encoding, write_empty_chunks=True, **FORMAT)
+    for name, array in large.items():
+        grown = zarr.open_array(f"{folder}/{name}", mode="r+")
+        grown.resize(array.shape)
+        grown.attrs["_ARRAY_DIMENSIONS"] = list(array.dimensions)
 
 
 def flags(variable: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compare.sweep.compute.plain import end_of, plain_trajectory, twice_as_long, watched_until
+from compare.sweep.compute.round import Chunks
 from compare.sweep.compute.stamp import sweep_stamp
 from compare.sweep.define.plan import Numbers, Plan
 from compare.sweep.define.quantities import RESULTS
@@ -21,12 +22,8 @@ DOUBLINGS = 3
 """How often the plain reference simulates for twice as long where it has not found the end yet."""
 
 
-@dataclass(frozen=True, eq=False)
-class Chunk:
-    """What n trajectories came to: arrays of length n by the names of ``RESULTS``, and the code that found them."""
-
-    stamp: str
-    results: dict[str, NDArray[Any]]
+class OtherCodeError(RuntimeError):
+    """Workers have another version of the code than who made the store; the message says so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +37,26 @@ class Plain:
     end: int
 
 
-def compute(plan: Plan, numbers: Numbers, threads: int | None) -> Chunk:
-    """Simulate the trajectories of these numbers on ``threads`` threads, None for all cores."""
+def simulate_chunk(
+    chunks: Chunks, chunk: int, plan: Plan, numbers: Numbers, threads: int | None, stamp: str
+) -> int:
+    """Simulate the trajectories of a chunk and write what they come to; return how many there are.
+
+    Raises :class:`OtherCodeError`, and writes nothing, where the code is not that of ``stamp``.
+    """
+    if sweep_stamp() != stamp:
+        raise OtherCodeError(
+            f"a worker has other code or libraries ({sweep_stamp()}) than this process ({stamp})"
+        )
+    chunks.write(chunk, compute(plan, numbers, threads))
+    return len(numbers)
+
+
+def compute(plan: Plan, numbers: Numbers, threads: int | None) -> dict[str, NDArray[Any]]:
+    """Simulate the trajectories of these numbers on ``threads`` threads, None for all cores.
+
+    Returns arrays of length n by the names of ``RESULTS``.
+    """
     from reference_model.ensemble import simulate_ensemble  # the one place where sweeps meet the kernel
 
     states, parameters = plan.trajectories(numbers)
@@ -53,7 +68,7 @@ def compute(plan: Plan, numbers: Numbers, threads: int | None) -> Chunk:
         parameters=parameters,
         threads=threads,
     )
-    return Chunk(sweep_stamp(), {name: np.asarray(getattr(found, name)) for name in RESULTS})
+    return {name: np.asarray(getattr(found, name)) for name in RESULTS}
 
 
 def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:

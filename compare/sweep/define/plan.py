@@ -247,7 +247,45 @@ class Uncertainty(Common):
         return result
 
 
-PLANS: dict[str, type[Any]] = {plan.kind: plan for plan in (Basin, RandomBasin, Map, Uncertainty)}
+@dataclass(frozen=True, kw_only=True)
+class Continuation(Common):
+    """Random starts, the same at each value of one parameter; trajectory number value·samples + start.
+
+    Parameters
+    ----------
+    start : tuple of float
+        The state at time 0, where it is not random.
+    x : Axis
+        The parameter.
+    varied : tuple of Uncertain
+        The components of the start that are random.
+    samples : int
+        Number of starts.
+
+    """
+
+    kind = "continuation"
+
+    start: tuple[float, ...]
+    x: Axis
+    varied: tuple[Uncertain, ...]
+    samples: int
+
+    def rounds(self) -> Rounds:
+        """Yield all."""
+        yield range(self.x.points * self.samples)
+
+    def trajectories(self, numbers: Numbers) -> Trajectories:
+        """Return starts and the parameter."""
+        value, sample = np.divmod(np.asarray(numbers), self.samples)
+        uniform = _rows(self.seed, sample, len(self.varied))
+        starts = {one.name: one.values(column) for one, column in zip(self.varied, uniform.T, strict=True)}
+        return _changed(self.system, self.start, starts | {self.x.name: self.x.values[value]}, len(numbers))
+
+
+PLANS: dict[str, type[Any]] = {
+    plan.kind: plan for plan in (Basin, RandomBasin, Map, Uncertainty, Continuation)
+}
 
 
 def plan_as_json(plan: Plan) -> dict[str, Any]:

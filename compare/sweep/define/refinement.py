@@ -36,7 +36,7 @@ class Grid:
 
     def found(self, numbers: IntArray, ends: Ends) -> None:
         """Take what points ended as."""
-        self.ends.flat[numbers], self.simulated.flat[numbers] = ends, True
+        self.ends.flat[numbers], self.simulated.flat[numbers] = np.asarray(ends), True
 
     def lines(self, stride: int) -> Lines:
         """Return the lines of the grid with every ``stride``-th point and the last one."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,9 +20,10 @@ from compare.figures import (
     paper_style,
     saved,
 )
-from compare.sweep.compute.run import CURVES, RESULT
+from compare.sweep.compute.files import Files
+from compare.sweep.compute.run import BRANCHES, CURVES, RESULT
 from compare.sweep.compute.store import SweepStore
-from compare.sweep.define.plan import Basin, Map, Plan, RandomBasin, Uncertainty
+from compare.sweep.define.plan import Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import symbol, units
 from reference_model.ensemble import EndState
 
@@ -46,47 +46,51 @@ MOST_PIXELS = 2000
 MOST_DOTS = 20_000
 """Of random starts that are drawn."""
 
+MOST_DRAWS = 1 << 20
+"""Independent draws from which the distribution of a radius is taken: any first ones are a sample of all."""
+
 BINS = 60
 
 CURVE_DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0.0, (6.0, 1.5, 1.0, 1.5)))
 
 
-def write_figures(store: SweepStore, folder: Path) -> tuple[Path, ...]:
-    """Draw the results of a finished sweep into ``folder``, as SVG and PNG; return the files.
+def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
+    """Draw the results of a finished sweep into ``folder``, as SVG and PNG; return where they are.
 
     Raises ``ValueError`` if the sweep is not finished.
     """
     result = store.get(RESULT)
     if result is None:
-        raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
-    written = []
+        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+    contents = {}
     with paper_style():
-        drawn = figures(store.plan, result, store.get(CURVES))
+        drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))
     for name, figure in drawn.items():
         for suffix, content in zip((".svg", ".png"), saved(figure), strict=True):
-            path = folder / f"{name}{suffix}"
-            path.write_bytes(content)
-            written.append(path)
-    return tuple(written)
+            contents[f"{name}{suffix}"] = content
+    folder.write(contents)
+    return tuple(folder.below(name) for name in contents)
 
 
-def figures(plan: Plan, result: xr.Dataset, curves: xr.Dataset | None) -> dict[str, Figure]:
-    """Return the figures of a sweep by their names."""
+def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
+    """Return the figures of a sweep by their names; ``theory`` is what formulas say of a map or a continuation."""
     if isinstance(plan, Basin):
         return {"basin": basin(plan, result)}
     if isinstance(plan, RandomBasin):
         return {"basin": random_basin(plan, result)}
     if isinstance(plan, Uncertainty):
         return {"uncertainty": uncertainty(plan, result)}
+    assert theory is not None
+    if isinstance(plan, Continuation):
+        return {"continuation": continuation(plan, result, theory)}
     assert isinstance(plan, Map)
-    assert curves is not None
-    return {"map": parameter_map(plan, result, curves)}
+    return {"map": parameter_map(plan, result, theory)}
 
 
 def basin(plan: Basin, result: xr.Dataset) -> Figure:
     """Draw what every start ends as."""
     figure, (axes,) = new_figure(width=7.4, height=5.4)
-    draw_ends(axes, plan, result["end"].values)
+    draw_ends(axes, plan, result["end"])
     label_plane(axes, plan)
     legend(figure, result)
     return figure
@@ -128,10 +132,10 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
 
     handles = []
     for end in EndState:
-        if not np.any(result["end"].values == end):
+        if result["count"][end] == 0:
             continue
         label = end.name.lower().replace("_", " ")
-        if "share" in result:
+        if "share" in result and result["share"].ndim == 1:
             share, low, high = (
                 100.0 * float(result[name].values[end]) for name in ("share", "share_low", "share_high")
             )
@@ -150,11 +154,11 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
     )
     rows = np.array(panels, dtype=object).reshape(len(plan.starts), 4)
     for i, row in enumerate(rows):
-        draw_ends(row[0], plan, result["end"].values[i])
+        draw_ends(row[0], plan, result["end"][i])
         start = ", ".join(f"{value:g}" for value in plan.starts[i])
         row[0].set_title(f"end of the motion from ({start})", fontsize=10.0)
         for panel, (name, words) in zip(row[1:], shown, strict=True):
-            image = _image(panel, plan, result[name].values[i], cmap="viridis")
+            image = _image(panel, plan, result[name][i], cmap="viridis")
             figure.colorbar(image, ax=panel)
             panel.set_title(words, fontsize=10.0)
         for panel in row:
@@ -188,7 +192,7 @@ def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
 def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     """Draw the distribution of the largest radius by the ends, and the sensitivities."""
     figure, (left, right) = new_figure(ncols=2, width=11.5, height=4.6)
-    radii, ends = result["largest_radius"].values, result["end"].values
+    radii, ends = (result[name][:MOST_DRAWS].values for name in ("largest_radius", "end"))
     known = np.isfinite(radii)
     there = [end for end in EndState if np.any(ends[known] == end)]
     if there:
@@ -200,7 +204,8 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
             edgecolor=BLACK,
             linewidth=0.3,
         )
-    left.set(xlabel="largest radius of the end state in m", ylabel="draws")
+    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" of the first {MOST_DRAWS}"
+    left.set(xlabel="largest radius of the end state in m", ylabel=f"draws{which}")
     places = np.arange(len(plan.varied))
     bars = (
         ("first", "largest_radius", BLUE),
@@ -222,6 +227,40 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     return figure
 
 
+def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
+    """Draw the shares of the motions, and their radii beside those that formulas and continuation give."""
+    figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
+    values = plan.x.values
+    for j, end in enumerate(result["motion_end"].values):
+        colour = COLOURS[EndState(end)] if end != EndState.UNDECIDED else BLACK
+        share, low, high = (result[f"motion_share{which}"].values[j] for which in ("", "_low", "_high"))
+        left.fill_between(values, low, high, color=colour, alpha=0.4, linewidth=0.0)
+        left.plot(values, share, color=colour, marker=".")
+        for which in ("least", "largest"):
+            right.plot(values, result[f"motion_{which}"].values[j], ".", color=colour, markersize=7.0)
+    for j, meaning in enumerate(branches["known"].values):
+        stable = branches["known_stable"].values[j]
+        for which in ("least", "largest"):
+            radius = branches[f"known_{which}"].values[j]
+            for kind, dashes in ((1.0, "-"), (0.0, "--")):
+                right.plot(
+                    values,
+                    np.where(stable == kind, radius, np.nan),
+                    color=BLACK,
+                    linestyle=dashes,
+                    linewidth=1.0,
+                )
+        there = np.flatnonzero(np.isfinite(radius))
+        right.annotate(
+            str(meaning), (values[there[-1]], radius[there[-1]]), fontsize=8.5, ha="right", va="bottom"
+        )
+    name = axis(symbol(plan.x.name), units(plan.system)[plan.x.name])
+    left.set(xlabel=name, ylabel="share of the starts", ylim=(0.0, 1.0))
+    right.set(xlabel=name, ylabel="least and largest radius in m")
+    legend(figure, result)
+    return figure
+
+
 def _image(axes: Axes, plan: Basin | Map, values: Any, **look: Any) -> Any:
     """Draw values on the grid of ``plan`` as pixels around its points."""
     every = tuple(slice(None, None, -(-points // MOST_PIXELS)) for points in values.shape)
@@ -229,7 +268,7 @@ def _image(axes: Axes, plan: Basin | Map, values: Any, **look: Any) -> Any:
     half_x, half_y = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
     axes.grid(False)
     return axes.imshow(
-        values[every],
+        values[every].values,
         origin="lower",
         aspect="auto",
         interpolation="nearest",

@@ -9,7 +9,9 @@ import xarray as xr
 
 from compare.sweep.compute.run import CHECK, RESULT
 from compare.sweep.compute.store import SweepStore
-from compare.sweep.define.plan import Uncertainty
+from compare.sweep.define.plan import Continuation, Uncertainty
+from compare.sweep.define.quantities import units
+from compare.sweep.show.figures import MOST_DRAWS
 from reference_model.ensemble import EndState
 from reference_model.systems import COLUMNS
 
@@ -19,27 +21,29 @@ QUANTILES = (0.05, 0.5, 0.95)
 def summary(store: SweepStore) -> Iterator[str]:
     """Yield the lines of what a finished sweep found."""
     result, check = _group(store, RESULT), _group(store, CHECK)
-    ends = result["end"].values
+    total = result["end"].size
     if "simulated" in result:
-        yield f"{np.count_nonzero(result['simulated'].values)} of {ends.size} starts simulated"
+        yield f"{np.count_nonzero(result['simulated'].values)} of {total} starts simulated"
     else:
-        yield f"{ends.size} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
+        yield f"{total} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
     for end in EndState:
-        count = np.count_nonzero(ends == end)
+        count = int(result["count"][end])
         if count == 0:
             continue
         line = f"  {end.name.lower().replace('_', ' '):14}"
-        if "share" in result:
+        if "share" in result and result["share"].ndim == 1:
             share, low, high = (
                 100.0 * float(result[name][end]) for name in ("share", "share_low", "share_high")
             )
             yield f"{line} {share:8.4f} %, between {low:.4f} and {high:.4f} %"
         else:
             yield f"{line} {count}"
-    if "share" in result:
+    if "share" in result and result["share"].ndim == 1:
         yield f"  bounds: {result['share_low'].attrs['long_name']}"
     if isinstance(store.plan, Uncertainty):
         yield from _uncertainty(result)
+    if isinstance(store.plan, Continuation):
+        yield from _continuation(store.plan, result)
     yield _checked(store, check)
 
 
@@ -49,14 +53,15 @@ def same_ends(store: SweepStore) -> bool:
 
 
 def _uncertainty(result: xr.Dataset) -> Iterator[str]:
-    radii = result["largest_radius"].values
+    radii = result["largest_radius"][:MOST_DRAWS].values
     radii = radii[np.isfinite(radii)]
     if radii.size:
         values = ", ".join(
             f"{100.0 * part:g} %: {value:.4g} m"
             for part, value in zip(QUANTILES, np.quantile(radii, QUANTILES), strict=True)
         )
-        yield f"largest radius below which a part of the draws lies: {values}"
+        which = "draws" if result.sizes["sample"] <= MOST_DRAWS else f"first {MOST_DRAWS} draws"
+        yield f"largest radius below which a part of the {which} lies: {values}"
     for quantity in result["quantity"].values:
         words = "largest radius" if quantity == "largest_radius" else "whirl or not"
         for name in result["uncertain"].values:
@@ -72,6 +77,20 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
                 )
             else:
                 yield f"  {words} by {name}: does not vary"
+
+
+def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
+    """Yield from where to where each motion goes, and what it is at both ends."""
+    name, unit = plan.x.name, units(plan.system)[plan.x.name]
+    for j, end in enumerate(result["motion_end"].values):
+        share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
+        first, last = np.flatnonzero(np.isfinite(share))[[0, -1]]
+        low, high = plan.x.values[[first, last]]
+        yield (
+            f"  {EndState(end).name.lower().replace('_', ' '):14} {name} from {low:.4g} to {high:.4g} {unit}: "
+            f"largest radius {largest[first]:.4g} to {largest[last]:.4g} m, "
+            f"share {100.0 * share[first]:.2f} to {100.0 * share[last]:.2f} %"
+        )
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
@@ -96,5 +115,5 @@ def _differing(check: xr.Dataset) -> np.ndarray:
 def _group(store: SweepStore, name: str) -> xr.Dataset:
     group = store.get(name)
     if group is None:
-        raise ValueError(f"the sweep in {str(store.path)!r} is not finished: --resume goes on with it")
+        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
     return group

@@ -1,39 +1,63 @@
-"""``friction-discs`` that sends a signal in the middle of writing a chunk, however fast or slow the machine is.
+"""Sends a signal in the middle of writing a chunk of a sweep, however fast or slow the machine is.
 
-``python signalling_sweep.py NAME PID CHUNK ...`` sends the signal to a process, 0 for this one itself, when a part of
-the CHUNK-th chunk from the start of this process is written; what follows are arguments of the command.
+``python signalling_sweep.py NAME PID CHUNK ...`` is ``friction-discs`` with the arguments that follow: it sends the
+signal to a process, 0 for itself, when a part of the CHUNK-th chunk from its start is written, or, where others write
+them, when it is told of the CHUNK-th.
+``dask worker --preload signalling_sweep.py`` with NAME, PID and CHUNK in the variable SIGNALLED makes a worker do so.
 """
 
 import os
 import signal
 import sys
+import threading
 
-from compare.cli import app as cli
-from compare.sweep.compute.store import Round
-
-NUMBER = signal.Signals[sys.argv[1]]
-PROCESS, CHUNK = int(sys.argv[2]) or os.getpid(), int(sys.argv[3])
-
-write, written = Round.write, 0
+from compare.sweep.compute.executors import Cluster
+from compare.sweep.compute.round import Chunks
 
 
 class Signalling(dict):
-    """Results of a chunk."""
+    """Results of a chunk, in the middle of which a signal is sent."""
 
     def items(self):
         for i, item in enumerate(super().items()):
             if i == 1:
-                os.kill(PROCESS, NUMBER)
+                os.kill(self.process, self.number)
             yield item
 
 
-def counted(self, chunk, results):
-    global written
-    written += 1
-    return write(self, chunk, Signalling(results) if written == CHUNK else results)
+def signalling(name, process, chunk):
+    """Let this process send the signal while it writes its ``chunk``-th chunk, and write one after the other."""
+    write, lock, written = Chunks.write, threading.Lock(), 0
+
+    def counted(self, place, results):
+        nonlocal written
+        with lock:
+            written += 1
+            if written == chunk:
+                results = Signalling(results)
+                results.process, results.number = process or os.getpid(), signal.Signals[name]
+            return write(self, place, results)
+
+    run = Cluster.run
+
+    def told(self, tasks):
+        for i, found in enumerate(run(self, tasks), start=1):
+            if i == chunk:
+                os.kill(process or os.getpid(), signal.Signals[name])
+            yield found
+
+    Chunks.write, Cluster.run = counted, told
+
+
+def dask_setup(worker):
+    if signalled := os.environ.get("SIGNALLED"):
+        name, process, chunk = signalled.split()
+        signalling(name, int(process), int(chunk))
 
 
 if __name__ == "__main__":
+    from compare.cli import app as cli
+
     signal.signal(signal.SIGINT, signal.default_int_handler)  # which is ignored in the background
-    Round.write = counted
+    signalling(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))
     cli.main(sys.argv[4:])

@@ -19,7 +19,9 @@ SMALL = ["--until", "20"]
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
 
 
-@pytest.mark.parametrize("name", ["", " basin", " map", " uncertainty", " figures"])
+@pytest.mark.parametrize(
+    "name", ["", " basin", " map", " uncertainty", " continuation", " shock", " figures"]
+)
 def test_help_of_every_sweep_has_an_example(name, capsys):
     assert cli.status(["sweep", *name.split(), "--help"]) == 0
     assert f"friction-discs sweep{name}" in capsys.readouterr().out
@@ -84,6 +86,10 @@ def test_help_of_sweeps_starts_without_the_heavy_libraries():
             ["uncertainty", "pin", "--vary", "x=normal(0, 1)", "--samples", "128"],
             "samples = 128: it must lie",
         ),
+        (["continuation", "pin", "--x", "x=0:1:5"], "unknown parameter 'x'"),
+        (["continuation", "pin", "--vary", "mass=uniform(1, 2)"], "unknown component 'mass'"),
+        (["continuation", "pin", "--set", "disc_speed=2"], "it has its values from --x"),
+        (["continuation", "pin", "--x", "mass=-1:1:3"], "mass = -1 kg: it must be > 0"),
         (["figures", "nowhere"], "is no store of a sweep"),
     ],
 )
@@ -229,6 +235,7 @@ def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys):
             ["uncertainty", "pin", "--vary", "vx=uniform(0, 0.01)", "--samples", "256"],
             "uncertainty",
         ),
+        (["continuation", "pin", "--x", "disc_speed=1.4:1.6:2", "--samples", "3"], "continuation"),
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value[:2]),
 )

@@ -75,7 +75,7 @@ MENDED = [
     (remove, "round-0/.zattrs", "the description of round-0"),
     (remove, "round-0/component/0", "the description of round-0"),
     (remove, "round-0/time", "the description of round-0; of 3 chunks of round-0 these: 0, 1, 2"),
-    (remove, "result/end/0.0.0", "result"),
+    (remove, "result/time/0.0.0", "result"),
     (with_other_numbers, "result/time/0.0.0", "result"),
     (cut, "result/.zattrs", "result"),
     (cut, "check/difference/0.0", "check"),

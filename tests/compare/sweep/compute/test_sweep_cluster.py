@@ -1,76 +1,35 @@
 """Sweeps on Dask clusters of real processes on this machine."""
 
-import json
 import signal
 import socket
-import subprocess
-import sys
 import time
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 
 import pytest
+from local_cluster import cluster
 from long_sweeps import LONG, assert_same, content, finished_by, long_sweep, marks, resumed
-from processes import environment
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
 from compare.sweep.compute import executors
-from compare.sweep.compute.executors import Cluster, ClusterError
-from compare.sweep.compute.run import OtherCodeError, run
-from compare.sweep.compute.store import SweepStore
-from compare.sweep.compute.work import Chunk
+from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
+from compare.sweep.compute.files import StoreError
+from compare.sweep.compute.run import run
+from compare.sweep.compute.store import DESCRIPTION, SweepStore
+from compare.sweep.compute.work import OtherCodeError
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
 
-DASK = [sys.executable, "-m", "dask"]
-
-
-@dataclass
-class LocalCluster:
-    address: str
-    scheduler: subprocess.Popen
-    workers: list[subprocess.Popen]
-
-
-def started(*arguments):
-    return subprocess.Popen(
-        [*DASK, *arguments, "--no-dashboard"],
-        env=environment(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-
-
-@contextmanager
-def cluster(folder, workers):
-    file = folder / "scheduler.json"
-    processes = [started("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))]
-    try:
-        address = None
-        while address is None:
-            assert processes[0].poll() is None
-            with suppress(OSError, ValueError):
-                address = json.loads(file.read_text())["address"]
-            time.sleep(0.05)
-        for _ in range(workers):
-            processes.append(started("worker", address, "--nthreads", "1", "--no-nanny"))
-        yield LocalCluster(address, processes[0], processes[1:])
-    finally:
-        for process in processes:
-            process.kill()
-            process.wait()
-
 
 def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path):
-    with cluster(tmp_path, workers=2) as local:
+    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 12") as local:
         driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
         written = marks(tmp_path)
+        assert len(written) >= 11  # of workers, which go on for a moment
 
-        killed = ("SIGKILL", local.workers[0].pid, 10)
-        driver = long_sweep(tmp_path, "--scheduler", local.address, "--resume", signalled=killed)
+        driver = long_sweep(tmp_path, "--scheduler", local.address, "--resume")
         code, out, err = finished_by(driver)
+        assert local.workers[0].poll() == -signal.SIGKILL
     assert (code, err) == (0, ""), out
     assert written <= marks(tmp_path)
     assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
@@ -126,17 +85,44 @@ def test_what_is_no_address_is_refused(address, capsys, tmp_path):
     assert capsys.readouterr().err == f"scheduler = {address!r}: write it as tcp://HOST:PORT\n"
 
 
-def test_a_worker_with_other_code_is_refused(tmp_path):
-    class OtherWorker:
-        threads = 1
-
-        def run(self, tasks):
-            for task in tasks:
-                found = task.function(*task.arguments)
-                yield task.key, Chunk("other", found.results)
-
+@pytest.fixture
+def store(tmp_path):
     x, y = Axis("x", -0.3, 0.5, 2), Axis("vx", -0.4, 0.4, 2)
     common = {"system": FIG5, "duration": 1.0, "tolerance": 1e-6, "seed": 1}
-    store = SweepStore.create(tmp_path / "s", RandomBasin(**common, start=(0.0,) * 4, x=x, y=y, samples=3), 2)
+    plan = RandomBasin(**common, start=(0.0,) * 4, x=x, y=y, samples=3)
+    return SweepStore.create(tmp_path / "sweep.zarr", plan, 2)
+
+
+class Elsewhere(InProcess):
+    """Workers where something is not what it is here."""
+
+    def __init__(self, otherwise):
+        self.otherwise = otherwise
+
+    def run(self, tasks):
+        for task in tasks:
+            self.otherwise()
+            yield task.key, task.function(*task.arguments)
+
+
+def test_a_worker_with_other_code_is_refused_and_writes_nothing(store, tmp_path, monkeypatch):
+    other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.sweep_stamp", lambda: "other"))
     with pytest.raises(OtherCodeError, match=r"other code or libraries \(other\) than this process"):
-        run(store, OtherWorker(), lambda what, done, total: None)
+        run(store, other, lambda what, done, total: None)
+    assert marks(tmp_path) == set()
+
+
+def test_a_worker_that_has_another_store_at_that_place_is_refused(store, tmp_path):
+    other = Elsewhere(lambda: (tmp_path / "sweep.zarr" / DESCRIPTION).write_text("{}"))
+    with pytest.raises(StoreError, match="--output must be a folder that all share, or an object store"):
+        run(store, other, lambda what, done, total: None)
+    assert marks(tmp_path) == set()
+
+
+def test_who_comes_second_does_not_make_the_store_again(store):
+    before = store.files.read(DESCRIPTION)
+    with pytest.raises(FileExistsError):
+        SweepStore.create(store.path, store.plan, 2)
+    with pytest.raises(FileExistsError):  # also where both have found nothing
+        store.files.claim(DESCRIPTION, b"other")
+    assert store.files.read(DESCRIPTION) == before

@@ -1,6 +1,7 @@
 import numpy as np
+from scipy.stats import sobol_indices
 
-from compare.sweep.compute.sensitivity import indices
+from compare.sweep.compute.sensitivity import GROUPS, indices, moments
 from compare.sweep.define.distributions import uniform_rows
 
 
@@ -20,8 +21,13 @@ def table_of(function, rows, quantities):
     return np.stack(columns, axis=-1)
 
 
+def indices_of(table, blocks=GROUPS):
+    """Return the indices of a table, shape (rows, 2 + quantities), that is seen block by block."""
+    return indices([moments(part[np.newaxis]) for part in np.split(table, blocks)])
+
+
 def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
-    found = indices(table_of(ishigami, 2**14, 3)[np.newaxis])
+    found = indices_of(table_of(ishigami, 2**14, 3))
     # the variances of Ishigami's function with a = 7, b = 0.1
     first = (1.0 + 0.1 * np.pi**4 / 5.0) ** 2 / 2.0
     second = 49.0 / 8.0
@@ -37,11 +43,22 @@ def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
 
 
 def test_intervals_close_with_the_root_of_the_number_of_rows():
-    few, many = (np.mean(indices(table_of(ishigami, n, 3)[np.newaxis]).first_error) for n in (2**10, 2**14))
+    few, many = (np.mean(indices_of(table_of(ishigami, n, 3)).first_error) for n in (2**10, 2**14))
     assert 2.0 < few / many < 8.0  # 4, by 16 groups' scatter
 
 
 def test_what_does_not_vary_has_no_indices():
-    found = indices(np.ones((1, 256, 4)))
+    found = indices_of(np.ones((256, 4)))
     assert np.all(np.isnan(found.first))
     assert np.all(np.isnan(found.total))
+
+
+def test_block_by_block_they_are_those_of_scipy():
+    table = 1e4 + table_of(ishigami, 2**10, 3)  # a mean that would leave no digits of a sum of squares
+    scipy = sobol_indices(
+        func={"f_A": table[:, 0:1].T, "f_B": table[:, 1:2].T, "f_AB": table[:, 2:].T[:, np.newaxis]}, n=2**10
+    )
+    for blocks in (GROUPS, 8 * GROUPS):
+        found = indices_of(table, blocks)
+        np.testing.assert_allclose(found.first[0], scipy.first_order, atol=1e-9)
+        np.testing.assert_allclose(found.total[0], scipy.total_order, atol=1e-9)

@@ -1,0 +1,184 @@
+"""The smallest shock that throws a pin from its self-centred equilibrium into the whirl: what a basin is asked for.
+
+A shock changes the velocity at once and the place not at all. The smallest one is the point of the boundary of the
+basins, in the plane of velocities through the equilibrium, that lies nearest to it. Where to look for it the ends of
+many starts tell; the point itself is on the stable set of a saddle orbit, and bisection of ends checks it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from reference_model.ensemble import EndState, simulate_ensemble
+from reference_model.orbits.basin_boundary import Separatrix
+from reference_model.orbits.release_map import stick_slip_orbits
+from reference_model.steady.steady_states import self_centred_equilibria, why_no_equilibrium
+from reference_model.systems import FloatArray, PinOnDisc
+
+BoolArray = NDArray[np.bool_]
+
+DIRECTIONS = 64
+"""In which shocks are tried first: a turn between neighbours by a tenth of a radian."""
+
+SIZES = np.geomspace(1e-4, 1.0, 96)
+"""Of shocks that are tried first, over the speed of the disc's surface where the whirl is or at the offset: a tenth
+more each time, so that a region of whirls which is thinner may be missed."""
+
+PERIODS = 500.0
+"""Of the free oscillation, for which an end is waited: longer than any takes that is not on the boundary."""
+
+COARSE, FINE = 1e-2, 1e-7
+"""Relative width at which bisection stops: to know the direction, and to check the result."""
+
+ANGLE = 1e-4
+"""In rad, of the direction: the size has a minimum there and changes with the square of it."""
+
+
+@dataclass(frozen=True)
+class Shock:
+    """A sudden change of the velocity of a pin that rests at its self-centred equilibrium.
+
+    Parameters
+    ----------
+    pin : PinOnDisc
+        The parameters.
+    vx, vy : float
+        The change of the velocity in m/s.
+
+    """
+
+    pin: PinOnDisc
+    vx: float
+    vy: float
+
+    @property
+    def speed(self) -> float:
+        """Its size in m/s."""
+        return math.hypot(self.vx, self.vy)
+
+    @property
+    def impulse(self) -> float:
+        """What it takes, in N s."""
+        return self.pin.mass * self.speed
+
+    @property
+    def direction(self) -> float:
+        """Its angle to the x-axis in rad, from −π to π."""
+        return math.atan2(self.vy, self.vx)
+
+
+def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
+    """Return the smallest shock after which ``pin`` does not come back to its equilibrium but to the whirl.
+
+    Raises
+    ------
+    ValueError
+        If there is no equilibrium, or no shock that was tried leads to the whirl, or no saddle orbit with a stick
+        phase divides the two.
+    RuntimeError
+        If the boundary is not in the stable set of that orbit.
+
+    """
+    rest = _rest(pin)
+    saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
+    if len(saddles) != 1:
+        raise ValueError(
+            f"{len(saddles)} stick–slip orbits of saddle type: the boundary is known where there is one"
+        )
+    separatrix = Separatrix.of(saddles[0])
+    angles = np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False)
+    low, high = _first_crossings(pin, rest, angles)
+    sizes = _bisected(pin, rest, angles, low, high, COARSE)
+    nearest = int(np.argmin(sizes))
+
+    def point(angle: float) -> FloatArray:
+        inside, outside = (rest + part * sizes[nearest] * _shocks(angle)[0] for part in (0.5, 1.5))
+        return separatrix.point_between(inside, outside) - rest
+
+    apart = float(angles[1])
+    best = minimize_scalar(
+        lambda angle: float(np.linalg.norm(point(angle))),
+        bounds=(angles[nearest] - apart, angles[nearest] + apart),
+        method="bounded",
+        options={"xatol": ANGLE},
+    )
+    _, _, vx, vy = point(float(best.x)).tolist()
+    return Shock(pin, vx, vy)
+
+
+def by_bisection(shock: Shock) -> float:
+    """Return the size in m/s at which shocks in the same direction begin to lead to the whirl, by ends alone.
+
+    Relative error ``FINE``. It is looked for from 0.9 to 1.15 times the size of ``shock``.
+
+    Raises
+    ------
+    ValueError
+        If the end does not change there.
+
+    """
+    pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
+    low, high = (
+        np.array([0.9 * shock.speed]),
+        np.array([1.15 * shock.speed]),
+    )  # of which no midpoint is the shock
+    before, behind = (bool(_whirls(pin, rest, angle, sizes)[0]) for sizes in (low, high))
+    if before or not behind:
+        raise ValueError(f"from 0.9 to 1.15 times {shock.speed:g} m/s the end does not change to the whirl")
+    return float(_bisected(pin, rest, angle, low, high, FINE)[0])
+
+
+def _rest(pin: PinOnDisc) -> FloatArray:
+    found = self_centred_equilibria(pin)
+    if not found:
+        raise ValueError(f"no equilibrium to throw the pin out of: {why_no_equilibrium(pin)}")
+    return np.array([found[0].x, found[0].y, 0.0, 0.0])
+
+
+def _shocks(angles: float | FloatArray) -> FloatArray:
+    """Return changes of the state by shocks of 1 m/s, shape (n, 4)."""
+    angles = np.atleast_1d(angles)
+    zero = np.zeros_like(angles)
+    return np.column_stack((zero, zero, np.cos(angles), np.sin(angles)))
+
+
+def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatArray) -> BoolArray:
+    """Return which shocks, each of an angle and a size, lead to the whirl."""
+    starts = rest + sizes[:, np.newaxis] * _shocks(angles)
+    duration = PERIODS * 2.0 * math.pi / pin.natural_frequency
+    return np.asarray(simulate_ensemble(pin, starts, duration=duration).end == EndState.WHIRL)
+
+
+def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return for each angle two sizes between which the whirl begins, inf where none of those tried leads there."""
+    reach = abs(pin.disc_speed) * max(
+        abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
+    )
+    sizes = reach * SIZES
+    grid = np.meshgrid(angles, sizes, indexing="ij")
+    found = _whirls(pin, rest, *(part.ravel() for part in grid)).reshape(grid[0].shape)
+    some, first = np.any(found, axis=1), np.argmax(found, axis=1)
+    if not np.any(some):
+        raise ValueError(f"no shock up to {reach:g} m/s leads to the whirl")
+    low = np.where(first > 0, sizes[first - 1], 0.0)
+    return np.where(some, low, math.inf), np.where(some, sizes[first], math.inf)
+
+
+def _bisected(
+    pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
+) -> FloatArray:
+    """Return sizes at which the whirl begins, between ``low`` and ``high``, inf where these are."""
+    sizes = np.full(len(angles), math.inf)
+    there = np.flatnonzero(np.isfinite(high))
+    low, high, angles = low[there].copy(), high[there].copy(), angles[there]
+    while np.any(high - low > width * high):
+        middle = 0.5 * (low + high)
+        whirls = _whirls(pin, rest, angles, middle)
+        low, high = np.where(whirls, low, middle), np.where(whirls, middle, high)
+    sizes[there] = 0.5 * (low + high)
+    return sizes

@@ -1,0 +1,123 @@
+"""Motions along one parameter: told apart, matched from value to value, beside those that formulas give."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG5
+from compare.claims.shares import of_counts
+from compare.sweep.compute.branches import known_branches
+from compare.sweep.compute.executors import InProcess
+from compare.sweep.compute.motions import Motion, matched, motions_of
+from compare.sweep.compute.run import run
+from compare.sweep.compute.store import SweepStore
+from compare.sweep.define.axes import Axis
+from compare.sweep.define.distributions import Uncertain
+from compare.sweep.define.plan import Continuation, plan_as_json, plan_from_json
+from compare.sweep.show.summary import summary
+from reference_model import whirls
+from reference_model.ensemble import EndState
+
+STARTS = (Uncertain("x", "uniform", (-0.3, 0.5)), Uncertain("vx", "uniform", (-0.4, 0.4)))
+PLAN = Continuation(
+    system=FIG5,
+    duration=12000.0,
+    tolerance=1e-6,
+    seed=1,
+    start=(0.0,) * 4,
+    x=Axis("disc_speed", 1.05, 3.0, 4),
+    varied=STARTS,
+    samples=50,
+)
+
+
+def test_motions_that_end_as_the_same_are_told_apart_by_their_radii():
+    ends = np.array([EndState.WHIRL] * 4 + [EndState.UNDECIDED, EndState.STUCK, EndState.STUCK], dtype="u1")
+    largest = np.array([0.5, 1.0, 0.501, 0.502, np.nan, 0.1, 0.4])
+    found = motions_of(ends, 0.5 * largest, largest)
+    assert found == [
+        Motion(EndState.WHIRL, 3, 0.2505, 0.501),
+        Motion(EndState.WHIRL, 1, 0.5, 1.0),
+        Motion(EndState.STUCK, 2, 0.125, 0.25),
+    ]
+
+
+def test_motions_are_matched_by_where_they_were_going():
+    # two that cross, as lines do, and one of another kind that is there at two values
+    up, down = (lambda i: Motion(2, 1, 0.0, 1.0 + 0.1 * i)), (lambda i: Motion(2, 1, 0.0, 1.5 - 0.1 * i))
+    found = [[up(i), down(i)] if i % 2 else [down(i), up(i)] for i in range(6)]
+    found[3].append(Motion(1, 1, 0.0, 1.3))
+    found[4].append(Motion(1, 1, 0.0, 1.3))
+    branches = matched(found, lambda motion: motion.end)
+    assert sorted(sorted(branch) for branch in branches) == [[0, 1, 2, 3, 4, 5], [0, 1, 2, 3, 4, 5], [3, 4]]
+    assert branches[0] == {i: down(i) for i in range(6)}
+    assert branches[1] == {i: up(i) for i in range(6)}
+
+
+def test_what_jumps_begins_a_new_branch():
+    found = [[Motion(2, 1, 0.0, radius)] for radius in (1.0, 1.0, 0.5, 0.5)]
+    assert [sorted(branch) for branch in matched(found, lambda motion: motion.end)] == [[0, 1], [2, 3]]
+
+
+def test_starts_are_the_same_at_each_value_and_in_any_chunk():
+    states, parameters = PLAN.trajectories(range(200))
+    np.testing.assert_array_equal(states[:50], states[150:])
+    np.testing.assert_array_equal(parameters["disc_speed"].reshape(4, 50)[:, 0], PLAN.x.values)
+    some, _ = PLAN.trajectories(range(40, 110))
+    np.testing.assert_array_equal(some, states[40:110])
+    assert plan_from_json(plan_as_json(PLAN)) == PLAN
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("compare.sweep.compute.run.CHECKED", 2)
+        store = SweepStore.create(tmp_path_factory.mktemp("continuation") / "s", PLAN, 70)
+        run(store, InProcess(), lambda what, done, total: None)
+    return store
+
+
+def test_shares_and_radii_along_the_speed(store):
+    result = store.get("result")
+    ends = result["end"].values
+    for i in range(PLAN.x.points):
+        expected = of_counts(np.bincount(ends[i], minlength=len(EndState)))
+        for end in EndState:
+            found = [float(result[name][i, end]) for name in ("share", "share_low", "share_high")]
+            assert found == list(expected[end])
+    assert result["motion_end"].values.tolist() == [EndState.SELF_CENTRED, EndState.WHIRL]
+    share = result["motion_share"].values
+    assert share[0, 0] == 1.0  # no start whirls at the lowest speed, and more and more do
+    assert np.isnan(share[1, 0])
+    assert np.all(np.diff(share[1, 1:]) >= 0.0)
+    assert np.all(result["motion_share_low"].values[1, 1:] < share[1, 1:])
+
+
+def test_motions_lie_on_the_branches_that_formulas_and_continuation_give(store):
+    result, known = store.get("result"), store.get("branches")
+    assert known["known"].values.tolist() == ["self-centred", "whirl"]
+    for radius in ("least", "largest"):
+        found, expected = result[f"motion_{radius}"].values, known[f"known_{radius}"].values
+        there = np.isfinite(found)
+        np.testing.assert_allclose(found[there], expected[there], rtol=2e-3)  # samples of an orbit
+    assert np.all(known["known_stable"].values[np.isfinite(expected)] == 1.0)
+
+
+def test_branches_without_offset_are_those_of_the_formulas():
+    centred = replace(PLAN, system=replace(FIG5, offset=0.0))
+    (branch,) = known_branches(centred)
+    for i, one in branch.items():
+        (whirl,) = whirls(replace(centred.system, disc_speed=PLAN.x.values[i]))
+        assert (one.meaning, one.largest, one.stable) == ("whirl", whirl.radius, whirl.stable)
+    assert sorted(branch) == [0, 1, 2, 3]
+
+
+def test_each_motion_has_a_line(store):
+    lines = [line for line in summary(store) if "disc_speed from" in line]
+    assert len(lines) == 2
+    # with 50 starts the last speed at which one comes to rest is the last but one
+    assert lines[0] == (
+        "  self centred   disc_speed from 1.05 to 2.35 rad/s: largest radius 0.04359 to 0.04359 m, "
+        "share 100.00 to 2.00 %"
+    )

@@ -1,0 +1,132 @@
+"""Sweeps into an object store: a server of S3's protocol on this machine."""
+
+import signal
+import threading
+import time
+
+import fsspec
+import pytest
+import xarray as xr
+from local_cluster import cluster
+from long_sweeps import LONG, assert_same
+from moto.moto_server.werkzeug_app import DomainDispatcherApplication, create_backend_app
+from processes import PATIENCE, wait_until
+from werkzeug.serving import make_server
+
+from compare.cli import app as cli
+from compare.sweep.compute.files import Files
+from compare.sweep.compute.run import finished
+from compare.sweep.compute.store import SweepStore
+
+GONE = 5.0
+"""In s."""
+
+
+class Server:
+    """What it holds outlives that it is gone."""
+
+    def __init__(self):
+        self.app, self.port, self.marks = DomainDispatcherApplication(create_backend_app), 0, 0
+        self.begin()
+
+    def answer(self, request, start):
+        if request["REQUEST_METHOD"] == "PUT" and "/checksum/" in request["PATH_INFO"]:
+            self.marks += 1
+        return self.app(request, start)
+
+    def begin(self):
+        self.server = make_server("127.0.0.1", self.port, self.answer, threaded=True)
+        self.port = self.server.port
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def end(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+@pytest.fixture(scope="module")
+def server():
+    """Where ``s3://`` leads to, with the bucket "sweeps", for this process and those it starts."""
+    found = Server()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{found.port}")
+        for name in ("AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"):
+            patch.setenv(name, "test")
+        patch.setenv("AWS_DEFAULT_REGION", "us-east-1")
+        fsspec.filesystem("s3").mkdir("sweeps")
+        yield found
+    found.end()
+
+
+def content(url):
+    """Return all arrays of a store but for the marks of chunks, by group and name."""
+    groups = [name for name in Files(url).inside() if not name.startswith(".")]
+    return {
+        (group, name): values.values
+        for group in groups
+        for name, values in xr.open_zarr(f"{url}/{group}", consolidated=False).variables.items()
+        if name != "checksum"
+    }
+
+
+def test_workers_write_into_it_though_one_is_killed_and_it_is_gone_for_a_while(
+    server, undisturbed, tmp_path, capsys
+):
+    url = "s3://sweeps/killed"
+    arguments = [*LONG, "--chunk", "100", "--output", url]
+
+    def interrupted():
+        before = server.marks  # that of the array itself
+        wait_until(lambda: server.marks > before + 4)
+        server.end()
+        time.sleep(GONE)
+        server.begin()
+
+    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 2") as local:
+        thread = threading.Thread(target=interrupted, daemon=True)
+        thread.start()
+        assert cli.status([*arguments, "--scheduler", local.address]) == 0, capsys.readouterr().err
+        thread.join(PATIENCE)
+        assert local.workers[0].poll() == -signal.SIGKILL
+    out = capsys.readouterr().out
+    assert f"Results: {url}/sweep.zarr; figures: {url}/basin.svg" in out
+    assert_same(content(f"{url}/sweep.zarr"), undisturbed)
+    assert cli.status(arguments) == 2
+    assert "is there already: --resume goes on with it" in capsys.readouterr().err
+
+    store = SweepStore.open(f"{url}/sweep.zarr")
+    assert finished(store)
+    store.files.write({"round-0/end/3": store.files.read("round-0/end/4") + b"more"})
+    assert not finished(store)
+    assert store.broken == ["of 12 chunks of round-0 these: 3"]
+
+
+def test_only_one_makes_a_store_there(server):
+    files = Files("s3://sweeps/claimed")
+    files.claim("name", b"first")
+    with pytest.raises(FileExistsError):
+        files.claim("name", b"second")
+    assert files.read("name") == b"first"
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("s3://nowhere/sweep", "can't write to 's3://nowhere/sweep': The specified bucket does not exist\n"),
+        ("s4://sweeps/sweep", "'s4://sweeps/sweep': Protocol not known: s4\n"),
+    ],
+)
+def test_what_can_not_be_written_is_refused_in_one_sentence(url, words, server, capsys):
+    assert cli.status([*LONG, "--output", url]) == 2
+    assert capsys.readouterr() == ("", words)
+
+
+def test_a_library_that_is_missing_is_named(monkeypatch, capsys):
+    def missing(url, **options):
+        raise ImportError("Install s3fs to access S3")
+
+    monkeypatch.setattr("fsspec.core.url_to_fs", missing)
+    assert cli.status([*LONG, "--output", "s3://sweeps/new"]) == 2
+    assert capsys.readouterr().err == (
+        "'s3://sweeps/new' needs s3fs: pip install 'friction-discs[cluster]'\n"
+    )

@@ -1,0 +1,53 @@
+"""The smallest shock that leads to the whirl."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG5
+from reference_model import (
+    basin_boundary,
+    self_centred_equilibria,
+    simulate,
+    smallest_shock,
+    stick_slip_orbits,
+)
+from reference_model.orbits.shock import by_bisection
+
+
+@pytest.fixture(scope="module")
+def shock():
+    return smallest_shock(FIG5)
+
+
+def test_it_is_where_the_ends_of_motions_change(shock):
+    assert by_bisection(shock) == pytest.approx(shock.speed, rel=1e-6)
+
+
+@pytest.mark.parametrize(("factor", "whirls"), [(0.97, False), (1.03, True)])
+def test_the_plain_reference_ends_on_either_side_of_it(factor, whirls, shock):
+    (rest,) = self_centred_equilibria(FIG5)
+    start = (rest.x, rest.y, factor * shock.vx, factor * shock.vy)
+    end = simulate(FIG5, start, np.linspace(0.0, 200.0, 201), tolerance=1e-7).states[-1]
+    assert (math.hypot(end[0], end[1]) > 0.5) == whirls
+
+
+def test_no_point_of_the_boundary_is_nearer(shock):
+    (rest,) = self_centred_equilibria(FIG5)
+    (saddle,) = stick_slip_orbits(FIG5, tolerance=1e-6)
+    around = [(v - 0.3 * shock.speed, v + 0.3 * shock.speed) for v in (shock.vx, shock.vy)]
+    curves = basin_boundary(
+        saddle, components=("vx", "vy"), ranges=around, others=(rest.x, rest.y, 0.0, 0.0), cells=2
+    )
+    nearest = min(np.min(np.hypot(*curve.points.T)) for curve in curves)
+    assert shock.speed * (1.0 - 1e-6) <= nearest < 1.05 * shock.speed
+
+
+def test_what_has_no_such_boundary_is_refused(monkeypatch):
+    with pytest.raises(ValueError, match="no equilibrium to throw the pin out of"):
+        smallest_shock(replace(FIG5, offset=0.0))
+    monkeypatch.setattr("reference_model.orbits.shock.stick_slip_orbits", lambda pin, tolerance: ())
+    with pytest.raises(ValueError, match="0 stick–slip orbits of saddle type"):
+        smallest_shock(FIG5)
