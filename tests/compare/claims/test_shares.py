@@ -1,3 +1,5 @@
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -8,15 +10,20 @@ from reference_model.ensemble import EndState
 WHIRL, UNDECIDED, STUCK = EndState.WHIRL, EndState.UNDECIDED, EndState.STUCK
 
 
+@cache
+def share_of(count, n):
+    ends = np.full(n, STUCK, dtype=np.uint8)
+    ends[:count] = WHIRL
+    return of_sample(ends)[WHIRL]
+
+
 @pytest.mark.parametrize("probability", [0.03, 0.5, 0.9])
 def test_the_interval_of_a_sample_holds_the_probability_as_often_as_it_says(probability):
     n = 200
     counts = np.arange(n + 1)
     holds = np.zeros(n + 1)
     for count in counts:
-        ends = np.full(n, STUCK, dtype=np.uint8)
-        ends[:count] = WHIRL
-        share = of_sample(ends)[WHIRL]
+        share = share_of(count, n)
         assert share.value == count / n
         holds[count] = share.low <= probability <= share.high
     covered = float(np.sum(holds * stats.binom.pmf(counts, n, probability)))
@@ -26,9 +33,7 @@ def test_the_interval_of_a_sample_holds_the_probability_as_often_as_it_says(prob
 @pytest.mark.parametrize("count", [0, 1, 70, 199, 200])
 def test_the_interval_of_a_sample_is_that_of_wilson(count):
     n = 200
-    ends = np.full(n, STUCK, dtype=np.uint8)
-    ends[:count] = WHIRL
-    share = of_sample(ends)[WHIRL]
+    share = share_of(count, n)
     interval = stats.binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
     np.testing.assert_allclose((share.low, share.high), (interval.low, interval.high), rtol=1e-13)
 

@@ -47,14 +47,14 @@ def random_arguments(count, seed=20):
     return [(u, u * k) for u, k in zip(slip.tolist(), ratio.tolist(), strict=True)]
 
 
-def test_ring_in_closed_form_is_right_for_ten_thousand_ratios_of_slip_and_spin():
+def test_ring_in_closed_form_is_right_for_a_thousand_ratios_of_slip_and_spin():
     resting = 0
-    for slip, rim in random_arguments(10_000):
+    for slip, rim in random_arguments(1000):
         found, exact = mean_directions(slip, rim), exact_directions(slip, rim)
         at_rest = abs(slip - rim) <= 1e-12 * rim
         resting += at_rest
         assert found == pytest.approx(exact, rel=AT_REST if at_rest else ROUNDING, abs=0.0), (slip, rim)
-    assert resting > 500
+    assert resting > 50
 
 
 EDGES = [
@@ -110,7 +110,7 @@ def test_ring_is_the_integral_of_friction_over_its_points(ratio):
 
 
 def test_curvatures_are_the_second_derivatives():
-    arguments = [pair for pair in random_arguments(300, seed=21) if pair[0] != pair[1]]
+    arguments = [pair for pair in random_arguments(100, seed=21) if pair[0] != pair[1]]
     arguments += [(1.0, math.sqrt(SMALL) * (1.0 + step)) for step in (-1e-9, 1e-9)]
     for slip, rim in arguments:
         exact = exact_curvatures(slip, rim)

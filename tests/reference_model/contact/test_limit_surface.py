@@ -17,7 +17,7 @@ def limit_of(points):
 def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(points):
     law, limit = PointsOnRing(RADIUS, points), limit_of(points)
     rng = np.random.default_rng(points)
-    for _ in range(200):
+    for _ in range(40):
         u, w = complex(*rng.normal(size=2)) * RADIUS, rng.normal()
         force, moment = law.force_and_moment(u, -w, 0.0)
         # Along the slip they are −force, −moment; margins are of the order of squares.

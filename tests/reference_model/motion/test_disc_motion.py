@@ -3,6 +3,7 @@
 import cmath
 import math
 from dataclasses import fields, replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -304,15 +305,18 @@ def test_default_tolerance_is_reached_through_slip_stick_and_pivots(law, start):
     assert np.abs(default.states - tight.states).max() < 1e-8
 
 
+@cache
+def sticky_motion(law, thresholds):
+    disc, contact = of_law(STICKY, law)
+    return simulate_with(thresholds, disc, STARTS[0], np.linspace(0.0, 12.0, 61), contact=contact)
+
+
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 @pytest.mark.parametrize("threshold", [field.name for field in fields(Thresholds)])
 @pytest.mark.parametrize("law", ["ring", "three points"])
 def test_motion_does_not_depend_on_any_threshold(law, threshold, factor):
-    disc, contact = of_law(STICKY, law)
-    times = np.linspace(0.0, 12.0, 61)
     other = replace(Thresholds(), **{threshold: factor * getattr(Thresholds(), threshold)})
-    plain = simulate(disc, STARTS[0], times, contact=contact)
-    changed = simulate_with(other, disc, STARTS[0], times, contact=contact)
+    plain, changed = sticky_motion(law, Thresholds()), sticky_motion(law, other)
     assert kinds(plain) == kinds(changed)
     assert np.abs(plain.states - changed.states).max() < 1e-8
 
