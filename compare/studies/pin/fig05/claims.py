@@ -7,14 +7,16 @@ import math
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, refined
+from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.fig05.parameters import (
     CAPTURE,
+    CRITICAL_TOLERANCE,
     FURTHER_TURNS,
+    RUNS_TOLERANCE,
     SAMPLES,
     SIDES_TOLERANCE,
     SLIDING_START,
@@ -85,8 +87,8 @@ def slides(engine: Engine) -> Measured:
 )
 def rests(engine: Engine) -> Measured:
     """Compare the end of the first run with (3)."""
-    found = refined(lambda tolerance: run_of(engine, "equilibrium", tolerance).at_end[:2])
-    states = run_of(engine, "equilibrium", WORKING).states
+    found = refined(lambda tolerance: run_of(engine, "equilibrium", tolerance).at_end[:2], RUNS_TOLERANCE)
+    states = run_of(engine, "equilibrium", RUNS_TOLERANCE).states
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(states[-700:-300, :2], states[-1, :2], rate, 30.0)
     return Measured(
@@ -117,7 +119,7 @@ def whirls(engine: Engine) -> Measured:
         states = engine.simulate(FIG5, end, times, tolerance=tolerance).states
         return np.asarray(states[1:-1, :2].mean(axis=0))
 
-    found = refined(mean)
+    found = refined(mean, RUNS_TOLERANCE)
     multiplier = sorted(abs(value) for value in orbit.multipliers)[-2]  # the largest but that of the phase
     # What is left of the transient after the run, from the largest deviation that it can have had at its start.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
@@ -142,7 +144,9 @@ def whirls(engine: Engine) -> Measured:
 def first_stick(engine: Engine, name: str) -> Measured:
     """Compare the first stick phase with a plain event on the slip and (7)."""
     predicted = refined(lambda tolerance: first_stick_and_release(name, tolerance), 4e-13)
-    found = refined(lambda tolerance: _padded(run_of(engine, name, tolerance).stick_times[:2], 2))
+    found = refined(
+        lambda tolerance: _padded(run_of(engine, name, tolerance).stick_times[:2], 2), RUNS_TOLERANCE
+    )
     return Measured(
         predicted=predicted.value,
         value=found.value,
@@ -163,8 +167,10 @@ def first_stick(engine: Engine, name: str) -> Measured:
 def all_sticks(engine: Engine, name: str) -> Measured:
     """Compare all stick and release times with those of the reference."""
     predicted = reference_events(name)
-    found = refined(lambda tolerance: _padded(run_of(engine, name, tolerance).stick_times, len(predicted)))
-    run = run_of(engine, name, WORKING)
+    found = refined(
+        lambda tolerance: _padded(run_of(engine, name, tolerance).stick_times, len(predicted)), RUNS_TOLERANCE
+    )
+    run = run_of(engine, name, RUNS_TOLERANCE)
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -204,7 +210,7 @@ def _bounded(error: float) -> float:
 )
 def critical(engine: Engine) -> Measured:
     """Find the initial velocity that divides both motions."""
-    found = refined(functools.partial(critical_velocity, engine), WORKING / 10)
+    found = refined(functools.partial(critical_velocity, engine), CRITICAL_TOLERANCE)
     return Measured(
         predicted=predicted_critical_velocity(),
         value=found.value,

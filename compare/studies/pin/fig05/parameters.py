@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
+
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
@@ -26,3 +28,12 @@ AFTERWARDS = 220.0
 """In s: ``CAPTURE`` grows by a quarter in each turn, and must become of order one."""
 
 SIDES_TOLERANCE = 1e-7
+
+BESIDE = 2e-5
+"""How far from that at ``SIDES_TOLERANCE`` the critical initial velocity is looked for at smaller ones, in m/s."""
+
+RUNS_TOLERANCE = 5.0 * WORKING
+"""Of the runs of Fig. 5."""
+
+CRITICAL_TOLERANCE = WORKING / 5.0
+"""A smoothed law's critical velocity is off by some hundred times as much."""

@@ -12,7 +12,15 @@ from scipy.optimize import brentq
 from compare.claims.error_estimates import TIGHTEST, TRUTH
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine
-from compare.studies.pin.fig05.parameters import AFTERWARDS, SLIDING_START, SLIDING_TIMES, UNTIL
+from compare.studies.pin.fig05.parameters import (
+    AFTERWARDS,
+    BESIDE,
+    CAPTURE,
+    SIDES_TOLERANCE,
+    SLIDING_START,
+    SLIDING_TIMES,
+    UNTIL,
+)
 from reference_model import Orbit, simulate, whirl_orbit
 from reference_model.formulas.pin import release_time
 from reference_model.motion.pin_equations import simulate_polar_form
@@ -76,10 +84,12 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
     return np.array([stick, stick + release_time(FIG5, abs(z), math.atan2(y, x) + omega * left)])
 
 
+@functools.lru_cache(maxsize=8)
 def critical_velocity(engine: Engine, tolerance: float) -> float:
     """Return vx(0) in m/s at which stick phases neither move outwards nor inwards.
 
-    It is no number for an engine whose pin does not stick twice, or moves the same way from both starts.
+    It is no number for an engine whose pin does not stick twice, or moves the same way from both starts. At small
+    tolerances it is looked for beside that of a larger one first.
     """
 
     def outward(velocity: float) -> float:
@@ -87,10 +97,17 @@ def critical_velocity(engine: Engine, tolerance: float) -> float:
         radii = [math.hypot(*phase.initial_state[:2]) for phase in trajectory.stick_phases[:2]]
         return radii[1] - radii[0] if len(radii) == 2 else math.nan
 
+    def between(low: float, high: float) -> float:
+        if not outward(low) * outward(high) < 0.0:
+            return math.nan
+        return float(brentq(outward, low, high, xtol=1e-4 * CAPTURE))
+
+    if tolerance < SIDES_TOLERANCE:
+        rough = critical_velocity(engine, SIDES_TOLERANCE)
+        if math.isfinite(rough) and math.isfinite(near := between(rough - BESIDE, rough + BESIDE)):
+            return near
     low, high = (start[2] for start in FIG5_STARTS.values())
-    if not outward(low) * outward(high) < 0.0:
-        return math.nan
-    return float(brentq(outward, low, high, xtol=1e-12))
+    return between(low, high)
 
 
 @functools.cache

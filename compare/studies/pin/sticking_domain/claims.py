@@ -139,34 +139,66 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 @functools.lru_cache(maxsize=2)
 def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     """Return the largest sticking radii in m at ``searched`` ω in rad/s, found by bisection, shape (n,)."""
+    pins = [pin_at(speed) for speed in searched]
+    first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
     def radii(tolerance: float) -> FloatArray:
-        return np.array([_largest_radius(engine, pin_at(speed), tolerance) for speed in searched])
+        if tolerance == SEARCH_TOLERANCE:
+            return np.sqrt(np.prod(first, axis=1))
+        # Another tolerance moves the radius by little: it is looked for around where it was.
+        starts = [
+            near if np.all(np.isfinite(near)) else _anywhere(pin)
+            for near, pin in zip(first, pins, strict=True)
+        ]
+        return np.sqrt(
+            np.prod(
+                [_between(engine, pin, tolerance, at) for pin, at in zip(pins, starts, strict=True)], axis=1
+            )
+        )
 
     found = refined(radii, SEARCH_TOLERANCE)
     error = found.error + PRECISION * found.value / 2.0
     return Measurement(found.value, np.where(np.isfinite(error), error, 0.0))  # one not found is NaN itself
 
 
-def _largest_radius(engine: Engine, pin: PinOnDisc, tolerance: float) -> float:
+def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
+    return BRACKET[0] * pin.offset, BRACKET[1] * pin.offset
+
+
+def _between(
+    engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
+) -> tuple[float, float]:
+    """Return between which radii in m the largest lies at which the pin sticks, by bisection.
+
+    It is looked for between the radii ``around`` first, and ever farther away from them if it is not there. It is no
+    number if it is nowhere.
+    """
     # From where the least force holds the pin to where the greatest has to is half a revolution.
     end = 1.02 * math.pi / pin.disc_speed
 
+    @functools.cache
     def sticks(radius: float) -> bool:
         start = stuck(pin, radius, safest_angle(pin))
         run = engine.simulate(pin, start, [0.0, end], tolerance=tolerance)
         return all(phase.kind == "stick" for phase in run.phases)
 
-    inside, outside = (share * pin.offset for share in BRACKET)
-    if not sticks(inside) or sticks(outside):
-        return math.nan
+    (inside, outside), (least, most) = around, _anywhere(pin)
+    ratio = outside / inside
+    while not sticks(inside):
+        inside, outside, ratio = inside / ratio, inside, ratio**2
+        if inside < least:
+            return math.nan, math.nan
+    while sticks(outside):
+        inside, outside, ratio = outside, outside * ratio, ratio**2
+        if outside > most:
+            return math.nan, math.nan
     while outside - inside > PRECISION * outside:
         middle = math.sqrt(inside * outside)
         if sticks(middle):
             inside = middle
         else:
             outside = middle
-    return math.sqrt(inside * outside)
+    return inside, outside
 
 
 @STUDY.claim(

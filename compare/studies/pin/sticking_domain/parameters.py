@@ -33,7 +33,7 @@ SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 BRACKET = (0.03, 4.0)
 """Where the search begins, in units of X0: without regard to (9), so that it can't lead to it."""
 
-PRECISION = 3e-5
+PRECISION = 6e-5
 """Relative, of that search."""
 
 SEARCH_TOLERANCE = 1e-7
