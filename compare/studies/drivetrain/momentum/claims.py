@@ -54,7 +54,7 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Let every drivetrain run for 10 s with a solver, and with half its steps."""
+    """Let every drivetrain run with a solver, and with half its steps."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []

@@ -57,7 +57,7 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
     options = settings.timeIntegration
     options.endTime, options.numberOfSteps, options.verboseMode = UNTIL, steps, 0
     options.solverType = getattr(exu.DynamicSolverType, solver.name)
-    options.newton.useModifiedNewton = False
+    options.newton.useModifiedNewton = True
     options.newton.relativeTolerance = options.newton.absoluteTolerance = 1e-12
     exu.config.printToConsole = False
     explicit = SOLVERS["explicit"] == solver

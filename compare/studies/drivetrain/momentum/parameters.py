@@ -45,10 +45,10 @@ STIFFNESS, DAMPING, ECCENTRICITY = 25.0, 0.5, 0.01
 TORSIONAL_STIFFNESS, TORSIONAL_DAMPING = 0.5, 0.02
 """In N, m and m/s; N/m, N s/m and m; N m/rad and N m s/rad."""
 
-UNTIL = 10.0
-"""In s."""
+UNTIL = 5.0
+"""In s: two turns of the engine."""
 
-SAMPLES = 100
+SAMPLES = 50
 """Of a run."""
 
 
@@ -63,8 +63,8 @@ class Solver:
 
 
 SOLVERS = {
-    "explicit": Solver("RK67", 400, 6, 1e-11),
-    "implicit": Solver("GeneralizedAlpha", 1200, 2, 1e-8),
+    "explicit": Solver("RK67", 200, 6, 1e-11),
+    "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8),
 }
 
 DRAWN = ("rotation vector",) * 3
