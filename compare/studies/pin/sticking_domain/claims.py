@@ -142,19 +142,18 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     pins = [pin_at(speed) for speed in searched]
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
+    def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
+        """Return where to look at another tolerance, which moves the radius by little."""
+        return near if np.all(np.isfinite(near)) else _anywhere(pin)
+
     def radii(tolerance: float) -> FloatArray:
-        if tolerance == SEARCH_TOLERANCE:
-            return np.sqrt(np.prod(first, axis=1))
-        # Another tolerance moves the radius by little: it is looked for around where it was.
-        starts = [
-            near if np.all(np.isfinite(near)) else _anywhere(pin)
-            for near, pin in zip(first, pins, strict=True)
-        ]
-        return np.sqrt(
-            np.prod(
-                [_between(engine, pin, tolerance, at) for pin, at in zip(pins, starts, strict=True)], axis=1
-            )
-        )
+        found = first
+        if tolerance != SEARCH_TOLERANCE:
+            found = [
+                _between(engine, pin, tolerance, around(pin, near))
+                for pin, near in zip(pins, first, strict=True)
+            ]
+        return np.asarray(np.sqrt(np.prod(found, axis=1)))
 
     found = refined(radii, SEARCH_TOLERANCE)
     error = found.error + PRECISION * found.value / 2.0
