@@ -77,9 +77,9 @@ def test_early_ends_are_those_of_full_length(pin, reach, duration, expected):
 
 def test_ends_of_fig5_are_those_of_the_reference():
     rng = np.random.default_rng(7)
-    states = np.zeros((16, 4))
-    states[:, 0], states[:, 2] = rng.uniform(-0.3, 0.5, 16), rng.uniform(-0.4, 0.4, 16)
-    states[:6] *= 0.25  # so that the equilibrium has its share
+    states = np.zeros((8, 4))
+    states[:, 0], states[:, 2] = rng.uniform(-0.3, 0.5, 8), rng.uniform(-0.4, 0.4, 8)
+    states[:3] *= 0.25  # so that the equilibrium has its share
     ends = simulate_ensemble(FIG5, states, duration=400.0).end
     (equilibrium,) = self_centred_equilibria(FIG5)
     orbit = whirl_orbit(FIG5)
@@ -122,7 +122,7 @@ def test_radii_of_whirls_and_of_stick_and_slip_are_those_of_the_reference_wherev
     found = simulate_ensemble(FIG5, starts(n, 1.0), duration=1000.0, parameters=varied)
     periodic = np.flatnonzero((found.end == EndState.WHIRL) | (found.end == EndState.STICK_SLIP))
     assert len(periodic) > 40
-    for i in periodic:
+    for i in periodic[::4]:
         pin = replace(FIG5, **{name: float(values[i]) for name, values in varied.items()})
         # Both come round in a turn of the slower of pin and disc; a cycle with stick in up to two.
         times = np.linspace(0.0, 4.0 * np.pi, 2001)
@@ -147,7 +147,7 @@ def test_measures_of_rest_and_of_the_equilibrium_are_closed_forms():
 def test_measures_of_stick_and_slip_are_those_of_the_reference():
     found = simulate_ensemble(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], duration=400.0)
     assert found.end[0] == EndState.STICK_SLIP
-    times = np.linspace(0.0, 300.0, 150_001)
+    times = np.linspace(0.0, 120.0, 60_001)
     trajectory = simulate(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], times, tolerance=1e-10)
     first, last = (phase.end for phase in trajectory.stick_phases[-3:-1])
     cycle = (times >= first) & (times <= last)
@@ -308,7 +308,7 @@ def test_starts_next_to_the_saddle_between_the_basins_go_to_their_own_side():
     """The boundary is found by shooting at the saddle, which motions that begin beside it seem to end in at first."""
     (saddle,) = (orbit for orbit in stick_slip_orbits(FIG5) if not orbit.stable)
     middle = boundary_point(saddle, [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0])
-    aside = np.geomspace(1e-9, 1e-5, 20)
+    aside = np.geomspace(1e-9, 1e-5, 5)
     for sign, end in ((-1.0, EndState.SELF_CENTRED), (1.0, EndState.WHIRL)):
         starts = np.tile(middle, (len(aside), 1))
         starts[:, 2] += sign * aside

@@ -104,7 +104,7 @@ def test_basin_of_the_equilibrium_of_fig_5_is_what_one_closed_curve_encloses(bou
     assert steps.max() <= 1.05 * 0.8 / 5  # a correction goes across the tangent
     # Between two points whose tangents are acos 0.97 apart a curve keeps within a sixteenth of its step of the chord.
     polygon, margin = Path(curve.points), steps.max() / 16.0
-    starts = np.random.default_rng(5).uniform([-0.1, -0.3], [0.35, 0.15], (40, 2))
+    starts = np.random.default_rng(5).uniform([-0.1, -0.3], [0.35, 0.15], (16, 2))
     told = 0
     for x, vx in starts:
         around = [(x + margin * np.cos(a), vx + margin * np.sin(a)) for a in np.arange(0.0, 6.2, 0.3)]
@@ -112,14 +112,14 @@ def test_basin_of_the_equilibrium_of_fig_5_is_what_one_closed_curve_encloses(bou
         if inside.all() or not inside.any():
             assert whirls([x, 0.0, vx, 0.0], 150.0, 1e-6) != inside.all(), (x, vx)
             told += 1
-    assert told > 25
+    assert told > 10
 
 
 def test_points_of_the_curve_separate_the_basins(boundary):
     (curve,) = boundary
     x, vx = curve.points.T
     anticlockwise = np.sign(np.sum(x[:-1] * vx[1:] - x[1:] * vx[:-1]))
-    for i in range(1, len(x) - 1, 8):
+    for i in range(1, len(x) - 1, 16):
         along = curve.points[i + 1] - curve.points[i - 1]
         outward = 1e-5 * anticlockwise * np.array([along[1], -along[0]]) / np.linalg.norm(along)
         for side in (-1.0, 1.0):
