@@ -59,10 +59,10 @@ def motions_of_the_pin() -> dict[str, Motion]:
     turning = sticky.disc_speed
     return {
         "the way to the equilibrium, with stick phases": Motion(
-            FIG5, FIG5_STARTS["equilibrium"], 400.0, "Fig. 5"
+            FIG5, FIG5_STARTS["equilibrium"], 100.0, "Fig. 5"
         ),
         "the way to the whirl, with stick phases": Motion(
-            FIG5, FIG5_STARTS["whirl"], 400.0, "Fig. 5", drawn=True
+            FIG5, FIG5_STARTS["whirl"], 400.0, "Fig. 5", tolerance=2.0 * WORKING, drawn=True
         ),
         "a whirl that settles": Motion(
             CENTRED,

@@ -20,6 +20,7 @@ from compare.studies.pin.basins.parameters import (
     ASKED,
     BARELY,
     CELLS,
+    FINER,
     FROM_REST,
     ON_BOUNDARY,
     PLACES,
@@ -42,6 +43,7 @@ from compare.studies.pin.basins.theory import (
     curves,
     distances,
     enclosed,
+    ends_on_finer_grid,
     ends_on_grid,
     ensemble_of,
     inside,
@@ -201,15 +203,16 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     "The equilibrium's share of the starts of the rectangle is that of the area which the boundary encloses, at both "
     "speeds",
     resolution=2e-3,
-    note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting. Numerical error: half of the "
-    "cells through which the boundary passes.",
+    note=f"{SIDE} × {SIDE} starts by the compiled ensemble, and where those of a cell end differently a grid {FINER} "
+    "times as dense; the boundary by shooting. Numerical error: half of the finer cells through which the boundary "
+    "passes.",
     basis="reference",
     swept=("disc_speed",),
 )
 def area(side: int = SIDE, cells: int = CELLS, pins: tuple[PinOnDisc, ...] = tuple(WHERE)) -> Measured:
     """Compare the share of the starts with the share of the area, for each pin."""
     whole = math.prod(high - low for low, high in PLANE)
-    shares = [of_grid(ends_on_grid(pin, side))[EndState.SELF_CENTRED] for pin in pins]
+    shares = [of_grid(ends_on_finer_grid(pin, side))[EndState.SELF_CENTRED] for pin in pins]
     return Measured(
         predicted=[enclosed(smooth(boundary(pin, cells))) / whole for pin in pins],
         value=[share.value for share in shares],

@@ -16,8 +16,8 @@ RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
 
 FROM_REST = "Fig. 5; starts from rest in y"
 
-SIDE = 1000
-"""Starts along each side of the plane."""
+SIDE, FINER = 334, 3
+"""Starts along each side of the plane, and into how many parts the grid is divided where their ends differ."""
 
 FASTEST = replace(FIG5, disc_speed=3.0)
 """Fig. 5 at twice its speed: there the basin is small."""
@@ -26,7 +26,7 @@ WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.
 """Where in the plane the boundary of each pin is looked for; that no other part of it lies elsewhere the ends of the
 grid say."""
 
-CELLS, ON_BOUNDARY = 10, 1e-6
+CELLS, ON_BOUNDARY = 8, 1e-6
 """With which resolution and tolerance: splines between the points are 6e-4 m off, less than a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6
@@ -38,7 +38,7 @@ UNTIL = 3000.0
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
 """In rad/s."""
 
-STARTS, SEED = 4000, 5
+STARTS, SEED = 2000, 5
 """Random starts in the plane, the same at every speed."""
 
 RECOMPUTED = 16

@@ -11,10 +11,11 @@ from scipy.interpolate import CubicSpline
 
 from compare.claims.error_estimates import TIGHTEST
 from compare.claims.paper_parameters import FIG5
-from compare.claims.shares import Ends, of_sample
+from compare.claims.shares import Ends, mixed, of_sample
 from compare.claims.study import Data
 from compare.studies.pin.basins.parameters import (
     CELLS,
+    FINER,
     ON_BOUNDARY,
     PLANE,
     SEED,
@@ -38,7 +39,7 @@ def curves(
     for begin, end in orbit.stick_times.reshape(-1, 2):
         held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
     return {
-        "ends": ends_on_grid(FIG5, side).astype(float)[::2, ::2],
+        "ends": ends_on_grid(FIG5, side).astype(float),
         "curve": smooth(boundary(FIG5, cells)),
         "saddle": np.column_stack((orbit.states[:, :2], held)),
         "speeds": np.array(speeds),
@@ -115,6 +116,25 @@ def places_on_grid(side: int) -> FloatArray:
 def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
     """Return what the starts of the grid end in, shape (side, side)."""
     return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
+
+
+@functools.lru_cache(maxsize=2)
+def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
+    """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
+
+    Only starts in cells of the grid of ``side`` whose corners differ are followed: the others are taken to end as the
+    corners of their cell do.
+    """
+    coarse = ends_on_grid(pin, side)
+    cell = np.arange(FINER * (side - 1) + 1) // FINER
+    ends = coarse[np.ix_(cell, cell)]
+    doubtful = np.pad(mixed(coarse), (0, 1))[np.ix_(cell, cell)]
+    # The far edges of a cell are the near ones of the next.
+    doubtful[1:] |= doubtful[:-1]
+    doubtful[:, 1:] |= doubtful[:, :-1]
+    places = places_on_grid(len(cell))[doubtful.ravel()]
+    ends[doubtful] = ensemble_of(starts_at(*places.T), pin).end
+    return ends
 
 
 def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:

@@ -19,7 +19,7 @@ LIMIT = largest_load_with_equilibrium(PIN)
 START = (0.1, 0.05, 0.0, 0.0)
 """x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium."""
 
-LOADS = (0.0, 0.02, 0.04, 0.06, 0.08, 0.09, 0.095, 0.098)
+LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)
 """μN in N, within (5)."""
 
 DURATION = 520.0

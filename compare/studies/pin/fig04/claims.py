@@ -15,6 +15,7 @@ from compare.engines import Engine
 from compare.studies.pin.fig04.parameters import (
     CLAIM_SPEEDS,
     OFFSETS,
+    SHIFT_TOLERANCE,
     SOURCE,
     SOURCE_OF_OFFSETS,
     SPEEDS,
@@ -168,24 +169,24 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
     """Return the means of the whirls in m, shape (n, 2), following the branch from high speed down."""
     found, guess = [], None
     for speed in reversed(speeds):
-        guess = whirl_of(engine, pin_at(speed), WORKING, guess)
-        found.append(harmonics(engine, pin_at(speed), guess))
+        guess = whirl_of(engine, pin_at(speed), SHIFT_TOLERANCE, guess)
+        found.append(harmonics(engine, pin_at(speed), SHIFT_TOLERANCE, guess))
     return Measurement(*(np.array(each)[::-1, :2] for each in zip(*found, strict=True)))
 
 
 @functools.lru_cache(maxsize=len(CLAIM_SPEEDS))
 def over_offset(engine: Engine, speed: float) -> Measurement:
     """Return ``harmonics`` at each of ``OFFSETS``, shape (n, 4)."""
-    found = [harmonics(engine, pin_at(speed, offset)) for offset in OFFSETS]
+    found = [harmonics(engine, pin_at(speed, offset), WORKING) for offset in OFFSETS]
     return Measurement(*(np.array(each) for each in zip(*found, strict=True)))
 
 
-def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Measurement:
+def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Measurement:
     """Return mean and second harmonic of x + iy over a whirl in m, shape (4,).
 
     The second harmonic is that of a time at which the first one is real.
     """
-    first_orbit = guess or whirl_of(engine, pin, WORKING)
+    first_orbit = guess or whirl_of(engine, pin, tolerance)
 
     def found(tolerance: float) -> FloatArray:
         orbit = whirl_of(engine, pin, tolerance, first_orbit)
@@ -195,7 +196,7 @@ def harmonics(engine: Engine, pin: PinOnDisc, guess: Orbit | None = None) -> Mea
         return np.array([*orbit.mean, second.real, second.imag])
 
     # A miss of the orbit shifts its mean by about as much.
-    return refined(found, WORKING).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
+    return refined(found, tolerance).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
 
 
 def _complex(point: FloatArray) -> complex:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG4
 from reference_model import PinOnDisc
 
@@ -15,6 +16,9 @@ CLAIM_SPEEDS = (1.2, 1.5, 3.0)
 
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m for the orders, each half of the one before and far below the whirl's radius of 1.2 m."""
+
+SHIFT_TOLERANCE = 1e3 * WORKING
+"""Of the means over ω, which (18) gives to a few per cent."""
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"

@@ -18,6 +18,7 @@ from compare.studies.pin.fig06.parameters import (
     EQUILIBRIUM_LOADS,
     FIG6,
     SOURCE,
+    TOLERANCE,
     WHIRL_LOADS,
     with_load,
 )
@@ -46,7 +47,7 @@ STUDY = Study.beside(__file__, "fig06", source=SOURCE, system=FIG6, draw=draw, c
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
     """Compare where pins come to rest with (3), at several late times: one state alone may be right by chance."""
     times = np.linspace(590.0, 600.0, 11)
-    found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads])
+    found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
     # The slowest deviation decays like exp(−βt/2m); it was 5 mm.
     left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * times[0])
@@ -79,7 +80,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     """Compare period and extent of the whirls with those of the reference."""
-    first = [whirl_of(engine, with_load(load), WORKING) for load in loads]
+    first = [whirl_of(engine, with_load(load), TOLERANCE) for load in loads]
 
     def period_and_extent(tolerance: float) -> FloatArray:
         orbits = [
@@ -88,7 +89,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
         ]
         return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
 
-    found = refined(period_and_extent, WORKING)
+    found = refined(period_and_extent, TOLERANCE)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
     # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
@@ -164,7 +165,7 @@ def coexist(engine: Engine) -> Measured:
         )
         return [len(stays.phases) == 1 and bool(stays.stick_phases), not whirls.stick_phases]
 
-    return answers_of(*asked(sticks_and_slides, WORKING))
+    return answers_of(*asked(sticks_and_slides, TOLERANCE))
 
 
 @STUDY.claim(
@@ -179,7 +180,8 @@ def cycle_exists(engine: Engine) -> Measured:
     orbit = cycle()
     times = np.linspace(0.0, orbit.period, 9)
     found = refined(
-        lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
+        lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states,
+        TOLERANCE,
     )
     return Measured(
         predicted=simulate(orbit.system, orbit.state, times, tolerance=TRUTH).states,
@@ -202,9 +204,9 @@ def cycle_exists(engine: Engine) -> Measured:
 def cycle_attracts(engine: Engine) -> Measured:
     """Measure by how much the distance from the cycle falls in a turn."""
     orbit = cycle()
-    found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION))
+    found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION), TOLERANCE)
     # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
-    wide = _decay_in_a_turn(engine, orbit, WORKING, 2.0 * CYCLE_DEVIATION)
+    wide = _decay_in_a_turn(engine, orbit, TOLERANCE, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
     return Measured(
         predicted=abs(orbit.multipliers[1]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import FIG4
 from reference_model import PinOnDisc
 from reference_model.formulas.pin import largest_load_with_equilibrium
@@ -24,6 +25,9 @@ CYCLE_LOAD = 0.102
 CYCLE_DEVIATION = 0.01
 CYCLE_TURNS = 5
 """How far from the cycle pins are started, relative to it, and for how many turns they are followed."""
+
+TOLERANCE = 10.0 * WORKING
+"""Of all but the friction force at which the whirl ends, which is to be known to 1e-8 N."""
 
 INNERMOST = 0.012
 """Crossing of the x axis in m down to which the branch is followed towards the axis."""

@@ -44,8 +44,8 @@ CAUGHT = 18.0
 CAUGHT_TOLERANCE = 1e-7
 
 POINTS = (
-    *((speed, PIN.damping) for speed in (1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0)),
-    *((1.5, damping) for damping in (0.5, 1.0, 2.0)),
+    *((speed, PIN.damping) for speed in (1.05, 1.1, 1.5, 2.5, 5.0)),
+    *((1.5, damping) for damping in (0.5, 2.0)),
 )
 """ω in rad/s and β in N s/m at which eigenvalues are measured."""
 

@@ -64,7 +64,7 @@ class TestBasins(StudyTests):
 @pytest.fixture
 def anew(monkeypatch):
     """Let nothing that was found before the test, or in it, be found again."""
-    cached = (theory.ends_on_grid, theory.shares_over_speed)
+    cached = (theory.ends_on_grid, theory.ends_on_finer_grid, theory.shares_over_speed)
     for each in cached:
         each.cache_clear()
     yield monkeypatch
@@ -85,7 +85,7 @@ def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
     x, vx = np.meshgrid(np.linspace(-1.0, 1.0, 401), np.linspace(-1.0, 1.0, 401))
     middle = (abs(x) <= 0.5) & (abs(vx) <= 0.5)
     ends = np.where(middle, EndState.SELF_CENTRED, EndState.WHIRL).astype(np.uint8)
-    monkeypatch.setattr(claims, "ends_on_grid", lambda pin, side: ends)
+    monkeypatch.setattr(claims, "ends_on_finer_grid", lambda pin, side: ends)
     (claim,) = claims_of_theory("area")
     assert claim.verdict is Verdict.DIFFERS
     assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
