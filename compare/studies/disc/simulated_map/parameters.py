@@ -6,7 +6,7 @@ import numpy as np
 
 from compare.claims.error_estimates import WORKING
 
-SIDE = 80
+SIDE = 60
 """Discs along each side of the plane."""
 
 DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)

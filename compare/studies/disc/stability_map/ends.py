@@ -21,7 +21,7 @@ WATCHED = 350.0
 SLOWLY_SETTLED = 2400.0
 """In s: what takes longer near to where a cycle has just gone."""
 
-SETTLING_TOLERANCE = 1e-6
+SETTLING_TOLERANCE = 1e-5
 
 AXIS = 1e-3
 """Radius in units of R below which a motion counts as rotation about the axis."""

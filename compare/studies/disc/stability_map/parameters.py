@@ -34,7 +34,7 @@ ASIDE = 0.01
 DEVIATION = 0.02
 """Of the whirl at the start, in units of the distance to where a point of the ring rests."""
 
-FLOW_TOLERANCE = WORKING / 10
+FLOW_TOLERANCE = 100 * WORKING
 """Of the simulations that are subtracted from each other: their differences are small."""
 
 STUCK = 60.0

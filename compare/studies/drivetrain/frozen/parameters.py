@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.studies.toolkit.drivetrain_bench import passenger_car
 
 if TYPE_CHECKING:
@@ -57,22 +58,25 @@ TIME = 0.4
 DEVIATION = 3e-3
 """As a part of the radius."""
 
+TOLERANCE = 20 * WORKING
+"""Of the runs that are subtracted from each other."""
+
 PUSH, UNTIL = 0.2, 6.0
 """The same of the modulated motion: first deviation, and when it ends, in s."""
 
 ROUGHER = 80.0
-"""Its tolerance over that of the small deviations."""
+"""Its tolerance over the usual one."""
 
 CYCLE_SAMPLE = 2e-3
 """In s, of the modulated motion."""
 
-SPEEDS = np.linspace(2900.0, 6500.0, 46)
+SPEEDS = np.linspace(2900.0, 6500.0, 32)
 """Of the map in turns a minute, from just above the natural frequency."""
 
-TORQUES = np.geomspace(0.2, 60.0, 46)
+TORQUES = np.geomspace(0.2, 60.0, 32)
 """Of the maps in N m."""
 
-SURPLUSES = np.geomspace(1e-4, 0.2, 46)
+SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 """Of the load, over what the torque needs."""
 
 SURPLUS, SPEED = 0.1, 6000.0

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import TIGHTEST, Measurement, refined
+from compare.claims.error_estimates import WORKING, Measurement, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import at_each
 from compare.engines import Engine
@@ -62,8 +62,8 @@ def critical_of(engine: Engine) -> tuple[float, Measurement]:
     """Return the critical X0 in m by exact multipliers and by the engine's own; no numbers where there is none."""
     found = functools.cache(lambda tolerance: critical_offset(engine, tolerance))
     try:
-        measured, error = refined(lambda tolerance: found(tolerance)[0], TIGHTEST)
-        _, interpolation, slope, near = found(TIGHTEST)
+        measured, error = refined(lambda tolerance: found(tolerance)[0])
+        _, interpolation, slope, near = found(WORKING)
         exact = multipliers_by_variation(disc_at(float(measured)), near)
     except RuntimeError:  # no whirl, or none that could be critical
         return math.nan, Measurement(np.array(math.nan), np.array(math.inf))

@@ -10,7 +10,7 @@ from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig11.claims.study import STUDY
-from compare.studies.disc.fig11.parameters import EXTREMES, ROUND, TIMES
+from compare.studies.disc.fig11.parameters import EXTREMES, OF_RESTS, ROUND, TIMES
 from compare.studies.disc.fig11.theory import extremes_of
 from compare.studies.toolkit.fig11_motion import SIX, START
 from reference_model import Trajectory, simulate
@@ -35,8 +35,8 @@ def points_rest(engine: Engine) -> Measured:
         found = rests_of_points(_run(engine, tolerance))
         return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
 
-    found = refined(rests)
-    longer = engine.simulate(SIX, START, TIMES, tolerance=1e-8)
+    found = refined(rests, OF_RESTS)
+    longer = engine.simulate(SIX, START, TIMES, tolerance=OF_RESTS)
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -59,7 +59,7 @@ def points_rest(engine: Engine) -> Measured:
 )
 def extremes_on_six_points(engine: Engine) -> Measured:
     """Compare the extremes over one modulation with those of the reference."""
-    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), alike=False)
+    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), OF_RESTS, alike=False)
     return Measured(
         predicted=extremes_of(_reference()),
         value=found.value,

@@ -179,7 +179,7 @@ def departure(
     """
     turns = np.arange(round(until / whirl.period) + 1)
     times = turns * whirl.period
-    run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-8)
+    run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-6)
     away = rotated(run.states, -turns * whirl.turn) - whirl.state
     away[:, ANGLE] -= turns * whirl.advance
     sizes = np.abs(away @ whirl.projection) / whirl.radius

@@ -33,6 +33,7 @@ from compare.studies.drivetrain.frozen.parameters import (
     PUSH,
     ROUGHER,
     TIME,
+    TOLERANCE,
     UNTIL,
     WHIRLS,
 )
@@ -167,11 +168,11 @@ def growth(engine: Engine) -> Measured:
         start, end = (runs[0] - runs[1]) @ mode
         return complex(np.log(end / start) / TIME)
 
-    found = refined(lambda tolerance: real_and_imaginary(grown(DEVIATION, tolerance)), WORKING)
+    found = refined(lambda tolerance: real_and_imaginary(grown(DEVIATION, tolerance)), TOLERANCE)
     return Measured(
         predicted=real_and_imaginary(predicted),
         value=found.value,
-        error=np.hypot(*found.error) + abs(grown(2.0 * DEVIATION, WORKING) - complex(*found.value)),
+        error=np.hypot(*found.error) + abs(grown(2.0 * DEVIATION, TOLERANCE) - complex(*found.value)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
         parameters=parameters_of(car, speed=MODULATED[0], torque=whirl.torque, surplus=MODULATED[2]),
