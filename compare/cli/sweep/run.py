@@ -42,7 +42,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     from compare.sweep.compute.store import SweepStore
     from compare.sweep.compute.work import OtherCodeError
 
-    with refused():
+    with _looking():
         folder = _checked(place)
         files = Files.at(folder.below(STORE))
         store = _there(files, plan, chunk, resume)
@@ -51,6 +51,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
             if store is None:
                 store = SweepStore.create(files.url, plan, chunk or CHUNK)
             run(store, executor, progress)
+        return finish(store, folder)
     except FileExistsError:
         return say(_already(files), BAD_INPUT)
     except (ClusterError, OtherCodeError) as error:
@@ -68,22 +69,30 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     finally:
         if store is not None and store.broken:
             say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
-    return finish(store, folder)
+
+
+@contextmanager
+def _looking() -> Iterator[None]:
+    """Turn what is wrong with a place, or with what is there, into ``BadInputError``."""
+    from compare.sweep.compute.files import StoreError
+
+    with refused():
+        try:
+            yield
+        except StoreError as error:
+            raise BadInputError(str(error)) from None
 
 
 def _checked(place: str) -> Files:
-    """Return the files at a folder or URL; raise ``ValueError`` where none can be written."""
-    from compare.sweep.compute.files import Files, StoreError, is_remote
+    """Return the files at a folder or URL; raise ``ValueError`` or ``StoreError`` where none can be written."""
+    from compare.sweep.compute.files import Files, is_remote
 
     files = Files.at(place)
-    if not is_remote(place):
-        check_folder(Path(place))
-        return files
-    try:
+    if is_remote(place):
         files.write({f"{STORE}.try": b""})
         files.remove(f"{STORE}.try")
-    except StoreError as error:
-        raise ValueError(str(error)) from None
+    else:
+        check_folder(Path(place))
     return files
 
 
@@ -148,11 +157,12 @@ def redraw(place: str) -> None:
     from compare.sweep.compute.files import Files
     from compare.sweep.compute.store import SweepStore
 
-    with refused():
+    with _looking():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
         _check_finished(store)
-    finish(store, folder)
+    with _looking():
+        finish(store, folder)
 
 
 def _check_finished(store: SweepStore) -> None:
