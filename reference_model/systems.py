@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -60,18 +60,15 @@ class _SupportedMass:
 
     def __post_init__(self) -> None:
         """Refuse what no system can be."""
-        for field in fields(self):
-            if field.name != "contact_points":
-                object.__setattr__(self, field.name, finite_number(field.name, getattr(self, field.name)))
-        for name in (*self._positive, *self._not_negative):
-            value = getattr(self, name)
-            if value < 0.0 or (value == 0.0 and name in self._positive):
-                allowed = "> 0" if name in self._positive else ">= 0"
-                raise ValueError(f"{name} = {value:g} {self._units[name]}: it must be {allowed}")
         for name, unit in self._units.items():
-            value = getattr(self, name)
-            if abs(value) > MOST or (name in self._positive and value < LEAST):
-                allowed = f"between {LEAST:g} and" if name in self._positive else "at most"
+            value = finite_number(name, getattr(self, name))
+            object.__setattr__(self, name, value)
+            positive = name in self._positive
+            if (positive and value <= 0.0) or (value < 0.0 and name in self._not_negative):
+                allowed = "> 0" if positive else ">= 0"
+                raise ValueError(f"{name} = {value:g} {unit}: it must be {allowed}")
+            if abs(value) > MOST or (positive and value < LEAST):
+                allowed = f"between {LEAST:g} and" if positive else "at most"
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
         for name, (formula, ratio) in self._ratios().items():
             if ratio > MOST_RATIO:
