@@ -7,7 +7,6 @@ compared: throughputs are those of a processor, of all processes together.
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -34,6 +33,15 @@ LARGE = (1_000_000, 10_000_000)
 """Trajectories of the sweeps of which the command's memory is measured."""
 
 NODES, CORES, PROJECTED = 64, 64, 10**9
+
+MEASURED = """
+import re, sys, time
+from compare.cli import app
+status = app.status(sys.argv[1:])
+print(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1], time.process_time())
+sys.exit(status)
+"""
+"""The command, which tells its own memory: what the operating system tells its parent has the parent's in it."""
 
 PLACE = re.compile(r"(<!-- written by benchmarks/sweep_cluster.py -->\n).*?(<!-- end -->)", flags=re.DOTALL)
 
@@ -73,13 +81,15 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
     with tempfile.TemporaryDirectory() as folder:
         more = [] if scheduler is None else ["--scheduler", scheduler]
         command = ["sweep", "basin", "pin", "--random", str(samples), "--output", folder, *more]
-        process = subprocess.Popen(
-            [sys.executable, "-m", "compare.cli", *command], stdout=subprocess.DEVNULL, cwd=ROOT
+        process = subprocess.run(
+            [sys.executable, "-c", MEASURED, *command],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+            cwd=ROOT,
         )
-        _, status, usage = os.wait4(process.pid, 0)
-        if status != 0:
-            raise RuntimeError(f"the sweep of {samples} ended with {status}")
-        return usage.ru_maxrss / 1000.0, usage.ru_utime + usage.ru_stime
+        kilobytes, seconds = process.stdout.splitlines()[-1].split()
+        return float(kilobytes) / 1000.0, float(seconds)
 
 
 def written() -> str:

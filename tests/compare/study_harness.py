@@ -42,10 +42,10 @@ def remembering(function):
 
 
 @functools.cache
-def findings_of(study, name, sound_few):
+def findings_of(study, name, sound_few, only=()):
     """Measure a part of ``study`` with a sound engine, or its theory, once for all tests."""
     few = {function: dict(options) for function, options in sound_few}
-    return study.measure_theory(few) if name == "theory" else study.measure(engine_named(name), few)
+    return study.measure_theory(few) if name == "theory" else study.measure(engine_named(name), few, only)
 
 
 class StudyTests:
@@ -53,7 +53,8 @@ class StudyTests:
 
     ``study`` is it; ``few`` are the arguments, by the functions of its claims and for "curves", with which less than
     all is measured; ``sound`` are engines of which every claim must agree, and ``not_claimed`` the functions that
-    claim nothing of one of them.
+    claim nothing of one of them. Of an engine that takes long ``parts`` names what alone is asked: functions, or
+    "function/case".
 
     ``faults`` are broken engines, ``columns`` functions of claims, or "function/case" for one of a family, and
     ``table`` says for each fault which of them see it: SEES, BLIND, OPEN, LEFT_OUT, a part of the message of an
@@ -65,6 +66,7 @@ class StudyTests:
     few = {}
     sound = ("reference", "intact")
     not_claimed = {}
+    parts = {}
     faults = {}
     few_of_faults = None
     columns = ()
@@ -88,7 +90,7 @@ class StudyTests:
     def found(cls, name):
         """Return the findings about a sound engine, or "theory"."""
         few = tuple((function, tuple(options.items())) for function, options in cls.few.items())
-        return findings_of(cls.study, name, few)
+        return findings_of(cls.study, name, few, cls.parts.get(name, ()))
 
     @classmethod
     def claims_of_fault(cls, fault, claim):
@@ -101,11 +103,13 @@ class StudyTests:
         return cls.study.measure(cls.faults[fault], few, only)
 
     def test_every_claim_holds_in_a_sound_engine(self, sound_engine):
+        parts, not_claimed = (of.get(sound_engine, ()) for of in (self.parts, self.not_claimed))
         declared = [
             one.sentence_of(case)
             for one in self.study.declared
-            if one.of_engine and one.function.__name__ not in self.not_claimed.get(sound_engine, ())
+            if one.of_engine and (name := one.function.__name__) not in not_claimed
             for case, _ in one.cases()
+            if not parts or name in parts or f"{name}/{case}" in parts
         ]
         found = {claim.sentence: claim.verdict for claim in self.found(sound_engine).claims}
         assert found == dict.fromkeys(declared, Verdict.AGREES)

@@ -68,10 +68,11 @@ class Files:
     def read(self, name: str) -> bytes | None:
         """Return the contents of a file, None if it is not there."""
         system, root = self._system
-        try:
-            return bytes(system.cat_file(f"{root}/{name}"))
-        except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
-            return None
+        with told(self.url, "read from"):
+            try:
+                return bytes(system.cat_file(f"{root}/{name}"))
+            except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
+                return None
 
     def write(self, contents: Mapping[str, bytes]) -> None:
         """Write files, those that are there too."""
@@ -97,17 +98,19 @@ class Files:
     def names(self, folder: str) -> list[str]:
         """Return the names of all files below a folder, sorted."""
         system, root = self._system
-        return sorted(path[len(root) + 1 :] for path in system.find(f"{root}/{folder}"))
+        with told(self.url, "read from"):
+            return sorted(path[len(root) + 1 :] for path in system.find(f"{root}/{folder}"))
 
     def inside(self, folder: str = "") -> list[str]:
         """Return the names, relative to it, of what lies directly in a folder."""
         system, root = self._system
         path = f"{root}/{folder}".rstrip("/")
-        try:
-            found = system.ls(path, detail=False)
-        except (FileNotFoundError, NotADirectoryError):
-            return []
-        return sorted({one.rstrip("/")[len(path) + 1 :] for one in found} - {""})
+        with told(self.url, "read from"):
+            try:
+                found = system.ls(path, detail=False)
+            except (FileNotFoundError, NotADirectoryError):
+                return []
+            return sorted({one.rstrip("/")[len(path) + 1 :] for one in found} - {""})
 
     def remove(self, folder: str) -> None:
         """Remove a folder with all that is in it; it need not be there."""
@@ -123,7 +126,7 @@ def is_remote(place: str | Path) -> bool:
 
 
 @contextmanager
-def told(url: str) -> Iterator[None]:
+def told(url: str, action: str = "write to") -> Iterator[None]:
     """Turn whatever a file system raises inside into a ``StoreError``; what is there already stays what it is."""
     try:
         yield
@@ -131,4 +134,4 @@ def told(url: str) -> Iterator[None]:
         raise
     except Exception as error:  # each file system has its own
         reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
-        raise StoreError(f"can't write to {url!r}: {reason}") from error
+        raise StoreError(f"can't {action} {url!r}: {reason}") from error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -69,6 +70,12 @@ def states_of(
     return states
 
 
+@functools.lru_cache(maxsize=2)
+def to_rest(engine: Engine, tolerance: float) -> Trajectory:
+    """Return the motion to rest at the scale of a clutch, of which two claims are made."""
+    return at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance)
+
+
 @STUDY.claim(
     "At the scale of a clutch the pin of Fig. 5 comes to rest at the position (3)",
     equation="(3)",
@@ -78,12 +85,15 @@ def states_of(
 )
 def rests(engine: Engine) -> Measured:
     """Compare where the pin comes to rest with (3)."""
-    times = np.append(0.0, np.linspace(UNTIL - 40.0, UNTIL, 81))
-    states = states_of(engine, FIG5, TO_REST, times)
-    places, error = refined(lambda tolerance: states(tolerance)[:, :2] / FIG5.offset)
+    # Places of the last 40 s, in the paper's units.
+    places, error = refined(
+        lambda tolerance: (
+            to_rest(engine, tolerance).states[-81:, :2] / CLUTCH.states(np.ones(4))[:2] / FIG5.offset
+        )
+    )
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(places[:40], places[-1], rate, 20.0)
-    motion = at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), WORKING)
+    motion = to_rest(engine, WORKING)
     return Measured(
         predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
         value=places[-1],
@@ -110,8 +120,7 @@ def sticks(engine: Engine) -> Measured:
     predicted = exact_motion().stick_times
 
     def measured(tolerance: float) -> FloatArray:
-        times = np.array([0.0, 80.0])
-        found = at_clutch(engine, FIG5, TO_REST, times, tolerance).stick_times / CLUTCH.time
+        found = to_rest(engine, tolerance).stick_times / CLUTCH.time
         return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
 
     events, error = refined(measured)

@@ -26,7 +26,7 @@ CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
 CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Time of the paper's scale, in s, of the motion of Fig. 11, and how often its state is asked for."""
 
-VELOCITIES = (0.0, 0.01, 0.02, 0.026, 0.0275, 0.03, 0.04, 0.06)
+VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
 """vx(0) in m/s at the paper's scale of starts that go to either end."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0

@@ -39,6 +39,8 @@ def never_released(system, initial_state, times, *, tolerance=1e-9):
 
 class TestFig05(StudyTests):
     study = STUDY
+    # The way to the whirl is long, and its end far.
+    parts = {"intact": ("slides", "rests", "first_stick/equilibrium", "all_sticks/equilibrium", "critical")}
     faults = GROSS | {
         "friction 1 % off": altered(friction_force=1.01),
         "stick never ends": Engine("stick never ends", never_released),
@@ -63,7 +65,7 @@ class TestFig05(StudyTests):
         assert [one.verdict for one in found] == [Verdict.DIFFERS] * len(FIG5_STARTS)
 
     def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(self):
-        found = {"reference": self.found("reference").data, "exudyn": self.found("intact").data}
+        found = {"reference": self.found("reference").data, "exudyn": self.found("reference").data}
         broken = STUDY.measure(self.faults["square"], only=("all_sticks",)).data
         (figure,) = STUDY.draw(found | {"broken": broken}).values()
         labels = [line.get_label() for line in figure.axes[2].lines]

@@ -14,7 +14,7 @@ from processes import PATIENCE, wait_until
 from werkzeug.serving import make_server
 
 from compare.cli import app as cli
-from compare.sweep.compute.files import Files
+from compare.sweep.compute.files import OPTIONS, Files
 from compare.sweep.compute.run import finished
 from compare.sweep.compute.store import SweepStore
 
@@ -119,6 +119,16 @@ def test_only_one_makes_a_store_there(server):
 def test_what_can_not_be_written_is_refused_in_one_sentence(url, words, server, capsys):
     assert cli.status([*LONG, "--output", url]) == 2
     assert capsys.readouterr() == ("", words)
+
+
+def test_a_server_that_is_not_there_is_told_in_one_sentence(server, monkeypatch, capsys):
+    monkeypatch.setitem(OPTIONS, "s3", {"endpoint_url": "http://127.0.0.1:1"})  # without retries
+    assert cli.status(["sweep", "figures", "s3://sweeps/there"]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert err.startswith(
+        "can't read from 's3://sweeps/there/sweep.zarr': Could not connect to the endpoint URL"
+    )
 
 
 def test_a_library_that_is_missing_is_named(monkeypatch, capsys):
