@@ -37,8 +37,9 @@ def simulate(
         whichever is less; L the largest of X0 and, at the start, distance from the axis, speed times T and friction
         over mass times T² (:class:`motion.nondimensional.Units`). It is meant at all times alike, at ends of steps
         and between them. A step may err by a twentieth of it. A motion that forgets, by damping or by rest, keeps to
-        it but for a factor of some two. In one that does not forget, errors add up: to some 40 times the tolerance
-        after 10,000 steps. What parts by itself parts by that growth.
+        it but for a small factor: of random ones the worst had 13, compiled 26, a disc on four points in 3,000 steps.
+        In one that does not forget, errors add up: to some 40 times the tolerance after 10,000 steps. What parts by
+        itself parts by that growth.
     contact : Contact or None
         The law of friction of a disc if it is not that of its parameters.
     compiled : bool
