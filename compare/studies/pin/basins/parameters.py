@@ -27,7 +27,7 @@ WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.
 grid say."""
 
 CELLS, ON_BOUNDARY = 8, 1e-6
-"""With which resolution and tolerance: splines between the points are 6e-4 m off, less than a step of the grid."""
+"""With which resolution and tolerance: splines between the points are 1.2e-3 m off, half a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6
 """How many starts at most are asked by shooting, and by how much in rad they must miss the saddle to be on a side."""
