@@ -294,22 +294,22 @@ def test_studies_come_in_report_order_whatever_the_order_of_their_names():
         studies(["verdict"], among)
 
 
-PIN_THAT_STICKS = (FIG5, (0.1, 0.0, 0.03, 0.0))
-RING = (FIG11, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
-SIX_POINTS = (replace(FIG11, contact_points=6), (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
+STICKING_PIN = (FIG5, (0.1, 0.0, 0.03, 0.0))
+TURNING_RING = (RING, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
+TURNING_POINTS = (POINTS, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
 
 
 @pytest.mark.parametrize(
     ("name", "system", "start"),
     [
-        ("reference", *PIN_THAT_STICKS),
-        ("reference", *RING),
-        ("reference", *SIX_POINTS),
-        ("exudyn", *PIN_THAT_STICKS),
-        ("exudyn", *RING),
-        ("exudyn", *SIX_POINTS),
-        ("exudyn-native", *PIN_THAT_STICKS),
-        ("exudyn-native", *SIX_POINTS),
+        ("reference", *STICKING_PIN),
+        ("reference", *TURNING_RING),
+        ("reference", *TURNING_POINTS),
+        ("exudyn", *STICKING_PIN),
+        ("exudyn", *TURNING_RING),
+        ("exudyn", *TURNING_POINTS),
+        ("exudyn-native", *STICKING_PIN),
+        ("exudyn-native", *TURNING_POINTS),
     ],
 )
 def test_the_same_motion_is_the_same_to_the_last_bit_however_often_it_is_asked_for(name, system, start):

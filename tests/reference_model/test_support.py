@@ -222,7 +222,7 @@ REFUSING = {
     "squared_distance_as_printed", "places_by_26", "whirl_at", "smallest_load_with_whirl", "growth_by_amplitude",
     "whirl_arm", "least_load_with_whirl", "stick_slip_orbits",
 }  # fmt: skip
-REFUSING_WITH_ITS_OWN_REASON = {"simulate_ensemble"}  # see ensemble/test_door
+CHECKED_ELSEWHERE = {"simulate_ensemble", "smallest_shock"}  # see ensemble/test_door, orbits/test_shock
 
 
 def test_every_function_of_a_system_is_known_to_take_any_support_or_to_refuse_it():
@@ -239,7 +239,7 @@ def test_every_function_of_a_system_is_known_to_take_any_support_or_to_refuse_it
                 }
                 if kinds & {"System", "PinOnDisc", "DiscOnDisc"}:
                     found.add(name)
-    assert found == GENERAL | REFUSING | REFUSING_WITH_ITS_OWN_REASON
+    assert found == GENERAL | REFUSING | CHECKED_ELSEWHERE
     # Both modules have characteristic_coefficients, and a plane of boundaries is a class.
     assert len(OF_A_PIN) + len(OF_A_DISC) == len(REFUSING) + 2
 
