@@ -12,16 +12,16 @@ report: $(VENV)/installed
 readme: $(VENV)/installed
 	$(BIN)/python -m compare.cli.readme write report/results.json
 
-test: $(VENV)/installed
+test: $(VENV)/for-tests
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-lint: $(VENV)/installed
+lint: $(VENV)/for-tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-benchmarks: $(VENV)/installed
+benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/exudyn_contact.py
 	$(BIN)/python benchmarks/exudyn_solvers.py
 	$(BIN)/python benchmarks/reference_evaluations.py
@@ -36,5 +36,10 @@ clean:
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+# Whoever only wants a report does not wait for what tests need.
+$(VENV)/for-tests: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
 	touch $@
