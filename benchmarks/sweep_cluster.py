@@ -20,9 +20,9 @@ from compare.claims.paper_parameters import FIG5
 from compare.cli.options import cores
 from compare.sweep.compute.executors import Cluster, Executor, InProcess
 from compare.sweep.compute.run import run
-from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
+from compare.sweep.store.store import SweepStore
 
 ROOT = Path(__file__).parents[1]
 

@@ -243,9 +243,8 @@ def _imports(name: str, place: Place, content: bytes, trusted: bool = False) -> 
             found += (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = _absolute(name, place, node)
-            names = (
-                f"{base}.{alias.name}" for alias in node.names if alias.name != "*"
-            )  # some may be modules
+            # some may be modules
+            names = (f"{base}.{alias.name}" for alias in node.names if alias.name != "*")
             found += (base, *(one for one in names if located(one) is not None))
     return tuple(found)
 

@@ -1,6 +1,9 @@
 """``friction-discs sweep``: many trajectories."""
 
-import compare.cli.sweep.shock  # noqa: F401  # registers itself
+from compare.cli.command import Command
 from compare.cli.sweep.commands import sweep
+from compare.cli.sweep.shock import sweep_shock
+
+sweep.command("shock", cls=Command)(sweep_shock)
 
 __all__ = ["sweep"]

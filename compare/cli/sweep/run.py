@@ -22,9 +22,9 @@ from compare.cli.progress import trajectories
 
 if TYPE_CHECKING:
     from compare.sweep.compute.executors import Executor
-    from compare.sweep.compute.files import Files
-    from compare.sweep.compute.store import SweepStore
     from compare.sweep.define.plan import Plan
+    from compare.sweep.store.files import Files
+    from compare.sweep.store.store import SweepStore
 
 STORE = "sweep.zarr"
 """Name of the store in its folder."""
@@ -37,10 +37,10 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     """Run a sweep, or the rest of it; print and draw its results."""
     from compare.run.workers import lacks_memory
     from compare.sweep.compute.executors import ClusterError
-    from compare.sweep.compute.files import Files, StoreError
     from compare.sweep.compute.run import run
-    from compare.sweep.compute.store import SweepStore
     from compare.sweep.compute.work import OtherCodeError
+    from compare.sweep.store.files import Files, StoreError
+    from compare.sweep.store.store import SweepStore
 
     with _looking():
         folder = _checked(place)
@@ -74,7 +74,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
 @contextmanager
 def _looking() -> Iterator[None]:
     """Turn what is wrong with a place, or with what is there, into ``BadInputError``."""
-    from compare.sweep.compute.files import StoreError
+    from compare.sweep.store.files import StoreError
 
     with refused():
         try:
@@ -85,7 +85,7 @@ def _looking() -> Iterator[None]:
 
 def _checked(place: str) -> Files:
     """Return the files at a folder or URL; raise ``ValueError`` or ``StoreError`` where none can be written."""
-    from compare.sweep.compute.files import Files, is_remote
+    from compare.sweep.store.files import Files, is_remote
 
     files = Files.at(place)
     if is_remote(place):
@@ -102,8 +102,8 @@ def _already(files: Files) -> str:
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
-    from compare.sweep.compute.stamp import sweep_stamp
-    from compare.sweep.compute.store import SweepStore, is_free
+    from compare.sweep.store.stamp import sweep_stamp
+    from compare.sweep.store.store import SweepStore, is_free
 
     if is_free(files):
         return None
@@ -154,8 +154,8 @@ def finish(store: SweepStore, folder: Files) -> int:
 
 def redraw(place: str) -> None:
     """Draw and print a finished sweep once more; raise ``BadInputError`` for one that is not finished."""
-    from compare.sweep.compute.files import Files
-    from compare.sweep.compute.store import SweepStore
+    from compare.sweep.store.files import Files
+    from compare.sweep.store.store import SweepStore
 
     with _looking():
         folder = Files.at(place)

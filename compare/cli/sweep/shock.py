@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 
-from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, Command, printing, refused
+from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, printing, refused
 from compare.cli.options import Settings, Tolerance, changed
-from compare.cli.sweep.commands import sweep
 
 AGREEMENT = 1e-6
 """Largest relative difference of both ways to find it."""
 
 
-@sweep.command("shock", cls=Command)
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     """Find the smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 

@@ -1,1 +1,1 @@
-"""How a sweep is computed: chunks of work, those who execute them, the store, what follows from it."""
+"""How a sweep is computed: chunks of work, those who execute them, what follows from it."""

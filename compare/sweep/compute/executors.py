@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
-from compare.sweep.compute.stamp import sweep_stamp
+from compare.sweep.store.stamp import sweep_stamp
 
 WAIT = 3.0
 """In s, for a scheduler to be reached, to answer, and to have a worker."""

@@ -53,10 +53,14 @@ class Sized(Protocol):
     """Something that has a least and a largest radius in m."""
 
     @property
-    def least(self) -> float: ...  # noqa: D102
+    def least(self) -> float:
+        """The least."""
+        ...
 
     @property
-    def largest(self) -> float: ...  # noqa: D102
+    def largest(self) -> float:
+        """The largest."""
+        ...
 
 
 One = TypeVar("One", bound=Sized)

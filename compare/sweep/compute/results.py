@@ -14,13 +14,13 @@ from compare.claims.shares import Share
 from compare.sweep.compute.branches import known_branches
 from compare.sweep.compute.curves import curves
 from compare.sweep.compute.motions import Motion, matched, motions_of
-from compare.sweep.compute.round import Arrays, Chunks, Round
 from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
-from compare.sweep.compute.store import Large, flags, write_piece
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import RESULTS, components, units
 from compare.sweep.define.refinement import Grid
+from compare.sweep.store.round import Arrays, Chunks, Round
+from compare.sweep.store.store import Large, flags, write_piece
 from reference_model.ensemble import EndState
 from reference_model.systems import System
 

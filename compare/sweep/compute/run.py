@@ -20,12 +20,12 @@ from compare.sweep.compute.results import (
     large_of,
     parts_of,
 )
-from compare.sweep.compute.round import Chunks, Round
-from compare.sweep.compute.store import SweepStore, flags
 from compare.sweep.compute.work import Plain, recompute, simulate_chunk
 from compare.sweep.define.plan import Continuation, Map, Plan
 from compare.sweep.define.quantities import components
 from compare.sweep.define.refinement import Grid
+from compare.sweep.store.round import Chunks, Round
+from compare.sweep.store.store import SweepStore, flags
 
 CHECKED = 20
 """Trajectories of a sweep that the plain reference simulates again."""

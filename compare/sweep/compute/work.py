@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compare.sweep.compute.plain import end_of, plain_trajectory, twice_as_long, watched_until
-from compare.sweep.compute.round import Chunks
-from compare.sweep.compute.stamp import sweep_stamp
 from compare.sweep.define.plan import Numbers, Plan
 from compare.sweep.define.quantities import RESULTS
+from compare.sweep.store.round import Chunks
+from compare.sweep.store.stamp import sweep_stamp
 from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError

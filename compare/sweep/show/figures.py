@@ -20,11 +20,11 @@ from compare.figures import (
     paper_style,
     saved,
 )
-from compare.sweep.compute.files import Files
 from compare.sweep.compute.run import BRANCHES, CURVES, RESULT
-from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.plan import Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import symbol, units
+from compare.sweep.store.files import Files
+from compare.sweep.store.store import SweepStore
 from reference_model.ensemble import EndState
 
 if TYPE_CHECKING:

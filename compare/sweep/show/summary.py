@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from compare.sweep.compute.run import CHECK, RESULT
-from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.plan import Continuation, Uncertainty
 from compare.sweep.define.quantities import units
 from compare.sweep.show.figures import MOST_DRAWS
+from compare.sweep.store.store import SweepStore
 from reference_model.ensemble import EndState
 from reference_model.systems import COLUMNS
 

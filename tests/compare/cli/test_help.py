@@ -11,10 +11,10 @@ import compare.cli.sweep.run
 import compare.judge.judge
 import compare.run.kernels
 import compare.run.runner
-import compare.sweep.compute.files
+import compare.sweep.store.files
 from compare.cli import app as cli
 from compare.engines import Engine
-from compare.sweep.compute.store import SweepStore
+from compare.sweep.store.store import SweepStore
 
 COMMAND = "friction-discs "
 
@@ -70,7 +70,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.judge.judge, "judge", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
-    monkeypatch.setattr(compare.sweep.compute.files.Files, "write", stop)
+    monkeypatch.setattr(compare.sweep.store.files.Files, "write", stop)
     monkeypatch.setattr("reference_model.smallest_shock", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
     monkeypatch.setattr(compare.run.kernels, "kernels", stop)

@@ -32,7 +32,10 @@ def started(*arguments, signalled=""):
 
 @contextmanager
 def cluster(folder, workers, signalled=""):
-    """Yield a scheduler with so many workers of one thread; the first is to be ``signalled`` while it writes."""
+    """Yield a scheduler with so many workers of one thread; the first is to be ``signalled`` while it writes.
+
+    That has to be its first chunk if it must happen: others may take over all that it has not begun.
+    """
     file = folder / "scheduler.json"
     processes = [started("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))]
     try:

@@ -12,7 +12,7 @@ import sys
 import threading
 
 from compare.sweep.compute.executors import Cluster
-from compare.sweep.compute.round import Chunks
+from compare.sweep.store.round import Chunks
 
 
 class Signalling(dict):

@@ -12,8 +12,8 @@ from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
 from compare.cli.sweep.commands import MAPS, PLANES
 from compare.cli.sweep.run import STORE
-from compare.sweep.compute.store import SweepStore
 from compare.sweep.define.distributions import KINDS
+from compare.sweep.store.store import SweepStore
 
 SMALL = ["--until", "20"]
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
@@ -137,7 +137,7 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(finished, m
 
 def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
     _, arguments = finished
-    monkeypatch.setattr("compare.sweep.compute.stamp.sweep_stamp", lambda: "other")
+    monkeypatch.setattr("compare.sweep.store.stamp.sweep_stamp", lambda: "other")
     assert cli.status([*arguments, "--resume"]) == 2
     assert "was computed by other code or libraries" in capsys.readouterr().err
 

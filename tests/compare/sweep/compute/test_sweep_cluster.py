@@ -12,16 +12,16 @@ from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
 from compare.sweep.compute import executors
 from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
-from compare.sweep.compute.files import StoreError
 from compare.sweep.compute.run import run
-from compare.sweep.compute.store import DESCRIPTION, SweepStore
 from compare.sweep.compute.work import OtherCodeError
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
+from compare.sweep.store.files import StoreError
+from compare.sweep.store.store import DESCRIPTION, SweepStore
 
 
 def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path):
-    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 12") as local:
+    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
         written = marks(tmp_path)

@@ -13,12 +13,12 @@ from compare.claims.paper_parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
 from compare.sweep.compute.plain import end_of, plain_trajectory
 from compare.sweep.compute.run import run
-from compare.sweep.compute.store import SweepStore
 from compare.sweep.compute.work import compute, simulate_chunk
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.distributions import Uncertain
 from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty
 from compare.sweep.show.summary import same_ends, summary
+from compare.sweep.store.store import SweepStore
 from reference_model import simulate
 from reference_model.ensemble import EndState
 

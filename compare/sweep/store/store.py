@@ -1,8 +1,8 @@
 """Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets, valid at every moment.
 
 - ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose chunks are written by those who
-  simulate them (:mod:`compare.sweep.compute.round`).
-- ``check``, ``result``, ``curves``: written when all chunks are done.
+  simulate them (:mod:`compare.sweep.store.round`).
+- ``check``, ``result``, ``curves``, ``branches``: written when all chunks are done.
 
 A group is there once it has the file ``.zgroup``, which is written last, and as long as its files have the checksum
 in its attributes. The attributes of the store have the plan, the code that computed it and its libraries, and their
@@ -27,11 +27,11 @@ import zarr
 from numpy.typing import NDArray
 
 from compare.run.stamp import version_of
-from compare.sweep.compute.files import Files, told
-from compare.sweep.compute.round import CHECKSUM, DESCRIPTION, Arrays, Chunks, Round, description_of
-from compare.sweep.compute.stamp import sweep_stamp
 from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
+from compare.sweep.store.files import Files, told
+from compare.sweep.store.round import CHECKSUM, DESCRIPTION, Arrays, Chunks, Round, description_of
+from compare.sweep.store.stamp import sweep_stamp
 
 FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
 """Every version of Zarr reads it, and no copy of the metadata goes stale when a round grows."""
@@ -113,7 +113,7 @@ class SweepStore:
             "versions": json.dumps({name: version_of(name) for name in libraries}),
             "id": secrets.token_hex(8),
         }
-        attributes[CHECKSUM] = _checksum_of_text(attributes)
+        attributes[CHECKSUM] = _checksum(attributes)
         files.write({GROUP: GROUP_CONTENT})
         files.claim(DESCRIPTION, json.dumps(attributes).encode())
         return cls(files, plan, chunk, sweep_stamp())
@@ -125,7 +125,7 @@ class SweepStore:
         try:  # not by Zarr, which would look at all groups, and one of them may be broken
             group, attributes = (json.loads(files.read(name) or b"") for name in (GROUP, DESCRIPTION))
             whole = group["zarr_format"] == FORMAT["zarr_format"]
-            whole = attributes.pop(CHECKSUM) == _checksum_of_text(attributes) and whole
+            whole = attributes.pop(CHECKSUM) == _checksum(attributes) and whole
             plan = plan_from_json(json.loads(attributes["plan"]))
             chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
         except (OSError, AttributeError, KeyError, TypeError, ValueError):
@@ -280,12 +280,8 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-def _checksum(digests: Mapping[str, str]) -> str:
-    """Return the checksum of the files of a group from their digests."""
-    return _checksum_of_text(digests)
-
-
-def _checksum_of_text(attributes: Mapping[str, Any]) -> str:
+def _checksum(attributes: Mapping[str, Any]) -> str:
+    """Return the checksum of attributes, or of the digests of the files of a group."""
     return digest_of(json.dumps(attributes, sort_keys=True).encode())
 
 

@@ -10,7 +10,7 @@ CODE = (
     "compare.sweep.define.axes",
     "compare.sweep.compute.branches",
     "compare.sweep.compute.curves",
-    "compare.sweep.compute.files",
+    "compare.sweep.store.files",
     "compare.sweep.define.distributions",
     "compare.sweep.compute.motions",
     "compare.sweep.compute.plain",
@@ -18,11 +18,11 @@ CODE = (
     "compare.sweep.define.quantities",
     "compare.sweep.define.refinement",
     "compare.sweep.compute.results",
-    "compare.sweep.compute.round",
+    "compare.sweep.store.round",
     "compare.sweep.compute.run",
     "compare.sweep.compute.sensitivity",
     "compare.claims.shares",
-    "compare.sweep.compute.store",
+    "compare.sweep.store.store",
     "compare.sweep.compute.work",
 )
 """The packages and modules that compute them and put them into a store."""

@@ -14,9 +14,9 @@ from processes import PATIENCE, wait_until
 from werkzeug.serving import make_server
 
 from compare.cli import app as cli
-from compare.sweep.compute.files import OPTIONS, Files
 from compare.sweep.compute.run import finished
-from compare.sweep.compute.store import SweepStore
+from compare.sweep.store.files import OPTIONS, Files
+from compare.sweep.store.store import SweepStore
 
 GONE = 5.0
 """In s."""
@@ -82,7 +82,7 @@ def test_workers_write_into_it_though_one_is_killed_and_it_is_gone_for_a_while(
         time.sleep(GONE)
         server.begin()
 
-    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 2") as local:
+    with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         thread = threading.Thread(target=interrupted, daemon=True)
         thread.start()
         assert cli.status([*arguments, "--scheduler", local.address]) == 0, capsys.readouterr().err

@@ -17,9 +17,9 @@ import numpy as np
 import zarr
 from numpy.typing import NDArray
 
-from compare.sweep.compute.files import Files, StoreError, told
 from compare.sweep.define.plan import Numbers
 from compare.sweep.define.quantities import RESULTS
+from compare.sweep.store.files import Files, StoreError, told
 
 CHECKSUM = "checksum"
 

@@ -8,7 +8,7 @@ import pytest
 from processes import ROOT, environment
 
 from compare.run import stamp
-from compare.sweep.compute.stamp import CODE, sweep_stamp
+from compare.sweep.store.stamp import CODE, sweep_stamp
 
 BESIDE = {
     "compare.claims.claim",
@@ -17,7 +17,7 @@ BESIDE = {
     "compare.run.stamp",
     "compare.sweep.compute.executors",
     "compare.sweep.show.figures",
-    "compare.sweep.compute.stamp",
+    "compare.sweep.store.stamp",
     "compare.sweep.show.summary",
     "compare.text_files",
 }
