@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -66,6 +67,10 @@ class Solution:
     regularisation: float = 0.0
 
 
+NOT_TOLD = Solution("not told", tolerance=math.nan, evaluations=0, steps=0, wall_time=math.nan)
+"""Of an engine that says nothing of how it computes."""
+
+
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """The motion of a system at the times that were asked for.
@@ -79,7 +84,7 @@ class Trajectory:
     states : array of shape (n, 4) or (n, 6)
         Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
     phases : tuple of Phase
-        From ``times[0]`` to ``times[-1]``, without gaps.
+        From ``times[0]`` to ``times[-1]``, without gaps; () where an engine does not tell them.
     solution : Solution
         How it was computed.
 
@@ -88,8 +93,8 @@ class Trajectory:
     system: System
     times: FloatArray
     states: FloatArray
-    phases: tuple[Phase, ...]
-    solution: Solution
+    phases: tuple[Phase, ...] = ()
+    solution: Solution = NOT_TOLD
 
     def __post_init__(self) -> None:
         """Make the arrays read-only: a result does not change."""

@@ -12,8 +12,8 @@ import fake_studies
 import pytest
 from processes import PATIENCE, REAL, environment
 
-from compare import engines
 from compare.cli import app as cli
+from compare.engines import registry
 
 Process = subprocess.CompletedProcess[str]
 
@@ -39,7 +39,7 @@ def reported(tmp_path_factory) -> tuple[Process, Path]:
     for name in registered:
         arguments += ["--engine", name]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(engines, "_REGISTRY", registered)
+        patch.setattr(registry, "_REGISTRY", registered)
         with redirect_stdout(io.StringIO()) as out, redirect_stderr(io.StringIO()) as err:
             status = cli.status(arguments, fake_studies.ALL)
     return Process(arguments, status, out.getvalue(), err.getvalue()), folder

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
 
-from compare import engines
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli import app as cli
+from compare.engines import registry
 from compare.run import workers
 from compare.run.runner import Drawing, run
 from compare.run.stamp import ROOT
@@ -200,7 +200,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
 
 def test_ctrl_c_in_a_single_process_does_the_same(tmp_path, monkeypatch, capsys):
     registered = {engine.name: engine for engine in (fake.GOOD, fake.ALSO_GOOD, fake.FAILING)}
-    monkeypatch.setattr(engines, "_REGISTRY", registered)
+    monkeypatch.setattr(registry, "_REGISTRY", registered)
     monkeypatch.setenv("RUNNING", str(tmp_path / "running"))
     monkeypatch.setattr(fake.time, "sleep", interrupt)
     chosen = [argument for name in registered for argument in ("--engine", name)]

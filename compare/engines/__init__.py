@@ -1,0 +1,62 @@
+"""Engines: whatever can simulate a system takes part in the comparison, with the systems that it promises.
+
+A study of a single system just calls ``engine.simulate``: where the engine never promised that system, the report
+says "not simulated" in place of its claims, which is neither a pass nor a failure. A study of several systems
+measures those that the engine simulates and hands on what is missing::
+
+    mine = [disc for disc in discs if engine.simulates(disc)]
+    return Findings(claims_of(mine), data_of(mine), not_simulated=engine.lacking(discs))
+
+What an engine returns is looked at before a study sees it: times and shapes as asked for, numbers all finite.
+"""
+
+import os
+
+# A user's ~/.exudyn/config.json would change what is measured. Exudyn reads it when it is imported: after this, since
+# every study imports this package, and in all processes that are started from here.
+os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
+
+from compare.engines.answer import BadTrajectoryError
+from compare.engines.built_in import ByName, compiled, exudyn, exudyn_native, plain, reference
+from compare.engines.engine import (
+    EVERY_KIND,
+    KINDS,
+    USUAL_TOLERANCE,
+    Engine,
+    Simulate,
+    UnsupportedSystemError,
+)
+from compare.engines.names import one_of
+from compare.engines.registry import (
+    engines,
+    imported,
+    known_name,
+    on_request,
+    register,
+    repeated_by,
+    shares_code,
+)
+
+__all__ = [
+    "EVERY_KIND",
+    "KINDS",
+    "USUAL_TOLERANCE",
+    "BadTrajectoryError",
+    "ByName",
+    "Engine",
+    "Simulate",
+    "UnsupportedSystemError",
+    "compiled",
+    "engines",
+    "exudyn",
+    "exudyn_native",
+    "imported",
+    "known_name",
+    "on_request",
+    "one_of",
+    "plain",
+    "reference",
+    "register",
+    "repeated_by",
+    "shares_code",
+]

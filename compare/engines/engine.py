@@ -1,0 +1,184 @@
+"""An engine: a function that simulates, and what it promises."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.engines.answer import checked
+from compare.engines.names import one_of
+from compare.engines.stick import StatesOnly
+from reference_model.support import Support
+from reference_model.systems import PinOnDisc, System, finite_number
+from reference_model.trajectory import Trajectory
+
+KINDS = {"pin": "a pin", "points": "a disc on single points", "ring": "a disc on a continuous ring"}
+"""The kinds of systems that an engine may promise, and what they are in words."""
+
+EVERY_KIND = tuple(KINDS)
+
+USUAL_TOLERANCE = 1e-9
+
+
+class Simulate(Protocol):
+    """The one function that an engine implements.
+
+    ``tolerance`` is the accuracy to aim at: whatever the engine approximates (step, iteration, a smoothed
+    friction law) must get better when it gets smaller, because errors are estimated by tightening it.
+    """
+
+    def __call__(
+        self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+    ) -> Trajectory:
+        """Return the motion of ``system`` from ``initial_state`` (at ``times[0]``) at all ``times``."""
+        ...
+
+
+class UnsupportedSystemError(ValueError):
+    """An engine was asked for a system or motion that it never promised to simulate; the message says which."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """A name, a simulate() and what it is for.
+
+    Parameters
+    ----------
+    name : str
+        As on the command line.
+    function : callable
+        The engine's ``simulate``; to take part in work on several cores, a function of an importable module.
+    kinds : tuple of str
+        What ``function`` promises to simulate: "pin", "points" (a disc on single points), "ring" (a disc on the
+        continuous ring).
+    sticks : bool
+        Whether it simulates motions that stick. An engine that does not is asked for motions only in which the
+        reference finds none.
+    nonlinear : bool
+        Whether it simulates supports that harden or have a stop.
+    phases : bool
+        Whether its trajectories tell when bodies stick. Otherwise stick is found from the states of a trajectory that
+        tells none, see ``compare.engines.stick``.
+    step : float, optional
+        For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
+        tolerance of 1e-9. It goes with the square root of the tolerance.
+    kin : str
+        Name of the engine whose code it shares, so that neither is independent evidence about the other.
+    contact_only : bool
+        Whether all but its contact is its kin's: then it is measured only where the contact decides, see
+        ``Study.contact``, unless it is asked for by its name.
+    about : str
+        What a reader of the report has to know of it, in a sentence or two.
+
+    Raises
+    ------
+    ValueError
+        For a kind that there is not, a step that is not > 0, or ``sticks``, ``nonlinear`` or ``phases`` that is not
+        True or False.
+
+    """
+
+    name: str
+    function: Callable[..., Trajectory]
+    kinds: tuple[str, ...] = ("pin",)
+    sticks: bool = True
+    nonlinear: bool = True
+    phases: bool = True
+    step: float | None = None
+    kin: str = ""
+    contact_only: bool = False
+    about: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse a promise that no study could ask for."""
+        object.__setattr__(self, "kinds", tuple(self.kinds))
+        for kind in self.kinds:
+            one_of("kind of system", kind, KINDS)
+        for name in ("sticks", "nonlinear", "phases"):
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} = {getattr(self, name)!r}: it must be True or False")
+        if self.step is not None:
+            object.__setattr__(self, "step", finite_number("step", self.step))
+            if self.step <= 0.0:
+                raise ValueError(f"step = {self.step:g} s: it must be > 0")
+
+    def simulate(
+        self,
+        system: System,
+        initial_state: ArrayLike,
+        times: ArrayLike,
+        *,
+        tolerance: float = USUAL_TOLERANCE,
+    ) -> Trajectory:
+        """Do as ``function``, and look at what it returns.
+
+        Raises
+        ------
+        UnsupportedSystemError
+            For a system or a motion that the engine does not promise.
+        TypeError
+            If the function returns no ``Trajectory``.
+        BadTrajectoryError
+            If it is not the one that was asked for, or has numbers that are not finite.
+
+        """
+        if not self.simulates(system):
+            raise UnsupportedSystemError(self.lacking([system]))
+        if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
+            raise UnsupportedSystemError(f"{self.name} does not simulate stick")
+        accuracy = {"tolerance": tolerance} if self.step is None else {"step": self._step(tolerance)}
+
+        def asked(times: ArrayLike) -> Trajectory:
+            return checked(self.function(system, initial_state, times, **accuracy), system, times)
+
+        found = asked(times)
+        if self.phases or found.stick_phases:
+            return found
+        return StatesOnly(found, lambda more: asked(more).states, tolerance)
+
+    def _step(self, tolerance: float) -> float:
+        """Return the step in s, which goes with the square root of ``tolerance``.
+
+        Where errors are estimated, see ``compare.claims.error_estimates.COARSENING``, an error of first order then
+        falls to a third.
+        """
+        return (self.step or 0.0) * math.sqrt(tolerance / USUAL_TOLERANCE)
+
+    def simulates(self, system: System) -> bool:
+        """Return whether the engine promises to simulate ``system``."""
+        return _kind(system) in self.kinds and (self.nonlinear or Support.of(system).linear)
+
+    def lacking(self, systems: Iterable[System]) -> str:
+        """Return in a sentence what of ``systems`` the engine does not simulate, "" if it simulates all."""
+        words = dict.fromkeys(
+            KINDS[_kind(system)] + (" on a nonlinear support" if _kind(system) in self.kinds else "")
+            for system in systems
+            if not self.simulates(system)
+        )
+        return f"{self.name} does not simulate {' or '.join(words)}" if words else ""
+
+
+def _kind(system: System) -> str:
+    if isinstance(system, PinOnDisc):
+        return "pin"
+    return "ring" if system.contact_points is None else "points"
+
+
+def _ends(times: ArrayLike) -> tuple[float, float]:
+    times = np.asarray(times, dtype=float)
+    return float(times[0]), float(times[-1])
+
+
+@functools.lru_cache(maxsize=64)  # the same motion is asked for at two tolerances, one after the other
+def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
+    """Return whether the contact slips from ``start`` to ``end``, by the reference."""
+    import reference_model
+
+    phases = reference_model.simulate(system, initial_state, [start, end], tolerance=1e-6).phases
+    return all(phase.kind == "slip" for phase in phases)

@@ -1,0 +1,115 @@
+"""Engines by name: those that are registered, those of installed packages, and functions of modules."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Iterable
+from dataclasses import replace
+from importlib.metadata import entry_points
+
+from compare.engines.engine import Engine
+from compare.engines.names import one_of
+
+ENTRY_POINTS = "friction_discs.engines"
+"""The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""
+
+DECLARED = ("kinds", "sticks", "nonlinear", "phases", "step")
+"""Attributes of a function that say what it is for, named like the parameters of ``Engine``."""
+
+_REGISTRY: dict[str, Engine] = {}
+_ON_REQUEST: set[str] = set()
+
+
+def register(engine: Engine, *, on_request: bool = False) -> Engine:
+    """Add ``engine`` to those that every study runs, or that are only run where they are named.
+
+    Raises ``ValueError`` if its name is taken.
+    """
+    if engine.name in _REGISTRY or engine.name == "theory":
+        raise ValueError(f"engine {engine.name!r}: the name is taken")
+    _REGISTRY[engine.name] = engine
+    if on_request:
+        _ON_REQUEST.add(engine.name)
+    return engine
+
+
+def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
+    """Return the engines of the given names, or all that are registered but those on request.
+
+    One that is named is measured in all that it promises, see ``Engine.contact_only``.
+    A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
+    does one of the entry points "friction_discs.engines" of an installed package.
+    Raises ``ValueError`` for a name that is unknown or can't be imported.
+    """
+    return tuple(_named(name) for name in names) or tuple(
+        engine for name, engine in _REGISTRY.items() if name not in _ON_REQUEST
+    )
+
+
+def on_request() -> tuple[Engine, ...]:
+    """Return the registered engines that take part only where they are named."""
+    return tuple(_REGISTRY[name] for name in sorted(_ON_REQUEST))
+
+
+def shares_code(name: str, other: str) -> bool:
+    """Return whether the engine called ``name`` is the one called ``other``, or shares code with it."""
+    return name == other or (name in _REGISTRY and _REGISTRY[name].kin == other)
+
+
+def repeated_by(name: str) -> str:
+    """Return the engine that the one called ``name`` repeats in all but its contact, "" if there is none."""
+    engine = _REGISTRY.get(name)
+    return engine.kin if engine is not None and engine.contact_only else ""
+
+
+def _named(name: str) -> Engine:
+    if ":" in name:
+        return imported(name, name)
+    if name in _REGISTRY:
+        return replace(_REGISTRY[name], contact_only=False)
+    return imported(name, _installed()[known_name(name)])
+
+
+def known_name(name: str) -> str:
+    """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
+    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *_installed()])
+
+
+def _installed() -> dict[str, str]:
+    """Return "module:function" of the engines of installed packages, by name."""
+    return {point.name: point.value for point in entry_points(group=ENTRY_POINTS)}
+
+
+def imported(name: str, place: str) -> Engine:
+    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if there is none.
+
+    It is taken for an engine of the pin only, unless attributes of the function, named like the parameters of
+    ``Engine``, say something else, and not to
+    tell all stick::
+
+        simulate.kinds = ("pin", "points", "ring")
+        simulate.sticks = False
+        simulate.nonlinear = False
+        simulate.phases = True
+        simulate.step = 1e-3
+    """
+    module_name, _, function_name = place.partition(":")
+    if os.getcwd() not in sys.path:  # a console script does not look into the current folder
+        sys.path.append(
+            os.getcwd()
+        )  # last, or a file of the user's would take the place of a library's module
+    try:
+        simulate = getattr(importlib.import_module(module_name), function_name)
+    except Exception as error:  # whatever a module may do when it is imported
+        kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
+        raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
+    if not callable(simulate):
+        raise ValueError(f"engine {name!r} is no function")
+    declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
+    try:
+        return Engine(name, simulate, **{"phases": False, **declared})
+    except (TypeError, ValueError) as error:
+        attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
+        raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
