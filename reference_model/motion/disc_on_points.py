@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq, minimize, minimize_scalar
@@ -135,9 +136,13 @@ class PointsBody(DiscBody):
         return end.t, y
 
     def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
-        """Let point ``i`` slip from rest while the disc turns."""
+        """Let point ``i`` slip from rest while the disc turns, or rest on if the disc rests before that counts."""
         own = [*y[:3], y[5]]
         point = self.points[i]
+        if point.gain(own) < self.run.thresholds.common_rest:
+            motion = replace(self.pivoting[i], grip=None)
+            end = slide_slowly(self.run, motion, t, own, never)
+            return end.t, motion.standard(np.array([end.y]).T)[:, 0].tolist()
         return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
 
     # ------------------------------------------------------------ the disc at rest

@@ -8,6 +8,7 @@ force at it does there. Slip has λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
@@ -17,7 +18,7 @@ from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import NONE, PointsOnRing
 from reference_model.motion.disc_equations import DiscMotion
-from reference_model.motion.slip.coordinates import Coordinates, stop_surfaces
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, stop_surfaces
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import FloatArray
 
@@ -105,6 +106,22 @@ class OnePoint:
     def grip(self, unknowns: Sequence[float]) -> float:
         """Return by how much the friction that the point could give exceeds what it gives, as a share."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
+
+    def gain(self, unknowns: Sequence[float]) -> float:
+        """Return what slip speed of the disc comes of friction that the point lacks until the disc rests.
+
+        inf if the disc does not come to rest. What is lacking is that now or at rest, whichever is more; in between
+        it differs from these in second order of the time.
+        """
+        r = unknowns[3]
+        falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
+        if falling <= 0.0:
+            return math.inf
+        left = abs(r) / falling
+        at_rest = [*unknowns[:3], math.copysign(LEAST_SLIP, r)]
+        lacking = max(-self.grip(unknowns), -self.grip(at_rest), 0.0) + (self._pace * left) ** 2
+        leverage = abs(self.arm(0.0)) / self.motion.gyration
+        return lacking * self.most * left * math.hypot(1.0, leverage)
 
     def slipping(self, thresholds: Thresholds) -> Coordinates:
         """Return the coordinates of slip of the point."""

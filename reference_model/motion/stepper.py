@@ -73,7 +73,8 @@ class Thresholds:
     reversal_slip : float
         Slip speed, in units of length per T, below which slip that friction can't hold counts as turned.
     common_rest : float
-        Slip speed, in units of length per T, below which all points of a disc come to rest together.
+        Slip speed, in units of length per T, below which all points of a disc come to rest together, and that a point
+        at rest must be able to gain before that in order to slip.
     series : float
         Size of the last terms of the series by which slip starts.
     safety : float

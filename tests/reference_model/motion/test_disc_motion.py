@@ -392,6 +392,17 @@ def test_pivot_holds_as_long_as_its_friction_is_within_the_share_of_one_point(po
     assert let_go >= 1
 
 
+@pytest.mark.parametrize("friction", [0.29060577, 0.28453382])
+def test_point_that_can_hardly_be_held_comes_to_rest_together_with_the_disc(friction):
+    # The disc turns ever more slowly, nearly about a point whose friction lacks 5 % or 1e-6 of what a pivot takes.
+    disc = replace(FIG11, contact_points=6, friction_force=friction, offset=0.12840305)
+    start = [-0.00925065063, 0.0187610662, 1.59091343, -0.028034818, -0.013870499, 1.50093659]
+    usual, tight = (simulate(disc, start, [0.0, 0.1], tolerance=tolerance) for tolerance in (1e-9, 1e-12))
+    assert kinds(usual) == kinds(tight) == ["slip", "stick"]
+    assert usual.stick_times[0] == pytest.approx(tight.stick_times[0], abs=1e-11)
+    assert np.abs(usual.at_end - tight.at_end).max() < 1e-11
+
+
 # ---------------------------------------------------------------- a ring thrown on a resting table
 
 
