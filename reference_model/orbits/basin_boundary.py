@@ -119,7 +119,8 @@ class Separatrix:
             raise ValueError(
                 f"from {first} and from {second} the pin comes to the same motion: they must lie on different sides"
             )
-        share = float(brentq(miss, 0.0, 1.0, xtol=1e-15, rtol=1e-14))
+        # Beyond its tolerance the search would only look for the zeros of noise.
+        share = float(brentq(miss, 0.0, 1.0, xtol=SPARE * self.orbit.problem.tolerance, rtol=1e-14))
         point = first + share * (second - first)
         _require_on_boundary(point, miss(share))
         return np.asarray(point)

@@ -118,8 +118,9 @@ def steady_motion(
     first = np.append(np.delete(guess, ANGLE) / sizes, 1.0)
     if circles:
         first[Y] = frequency * duration
-    # Steps of the square root of the tolerance balance the noise of the flow with its curvature.
-    found = root(miss, first, method="hybr", options={"eps": tolerance, "xtol": 0.01 * tolerance})
+    # Steps of the square root of the tolerance balance the noise of the flow with its curvature. A tenth of the
+    # tolerance is the last step that is worth taking: below it Newton's method takes noise for a wrong derivative.
+    found = root(miss, first, method="hybr", options={"eps": tolerance, "xtol": 0.1 * tolerance})
     if not np.max(np.abs(found.fun)) < CONVERGED:
         return None
     state, time, turn = parts(found.x)

@@ -19,6 +19,7 @@ FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, dis
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
 MIRRORED = replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)
+CYCLE = 1e-10  # tolerance of the modulated cycle, a period of which is 37 turns
 ROUNDING = 1e-12  # of an orbit at a tolerance of 1e-12 whose errors die out
 
 
@@ -117,10 +118,13 @@ def test_last_whirl_is_a_fold_where_two_multipliers_are_one(fold):
 
 def test_two_whirls_exist_just_above_the_fold_and_none_just_below(fold):
     x, load = float(fold.state[0]), fold.system.friction_force
-    sides = [whirl_orbit(FIG_6, guess=fold, at_crossing=x * factor, samples=2) for factor in (1.02, 0.98)]
+    sides = [
+        whirl_orbit(FIG_6, guess=fold, at_crossing=x * factor, tolerance=1e-10, samples=2)
+        for factor in (1.02, 0.98)
+    ]
     assert all(orbit.system.friction_force > load for orbit in sides)
     above = replace(FIG_6, friction_force=max(orbit.system.friction_force for orbit in sides))
-    outer, inner = (whirl_orbit(above, guess=orbit, samples=2) for orbit in sides)
+    outer, inner = (whirl_orbit(above, guess=orbit, tolerance=1e-10, samples=2) for orbit in sides)
     assert outer.state[0] > 1.01 * x
     assert inner.state[0] < 0.99 * x
     assert outer.stable
@@ -153,7 +157,7 @@ def test_pin_leaves_the_neighbourhood_of_the_last_whirl_below_the_fold_and_stays
 def test_branch_beyond_the_fold_leads_to_orbits_with_stick_phases(fold):
     orbit = fold
     smooth = True
-    for x in np.arange(fold.state[0] - 0.04, 0.3, -0.04):
+    for x in np.arange(fold.state[0] - 0.06, 0.3, -0.06):
         orbit = whirl_orbit(FIG_6, guess=orbit, at_crossing=float(x), tolerance=1e-11, samples=200)
         kinds = [phase.kind for phase in orbit.trajectory.phases]
         smooth = smooth and kinds == ["slip"]
@@ -171,7 +175,7 @@ def test_branch_beyond_the_fold_leads_to_orbits_with_stick_phases(fold):
 
 
 def test_branch_goes_round_the_fold_in_steps_of_any_size(fold):
-    start = whirl_orbit(FIG_6, samples=2)
+    start = whirl_orbit(FIG_6, tolerance=1e-10, samples=2)
     coarse, fine = (list(whirl_branch(start, 0.55, step=step, samples=2)) for step in (0.16, 0.08))
     for branch in (coarse, fine):
         x = [orbit.state[0] for orbit in branch]
@@ -235,16 +239,22 @@ def at_offset(offset):
 
 
 @pytest.fixture(scope="module")
-def beside_the_axis():
-    """The whirl of Fig. 11's disc at an offset so large that it no longer goes round the axis."""
-    orbit = None
-    for offset in (0.012, 0.0175, 0.0199):
-        orbit = whirl_orbit(at_offset(offset), guess=orbit and orbit.from_the_right())
+def round_the_axis():
+    """The whirl of Fig. 11's disc at an offset at which it still crosses the x axis."""
+    return whirl_orbit(at_offset(0.012))
+
+
+@pytest.fixture(scope="module")
+def beside_the_axis(round_the_axis):
+    """The same at an offset so large that it no longer goes round the axis."""
+    orbit = round_the_axis
+    for offset in (0.0175, 0.0199):
+        orbit = whirl_orbit(at_offset(offset), guess=orbit.from_the_right(), tolerance=1e-10)
     return orbit
 
 
 def test_whirl_beside_the_axis_is_found_from_the_right_of_its_neighbours(beside_the_axis):
-    assert beside_the_axis.residual <= 1e-12
+    assert beside_the_axis.residual <= 1e-10  # its tolerance
     places = beside_the_axis.trajectory.states[:, :2] @ [1.0, 1.0j]
     assert places.imag.min() > 0.0
     assert abs(np.unwrap(np.angle(places))[-1] - np.angle(places[0])) < 1e-9
@@ -254,7 +264,7 @@ def test_whirl_beside_the_axis_is_found_from_the_right_of_its_neighbours(beside_
     (rest,) = self_centred_equilibria(beside_the_axis.system)
     assert (beside_the_axis.stable, rest.stable) == (True, True)
     start = beside_the_axis.state + 0.1 * (beside_the_axis.state - rest.state)
-    outside = simulate(beside_the_axis.system, start, np.linspace(0.0, 1200.0, 12001))
+    outside = simulate(beside_the_axis.system, start, np.linspace(0.0, 1200.0, 12001), tolerance=1e-7)
     # A tenth of the radius dies out by 0.96 a turn, of which there are 62 samples.
     extent = np.ptp(beside_the_axis.trajectory.states[:, 0])
     assert np.ptp(outside.states[-100:, 0]) == pytest.approx(extent, rel=(math.pi / 62) ** 2)
@@ -263,8 +273,8 @@ def test_whirl_beside_the_axis_is_found_from_the_right_of_its_neighbours(beside_
     assert np.abs(inside.at_end[:2] - [rest.x, rest.y]).max() < 2e-4 * math.exp(600.0 * slowest)
 
 
-def test_an_orbit_started_from_the_right_is_the_same_orbit():
-    orbit = whirl_orbit(at_offset(0.012), samples=64)
+def test_an_orbit_started_from_the_right_is_the_same_orbit(round_the_axis):
+    orbit = round_the_axis
     other = orbit.from_the_right()
     assert other.state[1] > 0.0
     assert other.trajectory.states[0].tolist() == other.state.tolist()
@@ -275,8 +285,9 @@ def test_an_orbit_started_from_the_right_is_the_same_orbit():
 
 
 def test_a_whirl_beside_the_axis_is_not_found_on_the_x_axis():
+    near = whirl_orbit(at_offset(0.0165), tolerance=1e-9, samples=2)
     with pytest.raises(RuntimeError, match=r"does not cross y = 0 m takes a guess that starts elsewhere"):
-        whirl_orbit(at_offset(0.0199), guess=whirl_orbit(at_offset(0.0165), samples=2))
+        whirl_orbit(at_offset(0.0199), guess=near, tolerance=1e-9)
 
 
 def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
@@ -296,7 +307,9 @@ def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
 
 def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
     last = last_whirl(
-        unbraked(FIG_6), guess=whirl_orbit(unbraked(replace(FIG_6, friction_force=0.08)), samples=2)
+        unbraked(FIG_6),
+        guess=whirl_orbit(unbraked(replace(FIG_6, friction_force=0.08)), tolerance=1e-10, samples=2),
+        tolerance=1e-10,
     )
     assert last.system.friction_force == pytest.approx(fold.system.friction_force, abs=2e-10)
 
@@ -307,12 +320,13 @@ def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
 @pytest.fixture(scope="module")
 def settled():
     """Fig. 11's disc from near the axis, after it has come to its modulated cycle."""
-    return simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
+    times = np.linspace(0.0, 1100.0, 11001)
+    return simulate(FIG11, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], times, tolerance=1e-7)
 
 
 @pytest.fixture(scope="module")
 def cycle(settled):
-    return modulated_cycle(FIG11, settled)
+    return modulated_cycle(FIG11, settled, tolerance=CYCLE)
 
 
 def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
@@ -324,13 +338,15 @@ def test_modulated_cycle_comes_back_turned_about_the_axis(cycle):
     later = simulate(FIG11, start, [0.0, turns * cycle.period], tolerance=1e-13).at_end
     angle = 0.4 + turns * cycle.turn
     expected = [*turned(complex(x, y), angle), *turned(complex(vx, vy), angle), spin]
-    assert later[[0, 1, 3, 4, 5]] == pytest.approx(expected, abs=1e-10)
+    # Two periods are 75 turns of the support's own oscillation.
+    assert later[[0, 1, 3, 4, 5]] == pytest.approx(expected, abs=75 * CYCLE)
     # Where it is turned to does not divide a full turn: there are two frequencies in it.
     assert abs(math.remainder(cycle.turn, 2.0 * math.pi)) > 0.1
 
 
 def test_modulated_cycle_is_where_motions_end_from_inside_and_outside(cycle, settled):
-    outside = simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], np.linspace(0.0, 1200.0, 12001))
+    times = np.linspace(0.0, 1200.0, 12001)
+    outside = simulate(FIG11, [0.1, 0.0, 0.0, 0.0, 0.1, 1.2], times, tolerance=1e-7)
     radius, spin = cycle.trajectory.radius, cycle.trajectory.states[:, 5]
     for trajectory in (settled, outside):
         late = trajectory.times > trajectory.times[-1] - 1.2 * cycle.period
@@ -353,7 +369,7 @@ def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
 def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
     mirror = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])  # y = 0 and vx = 0
     guess = replace(cycle, state=mirror * cycle.state, turn=-cycle.turn)
-    mirrored = modulated_cycle(MIRRORED, guess, samples=64)
+    mirrored = modulated_cycle(MIRRORED, guess, tolerance=CYCLE, samples=64)
     assert mirrored.state == pytest.approx(mirror * cycle.state, abs=1e-10)
     assert mirrored.turn == pytest.approx(-cycle.turn, rel=1e-10)
     assert mirrored.carrier < 0.0
@@ -361,8 +377,8 @@ def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
 
 def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle):
     load = 0.02247
-    held = modulated_cycle(replace(FIG11, friction_force=load), cycle, tolerance=1e-9, samples=64)
-    sought = modulated_cycle(FIG11, cycle, at_crossing=float(held.state[0]), tolerance=1e-9, samples=64)
+    held = modulated_cycle(replace(FIG11, friction_force=load), cycle, tolerance=1e-7, samples=64)
+    sought = modulated_cycle(FIG11, cycle, at_crossing=float(held.state[0]), tolerance=1e-7, samples=64)
     assert abs(load - FIG11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
     assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
     assert sought.period == pytest.approx(held.period, rel=1e-6)
@@ -430,7 +446,7 @@ def test_no_whirl_of_a_disc_is_sought_below_its_least_load():
 @pytest.mark.parametrize("load", [0.05, 0.078])
 def test_shooting_says_where_it_stopped_if_there_is_no_orbit(load):
     with pytest.raises(RuntimeError, match=r"no whirl near the guess .*disc_speed = 1\.2 rad/s.*nearby load"):
-        whirl_orbit(replace(FIG_6, friction_force=load))
+        whirl_orbit(replace(FIG_6, friction_force=load), tolerance=1e-9)
 
 
 @pytest.mark.parametrize("disc_speed", [1.0, 0.9, -0.5])

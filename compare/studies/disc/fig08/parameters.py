@@ -23,7 +23,7 @@ SOURCE = (
 
 SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper leaves out X0"
 
-LOADS = (0.01, 0.02, 0.035, 0.05, 0.065, 0.08, 0.095, 0.1, 0.104)
+LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
 """μN in N. The paper prints no range; the equilibrium ends a little above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))

@@ -65,13 +65,16 @@ LARGEST_LOAD = 0.2
 
 BRANCH_START = 0.1
 BRANCH_END = 1.0
-"""μN of the first whirl of the branch in units of C·X0, and its last crossing of the x axis in those of X0."""
+BRANCH_STEP = 0.24
+"""μN of the first whirl of the branch in units of C·X0, its last crossing of the x axis in those of X0, and by which
+fraction the crossings fall."""
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
 """μN in N of whirls before the branch."""
 
 FOLD_START = 0.016
-"""Friction force a little above that of the fold, in units of C·X0."""
+FOLD_STEP = 0.12
+"""Friction force a little above that of the fold, in units of C·X0, and the steps to it."""
 
 FOLD_OFFSETS = (0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)

@@ -45,9 +45,10 @@ def draw_radius(data: ByEngine) -> Figure:
             _near_axis(panel, data["theory"])
     for engine in engines_in(data):
         found = data[engine]
-        pin = np.array([radius_of_pin(load) for load in found["circle load"]])
         for prefix, style in _marks(engine, found):
-            whole.plot(found["circle load"], found[f"{prefix}circle"][:, 0] * pin, **style)
+            loads = found[f"{prefix}circle load"]
+            pin = np.array([radius_of_pin(load) for load in loads])
+            whole.plot(loads, found[f"{prefix}circle"][:, 0] * pin, **style)
             radius = RING.offset * np.hypot(*found[f"{prefix}rest"].T[:2])
             for panel in (whole, near):
                 panel.plot(found["rest load"], radius, **style | {"label": ""})
@@ -109,8 +110,9 @@ def draw_spin(data: ByEngine) -> Figure:
         found = data[engine]
         for prefix, style in _marks(engine, found):
             spin = RING.disc_speed * found[f"{prefix}circle"][:, 2]
-            whole.plot(found["circle load"], spin, **style)
-            distance.plot(found["circle load"], spin - limit, **style)
+            loads = found[f"{prefix}circle load"]
+            whole.plot(loads, spin, **style)
+            distance.plot(loads, spin - limit, **style)
             whole.plot(
                 found["rest load"], RING.disc_speed * found[f"{prefix}rest"][:, 2], **style | {"label": ""}
             )

@@ -18,9 +18,11 @@ from compare.claims.study import Data
 from compare.studies.disc.fig09.parameters import (
     BRANCH_END,
     BRANCH_START,
+    BRANCH_STEP,
     CENTRED,
     FOLD_OFFSETS,
     FOLD_START,
+    FOLD_STEP,
     LARGEST_LOAD,
     OFFSETS,
     ORBIT_TOLERANCE,
@@ -101,10 +103,10 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
     return complex(answer[0] + 1.0j * answer[1]) / 2.0
 
 
-def to_inner_orbits(disc: DiscOnDisc) -> Iterator[Orbit]:
+def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
     """Yield whirls from the μN of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
-    return whirl_branch(outermost, BRANCH_END * disc.offset, step=0.12)
+    return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
 
 def inner_orbit(disc: DiscOnDisc) -> Orbit:
@@ -135,7 +137,7 @@ def smallest_load(disc: DiscOnDisc) -> float:
     """Return μN in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
     sizes: list[float] = []
     loads: list[float] = []
-    for orbit in to_inner_orbits(with_load(disc, FOLD_START * disc.stiffness * disc.offset)):
+    for orbit in to_inner_orbits(with_load(disc, FOLD_START * disc.stiffness * disc.offset), FOLD_STEP):
         sizes.append(math.log(orbit.state[0]))
         loads.append(orbit.system.friction_force)
         if loads[-1] > min(loads):

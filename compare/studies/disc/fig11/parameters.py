@@ -34,7 +34,10 @@ TIMES = np.linspace(0.0, UNTIL, 2801)
 ROUND = np.linspace(0.0, 300.0, 1201)
 """In s: one period of the modulation and more."""
 
-OF_RESTS = 30 * WORKING
+OF_CYCLE = 10 * WORKING
+"""Tolerance of the motion that settles on the modulated cycle."""
+
+OF_RESTS = 200 * WORKING
 """Tolerance of the motions of which it is asked when single points rest."""
 
 AMPLITUDE = 1e-4
@@ -43,7 +46,7 @@ AMPLITUDE = 1e-4
 DURATION = 200.0
 """In s: about a period of the modulation, in which the deviation grows by a factor of ten."""
 
-TOLERANCE = 200 * WORKING
+TOLERANCE = 2000 * WORKING
 """Its error must be small beside a deviation that grows from ``AMPLITUDE``."""
 
 FOLLOWED = 900.0
@@ -55,7 +58,7 @@ STEP = 1e-4
 TRIED = (0.0072, 0.00725, 0.0073)
 """X0 in m of the whirls between which the critical one is interpolated."""
 
-OFFSETS = (0.0, 0.003, 0.006, 0.007, 0.009, 0.014, 0.018, 0.022, FIG8.offset)
+OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last one is that of the other figures."""
 
 ENDS_UNTIL = 720.0
@@ -66,7 +69,7 @@ LOOKED_AT = 240.0
 
 SAMPLES_A_TURN = 16
 
-ENDS_TOLERANCE = 1e-5
+ENDS_TOLERANCE = 1e-4
 """Of the long simulations."""
 
 SWING = 0.005

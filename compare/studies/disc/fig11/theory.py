@@ -251,7 +251,7 @@ def critical_offset_of_reference() -> float:
     return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
 
 
-def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-10) -> ComplexArray:
+def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers, shape (5,), of the whirl of ``disc`` next to the orbit ``near``.
 
     The orbit is found anew, by Newton's method with the exact derivative of the flow: (19) and its linearisation

@@ -78,13 +78,13 @@ class Throw:
         return f"J/mR² = {self.inertia:g}, atan(W/U) = {self.degrees:g}°"
 
 
-DEGREES = (8.0, 20.0, -33.0, 57.0, -70.0, 82.0)
+DEGREES = (8.0, -33.0, 57.0, -70.0)
 RINGS = tuple(Throw(1.0, degrees) for degrees in DEGREES)
 
-OTHERS = tuple(Throw(inertia, degrees) for inertia in (0.7, 0.8, 1.25, 1.4) for degrees in (15.0, -75.0))
+OTHERS = tuple(Throw(inertia, degrees) for inertia in (0.7, 1.4) for degrees in (15.0, -75.0))
 """Bodies on a ring of contact with a terminal ratio that is another than 1, from both sides of it."""
 
-INTEGRATED = (*RINGS, *OTHERS[:2], *OTHERS[-2:])
+INTEGRATED = (*RINGS, *OTHERS)
 
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Beyond the limits of 1/2 and 2."""

@@ -91,22 +91,12 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
     """Find the exponent with which the errors of stick and release times fall with the tolerance."""
     scan = SCANS[engine.name]
-
-    def events(run: Simulate, tolerance: float) -> FloatArray:
-        times = (0.0, STICKING_UNTIL)
-        return np.concatenate(
-            [run(FIG5, start, times, tolerance=tolerance).stick_times for start in STICKING_STARTS]
-        )
-
-    exact = events(simulate, TRUTH)
+    exact, noise = _exact_events()
     errors = np.array(
-        [root_mean_square(gap(events(engine.simulate, t), exact)) for t in scan.sticking.tolist()]
+        [root_mean_square(gap(_events(engine.simulate, t), exact)) for t in scan.sticking.tolist()]
     )
     exponent, numerical, model = observed_exponent(
-        scan.sticking,
-        errors,
-        next_term=scan.sticking_term,
-        noise=root_mean_square(events(simulate, COARSENING * TRUTH) - exact),
+        scan.sticking, errors, next_term=scan.sticking_term, noise=noise
     )
     data: Data = {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
     if with_work:
@@ -123,6 +113,21 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
         + _range_of(scan.sticking, "tolerance"),
         data=data,
     )
+
+
+def _events(run: Simulate, tolerance: float) -> FloatArray:
+    """Return when pins stick and let go, in s, from one of ``STICKING_STARTS`` after the other."""
+    times = (0.0, STICKING_UNTIL)
+    return np.concatenate(
+        [run(FIG5, start, times, tolerance=tolerance).stick_times for start in STICKING_STARTS]
+    )
+
+
+@functools.cache
+def _exact_events() -> tuple[FloatArray, float]:
+    """Return the same times as exactly as the reference has them, and how far they are off."""
+    exact = _events(simulate, TRUTH)
+    return exact, root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
 
 # ---------------------------------------------------------------- in the step

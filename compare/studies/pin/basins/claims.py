@@ -52,9 +52,10 @@ from compare.studies.pin.basins.theory import (
     saddle,
     shares_over_speed,
     smooth,
+    sought_from,
     starts_at,
 )
-from reference_model import boundary_point, simulate
+from reference_model import simulate
 from reference_model.ensemble import EndState
 from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
@@ -81,7 +82,7 @@ STUDY = Study.beside(
 )
 def closes(engine: Engine) -> Measured:
     """Compare the state after a period with that at the start."""
-    orbit = saddle()
+    orbit = saddle(FIG5)
     found = refined(
         lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
     )
@@ -108,7 +109,7 @@ def closes(engine: Engine) -> Measured:
 )
 def returns(engine: Engine) -> Measured:
     """Compare period, time of stick and multiplier of the saddle in the engine's own map of releases."""
-    orbit = saddle()
+    orbit = saddle(FIG5)
     releases = ReleaseMap(FIG5, ON_BOUNDARY)
 
     def after(angle: float, tolerance: float) -> Release:
@@ -153,9 +154,8 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
     ways = np.column_stack((rays.real, rays.imag))
     within = starts_at(*(WITHIN + np.zeros_like(ways)).T)
     without = starts_at(*(WITHIN + REACH * ways).T)
-    middle = [
-        boundary_point(saddle(), start, end)[[0, 2]] for start, end in zip(within, without, strict=True)
-    ]
+    divided = Separatrix.of(sought_from(FIG5))
+    middle = [divided.point_between(start, end)[[0, 2]] for start, end in zip(within, without, strict=True)]
     sides = starts_at(*np.concatenate((middle - ASIDE * ways, middle + ASIDE * ways)).T)
     outwards = np.repeat((-1.0, 1.0), places)
 
@@ -183,7 +183,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
     off = distances(beyond, curve)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Separatrix.of(saddle())  # far tighter than by which they may miss it
+    sides = Separatrix.of(saddle(FIG5))  # far tighter than by which they may miss it
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)

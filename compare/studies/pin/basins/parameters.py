@@ -26,7 +26,7 @@ WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.
 """Where in the plane the boundary of each pin is looked for; that no other part of it lies elsewhere the ends of the
 grid say."""
 
-CELLS, ON_BOUNDARY = 8, 1e-6
+CELLS, ON_BOUNDARY = 8, 1e-5
 """With which resolution and tolerance: splines between the points are 1.2e-3 m off, half a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ def curves(
     side: int = SIDE, cells: int = CELLS, speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS
 ) -> Data:
     """Return ends and boundary in the plane of starts, the saddle, and shares over the speed."""
-    orbit = saddle().trajectory
+    orbit = saddle(FIG5).trajectory
     held = np.zeros(len(orbit.times))
     for begin, end in orbit.stick_times.reshape(-1, 2):
         held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
@@ -48,16 +49,22 @@ def curves(
 
 
 @functools.cache
-def saddle(tolerance: float = TIGHTEST, pin: PinOnDisc = FIG5) -> StickSlipOrbit:
+def saddle(pin: PinOnDisc) -> StickSlipOrbit:
     """Return the orbit of ``pin`` whose stable set is the boundary."""
-    (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable)
+    (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=TIGHTEST) if not orbit.stable)
     return orbit
+
+
+def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
+    """Return the saddle with the tolerance that points of the boundary are to have."""
+    orbit = saddle(pin)
+    return replace(orbit, problem=replace(orbit.problem, tolerance=ON_BOUNDARY))
 
 
 @functools.cache
 def boundary(pin: PinOnDisc = FIG5, cells: int = CELLS) -> FloatArray:
     """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
-    (curve,) = basin_boundary(saddle(ON_BOUNDARY, pin), ranges=WHERE[pin], cells=cells)
+    (curve,) = basin_boundary(sought_from(pin), ranges=WHERE[pin], cells=cells)
     points = np.asarray(curve.points)
     return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
 

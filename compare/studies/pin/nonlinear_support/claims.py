@@ -32,6 +32,7 @@ from compare.studies.pin.nonlinear_support.parameters import (
     SOURCE,
     STICKING,
     STICKS_BY,
+    TOLERANCE,
 )
 from compare.studies.pin.nonlinear_support.pictures import draw
 from compare.studies.pin.nonlinear_support.theory import (
@@ -84,7 +85,7 @@ def circle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
         miss = max(orbit.residual for row in orbits for orbit in row)
         return [[radius_and_frequency(orbit) for orbit in row] for row in orbits]
 
-    found = refined(circles, WORKING)
+    found = refined(circles, TOLERANCE)
     radii = {f"{name} radius": found.value[i, :, 0] for i, name in enumerate(PINS)}
     return Measured(
         predicted=[[(whirl_radius(pin), whirl_frequency(pin)) for pin in row] for row in pins],
@@ -113,7 +114,7 @@ def orbit(engine: Engine) -> Measured:
         orbits = [whirl_of(engine, pin, tolerance, guess) for pin, guess in zip(pins, exact, strict=True)]
         return [[one.period, *extent(one)] for one in orbits]
 
-    found = refined(period_and_extent, WORKING)
+    found = refined(period_and_extent, TOLERANCE)
     return Measured(
         predicted=[[one.period, *extent(one)] for one in exact],
         value=found.value,
@@ -176,7 +177,8 @@ def slides(engine: Engine) -> Measured:
     found = refined(
         lambda tolerance: [
             engine.simulate(pin, SLIDING_START, SLIDING_TIMES, tolerance=tolerance).states for pin in pins
-        ]
+        ],
+        TOLERANCE,
     )
     return Measured(
         predicted=[simulate(pin, SLIDING_START, SLIDING_TIMES, tolerance=TRUTH).states for pin in pins],
@@ -204,7 +206,7 @@ def sticks(engine: Engine) -> Measured:
         phases = asked.simulate(STICKING, start, [0.0, STICKS_BY], tolerance=tolerance).stick_phases
         return (phases[0].start, phases[0].end) if phases else (math.nan, math.nan)
 
-    found = refined(lambda tolerance: first_stick(engine, tolerance))
+    found = refined(lambda tolerance: first_stick(engine, tolerance), TOLERANCE)
     return Measured(
         predicted=first_stick(Engine("reference", simulate), TRUTH),
         value=found.value,
@@ -234,7 +236,7 @@ def rests(engine: Engine) -> Measured:
             for pin, (x, y) in zip(pins, places, strict=True)
         ]
 
-    found = refined(ends)
+    found = refined(ends, TOLERANCE)
     # As in fig06: the slowest deviation decays like exp(−βt/2m).
     left = BESIDE * math.exp(-CENTRED.damping / (2.0 * CENTRED.mass) * REST_TIMES[1])
     return Measured(
@@ -304,7 +306,7 @@ def disc_whirl(engine: Engine) -> Measured:
             return [math.nan] * 3
         return [float(np.hypot(*motion.state[:2])), motion.frequency, motion.spin]
 
-    found = refined(coming_back, WORKING)
+    found = refined(coming_back, TOLERANCE)
     return Measured(
         predicted=[whirl.radius, whirl.frequency, whirl.spin],
         value=found.value,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.paper_parameters import CENTRED, FIG5, FIG9
 
 HARDENING = replace(CENTRED, hardening=0.5)
@@ -20,7 +21,7 @@ LAWS = (
 
 SOURCE = "Fig. 4, with β, μN and X0 as stated; C₃, C_s and the gap are our choice, the paper names no law"
 
-LOADS = (0.04, 0.08, 0.12, 0.2)
+LOADS = (0.04, 0.1, 0.2)
 """μN in N; at the smallest one the pin does not reach the stop."""
 
 OFFSET = 0.1
@@ -35,7 +36,7 @@ RESTING = {"offset": 0.8, "friction_force": 0.9}
 BESIDE = 0.005
 """In m: how far from there pins are started."""
 
-REST_TIMES = np.concatenate(([0.0], np.linspace(390.0, 400.0, 11)))
+REST_TIMES = np.concatenate(([0.0], np.linspace(270.0, 280.0, 11)))
 """In s: they have come to rest by then."""
 
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
@@ -50,6 +51,9 @@ STICKING = replace(
     stop_gap=0.1,
     stop_stiffness=1.0,
 )
+TOLERANCE = 10 * WORKING
+"""Of the motions whose error is but a hundredth of the resolution then."""
+
 STICKS_BY = 2.0
 """In s, after which the pin of Fig. 5's second start has stuck and let go again."""
 

@@ -63,10 +63,10 @@ class TestFreeRing(StudyTests):
     study = STUDY
     sound = ("reference", "exudyn")
     few = {
-        "end_together": {"throws": (*RINGS[1:3], *OTHERS[::5])},
+        "end_together": {"throws": (*RINGS[1:3], *OTHERS[::3])},
         "ratio_one": {"throws": RINGS[1:3]},
         "approach": {"throws": RINGS[1:3]},
-        "other_ratios": {"throws": OTHERS[::5]},
+        "other_ratios": {"throws": OTHERS[::3]},
         "powers": {"throws": LOPSIDED[1:3]},
         "stops": {"throws": (RINGS[1], OTHERS[0])},
         "heat": {"throws": RINGS[1:3]},

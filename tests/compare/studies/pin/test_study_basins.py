@@ -92,14 +92,14 @@ def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
 
 
 def test_ends_of_wrong_starts_are_found_out(anew):
-    """Of an ensemble that takes 2 mm too much for x0."""
+    """Of an ensemble that takes 4 mm too much for x0, on a grid of 4 mm."""
     right = theory.ensemble_of
 
     def shifted(starts, *pin, **parameters):
-        return right(np.add(starts, (0.002, 0.0, 0.0, 0.0)), *pin, **parameters)
+        return right(np.add(starts, (0.004, 0.0, 0.0, 0.0)), *pin, **parameters)
 
     anew.setattr(theory, "ensemble_of", shifted)
-    assert all_differ("divides", few={"divides": {"side": 400, "cells": 6}})
+    assert all_differ("divides", few={"divides": {"side": 200, "cells": 6}})
 
 
 def test_a_basin_that_grows_with_the_speed_is_found_out(anew):

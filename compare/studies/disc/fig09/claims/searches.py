@@ -19,12 +19,14 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 
 @functools.lru_cache(maxsize=4)
-def circles_of(engine: Engine, disc: DiscOnDisc) -> Measurement:
-    """Return mean radius, frequency and spin of ``CIRCLES`` in units of μN/(βk), k and ω, shape (n, 3)."""
+def circles_of(
+    engine: Engine, disc: DiscOnDisc, circles: tuple[tuple[float, int], ...] = CIRCLES
+) -> Measurement:
+    """Return mean radius, frequency and spin of ``circles`` in units of μN/(βk), k and ω, shape (n, 3)."""
     found = refined(
-        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in CIRCLES], ORBIT_TOLERANCE
+        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in circles], ORBIT_TOLERANCE
     )
-    return with_tolerance(found, [sharpness(disc, circle_of(*one)) for one in CIRCLES])
+    return with_tolerance(found, [sharpness(disc, circle_of(*one)) for one in circles])
 
 
 def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance: float) -> FloatArray:

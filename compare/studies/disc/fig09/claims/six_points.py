@@ -43,12 +43,12 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
     note=f"In units of μN/(βk), k and ω; means over the motion that comes back turned. {BY_REFERENCE}",
     swept=("friction_force",),
 )
-def six_circles(engine: Engine) -> Measured:
+def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = CIRCLES) -> Measured:
     """Compare the whirls on six points with those of the reference."""
-    found = circles_of(engine, on_six_points(CENTRED))
-    predicted = np.array([_circle_of_reference(*one) for one in CIRCLES])
-    beside = np.abs(predicted[:, 0] - [circle_of(*one).radius / radius_of_pin(one[0]) for one in CIRCLES])
-    loads = [load for load, _ in CIRCLES]
+    found = circles_of(engine, on_six_points(CENTRED), circles)
+    predicted = np.array([_circle_of_reference(*one) for one in circles])
+    beside = np.abs(predicted[:, 0] - [circle_of(*one).radius / radius_of_pin(one[0]) for one in circles])
+    loads = [load for load, _ in circles]
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -59,7 +59,7 @@ def six_circles(engine: Engine) -> Measured:
         source=SOURCE_CENTRED,
         note=f"In radius it differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
         "1e-9 from 0.001 N on: slip is along the circle then, at all points.",
-        data={"circle load": loads, "six circle": found.value},
+        data={"six circle load": loads, "six circle": found.value},
     )
 
 

@@ -6,11 +6,11 @@ import functools
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, Measurement, refined
+from compare.claims.error_estimates import Measurement, refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig11.claims.study import STUDY
-from compare.studies.disc.fig11.parameters import EXTREMES, TIMES, UNTIL
+from compare.studies.disc.fig11.parameters import EXTREMES, OF_CYCLE, TIMES, UNTIL
 from compare.studies.disc.fig11.theory import last_modulation, predicted_modulation
 from compare.studies.toolkit.fig11_motion import RING, START
 from reference_model import Trajectory
@@ -39,7 +39,7 @@ def period_and_turn(engine: Engine) -> Measured:
         value=found.value[:2],
         error=found.error[:2],
         components=("period", "turn"),
-        data={"the continuous ring": _run(engine, WORKING).states},
+        data={"the continuous ring": _run(engine, OF_CYCLE).states},
     )
 
 
@@ -65,8 +65,10 @@ def extremes(engine: Engine) -> Measured:
 @functools.lru_cache(maxsize=4)
 def modulation(engine: Engine) -> Measurement:
     """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
-    found = refined(lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], alike=False)
-    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, WORKING).states)[1]
+    found = refined(
+        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
+    )
+    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
     return Measurement(found.value, np.nan_to_num(error, nan=np.inf))
 
 

@@ -7,7 +7,7 @@ import functools
 import numpy as np
 
 import compare.studies.disc.fig11.claims.whirl as whirl
-from compare.claims.error_estimates import refined
+from compare.claims.error_estimates import WORKING, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
 from compare.studies.disc.fig11.claims.offsets import end_of, error_of_monodromy
@@ -55,7 +55,7 @@ def shooting() -> Measured:
         orbit = modulated_cycle(RING, guess, tolerance=tolerance, samples=len(ROUND))
         return np.array([orbit.period, orbit.turn, *extremes_of(orbit.trajectory)])
 
-    found = refined(cycle, alike=False)
+    found = refined(cycle, 100 * WORKING, alike=False)
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -116,7 +116,7 @@ def dies_out_by_23() -> Measured:
 )
 def both_stable() -> Measured:
     """Take the multipliers of the whirl, and follow the modulated motion, at the same X0."""
-    orbit = whirl_orbit(disc_at(BOTH_STABLE))
+    orbit = whirl_orbit(disc_at(BOTH_STABLE), tolerance=WORKING)
     reference = Engine("reference", simulate, ("ring",))
 
     def modulated(tolerance: float) -> bool:
