@@ -6,11 +6,8 @@ import numpy as np
 
 from compare.claims.error_estimates import TRUTH
 
-MOTIONS = 252
-"""Random motions for an engine, as many of every kind of problem that it can simulate.
-
-Of 28 pins one number of 112 may lie outside of its estimate: fewer motions could not tell 99 % from all.
-"""
+MOTIONS = 360
+"""Random motions for an engine, as many of every kind of problem that it can simulate."""
 
 TOLERANCES = (1e-7, 1e-5)
 """Between these the tolerance of a motion is drawn."""
