@@ -29,7 +29,7 @@ def simulate(pin, initial_state, times, *, tolerance=1e-9):
         by_place = -(hold @ turning + pin.stiffness * one) / pin.mass
         return np.block([[0 * one, one], [by_place, -(hold + pin.damping * one) / pin.mass]])
 
-    local = max(0.1 * tolerance, 1e-12)  # of a step, so that the end is good to the tolerance
+    local = max(0.01 * tolerance, 1e-13)  # of a step, so that the end is good to the tolerance
     span, accuracy = (times[0], times[-1]), {"rtol": local, "atol": local}
     run = solve_ivp(eq1, span, initial_state, method="LSODA", t_eval=times, jac=jacobian, **accuracy)
     return Trajectory(pin, run.t, run.y.T)

@@ -28,25 +28,27 @@ REST = 1e-2
 """Slip over the largest speed of the motion, below which a body may stick; looking closer, it must come down more."""
 
 CREEP = 3e-4
-"""Slip over the largest speed of the motion, up to which a body may creep where it sticks."""
+"""Slip over the largest speed of the motion, up to which a body may creep where it sticks, at a tolerance of 1e-9.
+
+It goes with the tolerance, as the creep of a smoothed law should, up to half of ``REST``.
+"""
 
 CLOSER = 64
 """By how much samples become denser, and the slip that is looked for smaller, at one look."""
 
 LOOKS = 3
 
-LEAST = 1e-6
-"""Slip over the largest speed of the motion from which is extrapolated.
+LEAST = 1e-7
+"""Slip over the largest speed of the motion from which is extrapolated at a tolerance of 1e-9; it goes with its root.
 
-This and ``CREEP`` are for a tolerance of 1e-9, and go with its root. What is off by extrapolation then changes with
-the tolerance, and is in the errors that are estimated by that.
+What is off by extrapolation then changes with the tolerance, and is in the errors that are estimated by that.
 """
 
 ABOVE_CREEP = 8.0
 """Least slip from which is extrapolated, over that in a stick phase."""
 
-QUIET = 0.1
-"""Share of the samples below a level that stand for stick: others may belong to slow slip between two phases."""
+QUIET, QUIETER = 0.1, 0.5
+"""Share of the time of a slow span that is stick for sure: at first, when there may be slow slip in it, and later."""
 
 FLANK = 16.0
 """Largest slip from which is extrapolated, over the least."""
@@ -69,7 +71,7 @@ class StatesOnly(Trajectory):
     def __init__(self, told: Trajectory, ask: Callable[[FloatArray], FloatArray], tolerance: float) -> None:
         for name in ("system", "times", "states", "solution"):
             object.__setattr__(self, name, getattr(told, name))
-        object.__setattr__(self, "_samples", _Samples(told.system, ask, math.sqrt(tolerance / 1e-9)))
+        object.__setattr__(self, "_samples", _Samples(told.system, ask, tolerance / 1e-9))
 
     _samples: _Samples
 
@@ -91,7 +93,7 @@ class _Span:
 class _Samples:
     """What is known of a motion: states and slip speeds at times that become more.
 
-    ``coarseness`` is 1 at a tolerance of 1e-9, see ``LEAST``.
+    ``coarseness`` is the tolerance over 1e-9.
     """
 
     def __init__(self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float) -> None:
@@ -181,8 +183,11 @@ class _Samples:
     def _closer(self, span: _Span) -> list[_Span]:
         """Return what of a span is below a lower level, as low as its creep allows."""
         first, last = self._places(span)
-        creep = self._quantile(float(self.times[first]), float(self.times[last]), QUIET)
-        level = max(span.level / CLOSER, ABOVE_CREEP * creep, LEAST * self.coarseness * self.largest)
+        share = QUIETER if span.level < REST * self.largest else QUIET
+        creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
+        level = max(
+            span.level / CLOSER, ABOVE_CREEP * creep, LEAST * math.sqrt(self.coarseness) * self.largest
+        )
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
@@ -197,9 +202,8 @@ class _Samples:
         """
         if end - begin <= (span.last - span.first) / 2.0:
             return False
-        rests = self._quantile(begin, end, 0.5) <= min(
-            span.level / 2.0, CREEP * self.coarseness * self.largest
-        )
+        creep = min(CREEP * self.coarseness, REST / 2.0) * self.largest
+        rests = self._quantile(begin, end, 0.5) <= min(span.level / 2.0, creep)
         return rests and _load(self.system, self._state((begin + end) / 2.0)) <= self.system.friction_force
 
     def _flanks(self, span: _Span) -> FloatArray:
