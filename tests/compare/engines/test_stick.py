@@ -1,0 +1,126 @@
+"""Stick that is found from states is that which the reference tells."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import reference_model
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.engines import Engine
+from compare.engines.engine import UnsupportedSystemError
+from reference_model import Phase, Trajectory
+
+TIMES = np.linspace(0.0, 30.0, 7)
+
+RING = replace(FIG11, friction_force=0.1)
+
+PASSES_BY = replace(
+    FIG5,
+    damping=0.05174294942761709,
+    friction_force=0.2067058991083,
+    disc_speed=1.62039924899,
+    offset=0.1027585285368,
+)
+"""From the start below its slip falls to 2e-4 of its largest speed and grows again."""
+
+
+def drawn(seed):
+    """Return a pin and a start; many stick on their way, some at the end, some for ever."""
+    random = np.random.default_rng(seed)
+    pin = replace(
+        FIG5,
+        friction_force=random.uniform(0.03, 0.3),
+        disc_speed=random.uniform(0.3, 3.0) * random.choice([-1, 1]),
+        damping=random.uniform(0.0, 0.5),
+        offset=random.uniform(0.0, 0.2),
+    )
+    return pin, random.normal(0.0, 0.1, 4)
+
+
+MOTIONS = {
+    "the way to the equilibrium": (FIG5, FIG5_STARTS["equilibrium"]),
+    "the way to the whirl, whose last stick is nearly slip": (FIG5, FIG5_STARTS["whirl"]),
+    "a ring that comes to rest": (RING, (0.05, 0.0, 0.0, 0.1, 0.0, 0.5)),
+    "slip that passes by rest": (PASSES_BY, (-0.04926085, -0.06287503, -0.1125771, -0.05500665)),
+} | {f"drawn {seed}": drawn(seed) for seed in range(6)}
+
+
+def told(system, start, times, *, tolerance=1e-9):
+    return reference_model.simulate(system, start, times, tolerance=tolerance)
+
+
+def states_only(system, start, times, *, tolerance=1e-9):
+    run = told(system, start, times, tolerance=tolerance)
+    return Trajectory(system, run.times, run.states)
+
+
+def in_single_precision(system, start, times, *, tolerance=1e-9):
+    run = told(system, start, times, tolerance=tolerance)
+    return Trajectory(system, run.times, run.states.astype(np.float32).astype(float))
+
+
+def one_phase(system, start, times, *, tolerance=1e-9):
+    run = told(system, start, times, tolerance=tolerance)
+    return replace(run, phases=(Phase("slip", times[0], times[-1], run.states[0]),))
+
+
+def engine(function, **more):
+    return Engine("mine", function, ("pin", "ring"), **more)
+
+
+@pytest.mark.parametrize(("system", "start"), MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize(("function", "off"), [(states_only, 1e-5), (in_single_precision, 1e-3)])
+def test_it_is_the_reference_s(function, off, system, start):
+    exact = told(system, start, TIMES)
+    found = engine(function, phases=False).simulate(system, start, TIMES)
+    assert [phase.kind for phase in found.phases] == [phase.kind for phase in exact.phases]
+    np.testing.assert_allclose(found.stick_times, exact.stick_times, rtol=0.0, atol=off)
+
+
+def test_what_a_law_that_creeps_comes_to_is_nearer_at_a_smaller_tolerance():
+    def creeping(pin, start, times, *, tolerance):
+        return reference_model.plain.simulate(pin, start, times, tolerance=tolerance)
+
+    exact = told(FIG5, FIG5_STARTS["equilibrium"], TIMES).stick_times
+    off = []
+    for tolerance in (1e-6, 1e-7):
+        found = engine(creeping, phases=False).simulate(
+            FIG5, FIG5_STARTS["equilibrium"], TIMES, tolerance=tolerance
+        )
+        off.append(np.max(np.abs(found.stick_times - exact)))
+    assert off[1] < 0.5 * off[0] < 0.05
+
+
+def test_phases_are_looked_for_where_a_trajectory_tells_no_stick_and_need_not():
+    start = FIG5_STARTS["equilibrium"]
+    looked_for = engine(one_phase, phases=False).simulate(FIG5, start, TIMES)
+    assert len(looked_for.stick_phases) == 2
+    assert engine(one_phase).simulate(FIG5, start, TIMES).stick_phases == ()
+    exact = engine(told, phases=False).simulate(FIG5, start, TIMES)
+    np.testing.assert_array_equal(exact.stick_times, told(FIG5, start, TIMES).stick_times)
+
+
+def test_states_at_the_beginnings_of_phases_are_those_of_the_engine():
+    found = engine(states_only, phases=False).simulate(FIG5, FIG5_STARTS["equilibrium"], TIMES)
+    for phase in found.phases[1:]:
+        states = told(FIG5, FIG5_STARTS["equilibrium"], [0.0, phase.start]).states
+        np.testing.assert_allclose(phase.initial_state, states[-1], rtol=0.0, atol=1e-9)
+
+
+def test_nobody_asks_for_more_states_unless_somebody_asks_for_stick():
+    calls = []
+
+    def counted(*arguments, **options):
+        calls.append(arguments)
+        return states_only(*arguments, **options)
+
+    run = engine(counted, phases=False).simulate(FIG5, FIG5_STARTS["equilibrium"], TIMES)
+    assert (len(calls), run.times[-1]) == (1, TIMES[-1])
+    assert run.stick_times is not None
+    assert len(calls) > 1
+
+
+def test_an_engine_that_does_not_stick_need_not():
+    with pytest.raises(UnsupportedSystemError, match="does not simulate stick"):
+        engine(states_only, phases=False, sticks=False).simulate(FIG5, FIG5_STARTS["equilibrium"], TIMES)
