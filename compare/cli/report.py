@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
-from compare.cli.options import Folder, Jobs, Resume, check_folder, chosen_from, cores, studies_of
+from compare.cli.options import (
+    Folder,
+    Jobs,
+    Resume,
+    check_folder,
+    chosen_from,
+    cores,
+    positive,
+    studies_of,
+)
 from compare.cli.progress import measurements
 
 if TYPE_CHECKING:
@@ -42,12 +51,24 @@ Level = Annotated[
     ),
 ]
 
+Limit = Annotated[
+    float | None,
+    typer.Option(
+        "--study-limit",
+        metavar="SECONDS",
+        help="Time after which a study of an engine is given up; without it, never.",
+        parser=positive("study-limit", "s"),
+        show_default=False,
+    ),
+]
+
 
 def report(
     context: typer.Context,
     names: Names = None,
     engine: Engines = None,
     level: Level = "full",
+    study_limit: Limit = None,
     output: Folder = Path("report"),
     jobs: Jobs = None,
     resume: Resume = False,
@@ -89,6 +110,7 @@ def report(
             chosen,
             folder=output / "data",
             jobs=jobs or cores(),
+            limit=study_limit,
             resume=resume,
             errata=ERRATA if whole else (),
             progress=progress,
@@ -126,11 +148,15 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 if cell.state is State.NOT_SIMULATED:
                     if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
                         print(f"{group.study.name} {column} not simulated: {cell.reason}")
+                elif cell.state is State.FAILED:
+                    if group.first_with(column, cell.reason) is row:
+                        failure = result.outcomes[group.study.name, column]
+                        print(f"{group.study.name} {column} failed: {failure}")
                 elif cell.state not in (State.AGREES, State.MISSING):  # what is missing is said at the end
                     reason = f": {cell.reason}" if cell.reason else ""
                     print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
     for what, failure in _failures(result).items():
-        print(f"{what}: {failure.reason}")
+        print(f"{what}: {failure}")
     print(f"{summary(matrix)} ({index})")
 
 

@@ -157,7 +157,7 @@ def _reason(engine: str, error: Exception) -> str:
     if isinstance(error, RuntimeError | ValueError) and str(error):
         return str(error)
     failed = failure(error)
-    return f"engine {engine!r} failed: {failed.reason} ({failed.where[-1]})"
+    return f"engine {engine!r} failed: {failed}"
 
 
 def _unwritable(path: Path, error: OSError) -> str:

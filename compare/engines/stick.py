@@ -146,7 +146,9 @@ class _Samples:
         slip, steps = self.slip, np.abs(np.diff(self.slip))
         beside = np.concatenate(([np.inf], slip, [np.inf]))
         lowest = np.flatnonzero((slip <= beside[:-2]) & (slip < beside[2:]))
-        nearest = [int(i) for i in lowest if slip[i] < 2.0 * np.max(steps[max(0, i - 2) : i + 2])]
+        nearest = [
+            int(i) for i in lowest if slip[i] < 2.0 * np.max(steps[max(0, i - 2) : i + 2], initial=0.0)
+        ]
         return _joined(
             np.linspace(self.times[max(i - 1, 0)], self.times[min(i + 1, len(slip) - 1)], 2 * CLOSER + 1)
             for i in nearest

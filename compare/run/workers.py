@@ -48,6 +48,10 @@ class Failure:
     reason: str
     where: tuple[str, ...] = ()
 
+    def __str__(self) -> str:
+        """Return the sentence with the innermost place in brackets."""
+        return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
+
 
 @dataclass(frozen=True)
 class Done:

@@ -100,6 +100,8 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     assert process.returncode == 1
     assert process.stderr == ""  # no progress bar but on a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
+    gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
+    assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
     first = "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed"
     assert process.stdout.endswith(f"{first} ({folder / 'index.html'})\n")
 
@@ -280,6 +282,8 @@ BAD = [
     (("report", "verdict"), "unknown study 'verdict': did you mean 'verdicts'?"),
     (("report", "--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
     (("report", "--jobs", "0"), "jobs = 0: it must lie between 1 and 1000"),
+    (("report", "--study-limit", "0"), "study-limit = 0 s: it must be > 0"),
+    (("report", "--study-limit", "soon"), "study-limit = 'soon': it must be a number"),
     (("report", "--jobs", "two"), "jobs = 'two': it must be a whole number"),
     ((*PIN, "--engine", "referense"), "unknown engine 'referense': did you mean 'reference'?"),
     ((*PIN, "--set", "disk_speed=1"), "unknown parameter 'disk_speed': did you mean 'disc_speed'?"),

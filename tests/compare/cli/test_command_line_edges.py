@@ -118,6 +118,20 @@ def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypat
     )
 
 
+def test_the_time_after_which_a_study_is_given_up_is_that_of_the_option(tmp_path, monkeypatch):
+    limits = []
+
+    def nothing(studies, engines, *, limit, **more):
+        limits.append(limit)
+        return Run(studies, (), interrupted=True)
+
+    monkeypatch.setattr("compare.run.runner.run", nothing)
+    arguments = ["report", "verdicts", "--output", str(tmp_path)]
+    for more in ([], ["--study-limit", "2.5"]):
+        cli.status(arguments + more, fake_studies.ALL)
+    assert limits == [None, 2.5]
+
+
 def test_ctrl_c_while_the_command_is_still_being_loaded_is_told(tmp_path):
     (tmp_path / "typer.py").write_text("raise KeyboardInterrupt")
     path = os.pathsep.join([str(tmp_path), environment()["PYTHONPATH"]])
