@@ -15,7 +15,7 @@ from compare.studies.disc.fig11 import pictures, theory
 from compare.studies.disc.fig11.claims import STUDY, whirl
 from compare.studies.disc.fig11.parameters import EXPANSION, TIMES, UNTIL
 from compare.studies.toolkit.fig11_motion import DISCS, RING
-from reference_model import self_centred_equilibria, simulate, whirl_orbit, whirls
+from reference_model import Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
 
 NO_PASS = (SEES, OPEN)
 """A motion beside the whirl is not small, which may leave its growth inconclusive."""
@@ -161,3 +161,11 @@ class TestFig11(StudyTests):
     def test_a_motion_without_a_modulation_has_none(self):
         last, change = theory.last_modulation(states_of(0.02 * np.exp(1j * TIMES)))
         assert last.shape == change.shape == (6,)
+
+
+def test_an_engine_that_tells_no_phases_is_not_asked_when_single_points_rest():
+    def at_rest(system, initial_state, times, *, tolerance=1e-9):
+        return Trajectory(system, np.array(times), np.zeros((len(times), system.state_size)))
+
+    found = STUDY.measure(Engine("mine", at_rest, EVERY_KIND, phases=False), only=("points_rest",))
+    assert (found.claims, found.not_simulated) == ((), "mine does not tell when single points rest")
