@@ -30,7 +30,7 @@ REST = 1e-2
 CREEP = 3e-4
 """Slip over the largest speed of the motion, up to which a body may creep where it sticks, at a tolerance of 1e-9.
 
-It goes with the tolerance, as the creep of a smoothed law should, up to half of ``REST``.
+It goes with the tolerance, as the creep of a smoothed law should, up to ``REST``.
 """
 
 CLOSER = 64
@@ -204,8 +204,7 @@ class _Samples:
         """
         if end - begin <= (span.last - span.first) / 2.0:
             return False
-        creep = min(CREEP * self.coarseness, REST / 2.0) * self.largest
-        rests = self._quantile(begin, end, 0.5) <= min(span.level / 2.0, creep)
+        rests = self._quantile(begin, end, 0.5) <= min(CREEP * self.coarseness, REST) * self.largest
         return rests and _load(self.system, self._state((begin + end) / 2.0)) <= self.system.friction_force
 
     def _flanks(self, span: _Span) -> FloatArray:

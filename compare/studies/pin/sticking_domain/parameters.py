@@ -30,7 +30,7 @@ REVOLUTIONS = 2.0
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s at which the largest sticking radius is searched; the first three are about the resonance."""
 
-BRACKET = (0.05, 4.0)
+BRACKET = (0.03, 4.0)
 """Where the search begins, in units of X0: without regard to (9), so that it can't lead to it."""
 
 PRECISION = 6e-5
