@@ -47,14 +47,16 @@ class Server:
 @pytest.fixture(scope="module")
 def server():
     """Where ``s3://`` leads to, with the bucket "sweeps", for this process and those it starts."""
-    found = Server()
+    found, s3 = Server(), fsspec.get_filesystem_class("s3")
+    s3.clear_instance_cache()  # which may lead to a server of before: tests are handed out in any order
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{found.port}")
         for name in ("AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"):
             patch.setenv(name, "test")
         patch.setenv("AWS_DEFAULT_REGION", "us-east-1")
-        fsspec.filesystem("s3").mkdir("sweeps")
+        fsspec.filesystem("s3").makedirs("sweeps", exist_ok=True)  # it outlives the server
         yield found
+    s3.clear_instance_cache()
     found.end()
 
 
