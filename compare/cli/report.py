@@ -145,13 +145,11 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     for group in matrix.groups:
         for row in group.rows:
             for column, cell in row.cells.items():
-                if cell.state is State.NOT_SIMULATED:
+                if cell.state in (State.NOT_SIMULATED, State.FAILED):
                     if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
-                        print(f"{group.study.name} {column} not simulated: {cell.reason}")
-                elif cell.state is State.FAILED:
-                    if group.first_with(column, cell.reason) is row:
-                        failure = result.outcomes[group.study.name, column]
-                        print(f"{group.study.name} {column} failed: {failure}")
+                        failed = cell.state is State.FAILED
+                        reason = str(result.outcomes[group.study.name, column]) if failed else cell.reason
+                        print(f"{group.study.name} {column} {cell.state.value}: {reason}")
                 elif cell.state not in (State.AGREES, State.MISSING):  # what is missing is said at the end
                     reason = f": {cell.reason}" if cell.reason else ""
                     print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")

@@ -85,9 +85,8 @@ def _installed() -> dict[str, str]:
 def imported(name: str, place: str) -> Engine:
     """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if there is none.
 
-    It is taken for an engine of the pin only, unless attributes of the function, named like the parameters of
-    ``Engine``, say something else, and not to
-    tell all stick::
+    It is taken for an engine of the pin only, which need not tell stick, unless attributes of the function, named
+    like the parameters of ``Engine``, say something else::
 
         simulate.kinds = ("pin", "points", "ring")
         simulate.sticks = False
@@ -97,9 +96,8 @@ def imported(name: str, place: str) -> Engine:
     """
     module_name, _, function_name = place.partition(":")
     if os.getcwd() not in sys.path:  # a console script does not look into the current folder
-        sys.path.append(
-            os.getcwd()
-        )  # last, or a file of the user's would take the place of a library's module
+        # last, or a file of the user's would take the place of a library's module
+        sys.path.append(os.getcwd())
     try:
         simulate = getattr(importlib.import_module(module_name), function_name)
     except Exception as error:  # whatever a module may do when it is imported
