@@ -36,6 +36,7 @@ from compare.engines.registry import (
     repeated_by,
     shares_code,
 )
+from compare.engines.stick import StatesOnly
 
 __all__ = [
     "EVERY_KIND",
@@ -45,6 +46,7 @@ __all__ = [
     "ByName",
     "Engine",
     "Simulate",
+    "StatesOnly",
     "UnsupportedSystemError",
     "compiled",
     "engines",

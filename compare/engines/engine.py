@@ -138,9 +138,9 @@ class Engine:
             return checked(self.function(system, initial_state, times, **accuracy), system, times)
 
         found = asked(times)
-        if self.phases or found.stick_phases:
+        if self.phases or any(phase.kind != "slip" for phase in found.phases):
             return found
-        return StatesOnly(found, lambda more: asked(more).states, tolerance)
+        return StatesOnly(found, lambda more: asked(more).states, tolerance / USUAL_TOLERANCE)
 
     def _step(self, tolerance: float) -> float:
         """Return the step in s, which goes with the square root of ``tolerance``.

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,15 +64,15 @@ class StatesOnly(Trajectory):
         What the engine returned.
     ask : callable
         ``ask(times) -> states`` of the same motion, at times from ``told.times[0]`` on.
-    tolerance : float
-        At which the engine was asked.
+    coarseness : float
+        The tolerance at which the engine was asked, over 1e-9.
 
     """
 
-    def __init__(self, told: Trajectory, ask: Callable[[FloatArray], FloatArray], tolerance: float) -> None:
+    def __init__(self, told: Trajectory, ask: Callable[[FloatArray], FloatArray], coarseness: float) -> None:
         for name in ("system", "times", "states", "solution"):
             object.__setattr__(self, name, getattr(told, name))
-        object.__setattr__(self, "_samples", _Samples(told.system, ask, tolerance / 1e-9))
+        object.__setattr__(self, "_samples", _Samples(told.system, ask, coarseness))
 
     _samples: _Samples
 
@@ -93,7 +94,7 @@ class _Span:
 class _Samples:
     """What is known of a motion: states and slip speeds at times that become more.
 
-    ``coarseness`` is the tolerance over 1e-9.
+    ``coarseness`` is that of ``StatesOnly``.
     """
 
     def __init__(self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float) -> None:
@@ -117,11 +118,13 @@ class _Samples:
         self.look(_joined(map(self._flanks, spans)))
         found = [(self._begin(span), self._end(span), span) for span in spans]
         sticks = [(start, stop) for start, stop, span in found if self._is_stick(start, stop, span)]
-        begun = [("slip", begin)] if not sticks or sticks[0][0] > begin else []
+        begun: list[tuple[Literal["slip", "pivot", "stick"], float]] = []
+        if not sticks or sticks[0][0] > begin:
+            begun.append(("slip", begin))
         for start, stop in sticks:
             begun += [("stick", start), ("slip", stop)] if stop < end else [("stick", start)]
         self.look(np.array([at for _, at in begun]))
-        return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)  # type: ignore[misc]
+        return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)
 
     def _how_many(self, duration: float) -> int:
         natural = math.sqrt(self.system.stiffness / self.system.mass)
@@ -139,7 +142,7 @@ class _Samples:
         order = np.argsort(np.concatenate((self.times, times)))
         self.times = np.concatenate((self.times, times))[order]
         self.states = np.concatenate((self.states, states))[order]
-        self.slip = _slip(self.system, self.states)
+        self.slip = _slip(Trajectory(self.system, self.times, self.states))
 
     def _where_it_may_rest_between(self) -> FloatArray:
         """Return times between samples where the slip, falling and growing as beside them, may come to nothing."""
@@ -249,16 +252,13 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
     return np.concatenate([np.empty(0), *times])
 
 
-def _slip(system: System, states: FloatArray) -> FloatArray:
+def _slip(run: Trajectory) -> FloatArray:
     """Return how fast a body moves on the master disc in m/s, shape (n,): its centre, and its rim about that."""
-    half = system.state_size // 2
-    x, y = states[:, :2].T
-    vx, vy = states[:, half : half + 2].T
-    omega = system.disc_speed
-    slip = np.hypot(vx + omega * y, vy - omega * x)
+    system = run.system
     if isinstance(system, DiscOnDisc):
-        slip = np.hypot(slip, system.contact_radius * (states[:, -1] - omega))
-    return np.asarray(slip)
+        rim = system.contact_radius * (run.states[:, -1] - system.disc_speed)
+        return np.asarray(np.hypot(run.slip_speed, rim))
+    return run.slip_speed
 
 
 def _load(system: System, state: FloatArray) -> float:
