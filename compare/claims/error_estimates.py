@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit  # the quantile of Student's t, without the rest of scipy.stats
 
+from compare.engines import COARSENING as COARSENING
 from compare.engines import USUAL_TOLERANCE
 from reference_model.systems import FloatArray
 
@@ -21,9 +22,6 @@ TIGHTEST = 1e-12
 
 TRUTH = 1e-13
 """Tolerance of the reference where it stands for the exact motion."""
-
-COARSENING = 8.0
-"""Factor between the two tolerances of an estimate."""
 
 SAFETY = 8.0
 """Estimate of an error over the change to the result at the smaller tolerance.

@@ -21,7 +21,6 @@ from compare.engines.built_in import ByName, compiled, exudyn, exudyn_native, pl
 from compare.engines.engine import (
     EVERY_KIND,
     KINDS,
-    USUAL_TOLERANCE,
     Engine,
     Simulate,
     UnsupportedSystemError,
@@ -37,8 +36,10 @@ from compare.engines.registry import (
     shares_code,
 )
 from compare.engines.stick import StatesOnly
+from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
 
 __all__ = [
+    "COARSENING",
     "EVERY_KIND",
     "KINDS",
     "USUAL_TOLERANCE",

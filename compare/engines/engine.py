@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 
 from compare.engines.answer import checked
 from compare.engines.names import one_of
+from compare.engines.precision import LEAST_PRECISE, blurred, blurred_start
 from compare.engines.stick import StatesOnly
+from compare.engines.tolerances import USUAL_TOLERANCE
 from reference_model.support import Support
 from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
@@ -22,8 +24,6 @@ KINDS = {"pin": "a pin", "points": "a disc on single points", "ring": "a disc on
 """The kinds of systems that an engine may promise, and what they are in words."""
 
 EVERY_KIND = tuple(KINDS)
-
-USUAL_TOLERANCE = 1e-9
 
 
 class Simulate(Protocol):
@@ -65,6 +65,9 @@ class Engine:
     phases : bool
         Whether its trajectories tell when bodies stick. Otherwise stick is found from the states of a trajectory that
         tells none, see ``compare.engines.stick``.
+    precision : float
+        What its states may be off by whatever the tolerance, relative to the motion's own lengths and speeds:
+        1e-6 for single precision. See ``compare.engines.precision``.
     step : float, optional
         For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
         tolerance of 1e-9. It goes with the square root of the tolerance.
@@ -90,6 +93,7 @@ class Engine:
     sticks: bool = True
     nonlinear: bool = True
     phases: bool = True
+    precision: float = 0.0
     step: float | None = None
     kin: str = ""
     contact_only: bool = False
@@ -103,6 +107,9 @@ class Engine:
         for name in ("sticks", "nonlinear", "phases"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} = {getattr(self, name)!r}: it must be True or False")
+        object.__setattr__(self, "precision", finite_number("precision", self.precision))
+        if not 0.0 <= self.precision <= LEAST_PRECISE:
+            raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {LEAST_PRECISE:g}")
         if self.step is not None:
             object.__setattr__(self, "step", finite_number("step", self.step))
             if self.step <= 0.0:
@@ -135,12 +142,17 @@ class Engine:
         accuracy = {"tolerance": tolerance} if self.step is None else {"step": self._step(tolerance)}
 
         def asked(times: ArrayLike) -> Trajectory:
-            return checked(self.function(system, initial_state, times, **accuracy), system, times)
+            if self.precision == 0.0:
+                return checked(self.function(system, initial_state, times, **accuracy), system, times)
+            given = np.asarray(initial_state, dtype=float)
+            start = blurred_start(system, given, self.precision, tolerance)
+            found = checked(self.function(system, start, times, **accuracy), system, times)
+            return blurred(found, self.precision, tolerance, given)
 
         found = asked(times)
         if self.phases or any(phase.kind != "slip" for phase in found.phases):
             return found
-        return StatesOnly(found, lambda more: asked(more).states, tolerance / USUAL_TOLERANCE)
+        return StatesOnly(found, lambda more: asked(more).states, tolerance / USUAL_TOLERANCE, self.precision)
 
     def _step(self, tolerance: float) -> float:
         """Return the step in s, which goes with the square root of ``tolerance``.

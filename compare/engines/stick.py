@@ -45,6 +45,9 @@ LEAST = 1e-7
 What is off by extrapolation then changes with the tolerance, and is in the errors that are estimated by that.
 """
 
+ABOVE_NOISE = 32.0
+"""The same over an engine's precision, where that is more."""
+
 ABOVE_CREEP = 8.0
 """Least slip from which is extrapolated, over that in a stick phase."""
 
@@ -66,13 +69,21 @@ class StatesOnly(Trajectory):
         ``ask(times) -> states`` of the same motion, at times from ``told.times[0]`` on.
     coarseness : float
         The tolerance at which the engine was asked, over 1e-9.
+    precision : float
+        The engine's, see ``compare.engines.precision``.
 
     """
 
-    def __init__(self, told: Trajectory, ask: Callable[[FloatArray], FloatArray], coarseness: float) -> None:
+    def __init__(
+        self,
+        told: Trajectory,
+        ask: Callable[[FloatArray], FloatArray],
+        coarseness: float,
+        precision: float = 0.0,
+    ) -> None:
         for name in ("system", "times", "states", "solution"):
             object.__setattr__(self, name, getattr(told, name))
-        object.__setattr__(self, "_samples", _Samples(told.system, ask, coarseness))
+        object.__setattr__(self, "_samples", _Samples(told.system, ask, coarseness, precision))
 
     _samples: _Samples
 
@@ -94,11 +105,14 @@ class _Span:
 class _Samples:
     """What is known of a motion: states and slip speeds at times that become more.
 
-    ``coarseness`` is that of ``StatesOnly``.
+    ``coarseness`` and ``precision`` are those of ``StatesOnly``.
     """
 
-    def __init__(self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float) -> None:
+    def __init__(
+        self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float, precision: float
+    ) -> None:
         self.system, self.ask, self.coarseness = system, ask, coarseness
+        self.least = max(LEAST, ABOVE_NOISE * precision) * math.sqrt(coarseness)
         self.times = np.empty(0)
         self.states = np.empty((0, system.state_size))
         self.slip = np.empty(0)
@@ -190,9 +204,7 @@ class _Samples:
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
-        level = max(
-            span.level / CLOSER, ABOVE_CREEP * creep, LEAST * math.sqrt(self.coarseness) * self.largest
-        )
+        level = max(span.level / CLOSER, ABOVE_CREEP * creep, self.least * self.largest)
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -58,6 +59,7 @@ def whirl_branch(
                 at_crossing=x,
                 tolerance=last.problem.tolerance,
                 samples=samples,
+                precision=last.problem.precision,
             )
         except RuntimeError:
             if fraction < step / 64.0:
@@ -87,12 +89,14 @@ def last_whirl(
     simulate: Simulate = reference_simulate,
     guess: Orbit | None = None,
     tolerance: float = 1e-12,
+    precision: float = 0.0,
 ) -> Orbit:
     """Return the whirl at the smallest load for which there is one: the fold of the branch.
 
     There the whirl meets the unstable one that separates it from the other motions, and below it neither
     exists. The paper does not give this load. The branch is followed from the load of ``system``, or from
-    ``guess``, towards the axis; the fold is the minimum of the load over the crossing x.
+    ``guess``, towards the axis; the fold is the minimum of the load over the crossing x. All arguments are as in
+    :func:`whirl_orbit`.
 
     Raises
     ------
@@ -100,13 +104,12 @@ def last_whirl(
         As ``whirl_orbit``: if there is no whirl to start from, or if the branch ends before it folds.
 
     """
-    orbit = guess or whirl_orbit(system, simulate=simulate, tolerance=tolerance, samples=2)
+    seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
+    orbit = guess or seek(samples=2)
 
     def load(x: float) -> float:
         nonlocal orbit
-        orbit = whirl_orbit(
-            system, simulate=simulate, guess=orbit, at_crossing=x, tolerance=tolerance, samples=2
-        )
+        orbit = seek(guess=orbit, at_crossing=x, samples=2)
         return orbit.system.friction_force
 
     first = float(orbit.state[0])
@@ -118,4 +121,4 @@ def last_whirl(
         if loads[-1] > loads[-2]:
             break
     best = minimize_scalar(load, bracket=tuple(x[-3:]), tol=1e-5)
-    return whirl_orbit(system, simulate=simulate, guess=orbit, at_crossing=float(best.x), tolerance=tolerance)
+    return seek(guess=orbit, at_crossing=float(best.x))

@@ -41,6 +41,7 @@ def modulated_cycle(
     at_crossing: float | None = None,
     tolerance: float = 1e-12,
     samples: int = 1024,
+    precision: float = 0.0,
 ) -> Orbit:
     """Return the cycle of a whirl whose radius swells and shrinks, X0 = 0 only, by shooting (Fig. 11).
 
@@ -55,7 +56,7 @@ def modulated_cycle(
     guess : Trajectory or Orbit
         Where to start: a simulation that has come near to the cycle in its end, over more than a period of the
         modulation and at times close enough to resolve a turn; or the cycle of nearby parameters.
-    simulate, at_crossing, tolerance, samples
+    simulate, at_crossing, tolerance, samples, precision
         As in :func:`whirl_orbit`.
 
     Raises
@@ -77,7 +78,7 @@ def modulated_cycle(
         state, period, turn = _recurrence(guess)
     else:
         state, period, turn = guess.state, guess.period, guess.turn
-    problem = ShootingProblem(simulate, system, tolerance)
+    problem = ShootingProblem(simulate, system, tolerance, precision)
     unknowns = problem.unknowns(state, period, system.friction_force, turn)
     unknowns[[Y, VX]] = 0.0
     sought = [X, *range(VY, len(unknowns[:PERIOD])), PERIOD, TURN]

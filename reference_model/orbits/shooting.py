@@ -54,6 +54,9 @@ MOST_ITERATIONS = 25
 CONVERGED = 1e-9
 """Largest relative miss of an orbit; Newton's method goes on below it until rounding stops it."""
 
+ABOVE_NOISE = 10.0
+"""The same over an engine's precision, where that is more: a miss has its noise several times over."""
+
 SLOW = 0.3
 """Part of the miss that may be left after an iteration; with more, the derivatives are taken anew."""
 
@@ -66,11 +69,20 @@ COLLAPSED = 1e-6
 
 @dataclass(frozen=True)
 class ShootingProblem:
-    """The return map of an engine, and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ)."""
+    """The return map of an engine, and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
+
+    ``precision`` is the relative noise of its states, whatever the tolerance.
+    """
 
     simulate: Simulate
     system: System
     tolerance: float
+    precision: float = 0.0
+
+    @property
+    def converged(self) -> float:
+        """The largest relative miss of an orbit."""
+        return max(CONVERGED, ABOVE_NOISE * self.precision)
 
     def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
         """Return the unknowns of the motion that starts from ``state``, shape (4,) or (6,)."""
@@ -90,7 +102,9 @@ class ShootingProblem:
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
         """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
-        step = math.sqrt(self.tolerance)  # balances the curvature of the map against its noise
+        step = math.sqrt(
+            max(self.tolerance, self.precision)
+        )  # balances the curvature of the map against its noise
         columns = []
         for i in sought:
             shifted = unknowns.copy()
@@ -102,7 +116,7 @@ class ShootingProblem:
         """Return the linearised return map, shape (4, 4) or (5, 5), by central differences of fourth order."""
         n = len(unknowns[:PERIOD])
         steps = np.zeros((n, len(unknowns)))
-        steps[:, :n] = CENTRAL * np.diag(self.size(unknowns)[:n])
+        steps[:, :n] = max(CENTRAL, self.precision**0.2) * np.diag(self.size(unknowns)[:n])
         near, far = (
             np.column_stack(
                 [self.miss(unknowns + step) - self.miss(unknowns - step) for step in reach * steps]
@@ -223,7 +237,7 @@ def shoot(
             break
         miss = problem.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
-        if smallest < CONVERGED and size >= 0.5 * smallest:
+        if smallest < problem.converged and size >= 0.5 * smallest:
             break  # rounding is reached
         if size < smallest:
             best, smallest = unknowns, size
@@ -238,7 +252,7 @@ def shoot(
             break  # no direction to go on in
         last, unknowns = size, unknowns.copy()
         unknowns[sought] += units * step
-    if not smallest < CONVERGED:
+    if not smallest < problem.converged:
         raise RuntimeError(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
             f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative miss of {smallest:.1e}; "

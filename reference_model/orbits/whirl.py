@@ -29,6 +29,7 @@ def whirl_orbit(
     at_crossing: float | None = None,
     tolerance: float = 1e-12,
     samples: int = 256,
+    precision: float = 0.0,
 ) -> Orbit:
     """Return the whirl of a pin or disc with an offset, a periodic orbit near to a circle, by shooting.
 
@@ -54,6 +55,8 @@ def whirl_orbit(
         Handed to ``simulate``.
     samples : int
         Intervals of the returned trajectory.
+    precision : float
+        Relative noise of the engine's states, whatever the tolerance: 1e-6 in single precision.
 
     Raises
     ------
@@ -67,7 +70,7 @@ def whirl_orbit(
     if guess is None:
         guess = _largest_circle(replace(system, offset=0.0))
     period = guess.period if isinstance(guess, Orbit) else 2.0 * math.pi / abs(guess.frequency)
-    problem = ShootingProblem(simulate, system, tolerance)
+    problem = ShootingProblem(simulate, system, tolerance, precision)
     unknowns = problem.unknowns(guess.state, period, system.friction_force, 0.0)
     sought = [X, *range(VX, len(unknowns[:PERIOD])), PERIOD]
     if at_crossing is not None:

@@ -14,7 +14,14 @@ SAMPLES = 64
 
 def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
     """Return the whirl of ``pin``, found by shooting with ``engine``."""
-    return whirl_orbit(pin, simulate=engine.simulate, tolerance=tolerance, guess=guess, samples=SAMPLES)
+    return whirl_orbit(
+        pin,
+        simulate=engine.simulate,
+        tolerance=tolerance,
+        guess=guess,
+        samples=SAMPLES,
+        precision=engine.precision,
+    )
 
 
 def extent(orbit: Orbit) -> FloatArray:

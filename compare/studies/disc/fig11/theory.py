@@ -222,6 +222,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
                 guess=guess,
                 tolerance=tolerance,
                 samples=SAMPLES_A_TURN,
+                precision=engine.precision,
             )
         )
     middle = TRIED[1]

@@ -121,7 +121,9 @@ def _reference_whirl(load: float) -> Orbit:
 )
 def whirl_ends(engine: Engine) -> Measured:
     """Compare the smallest μN of the branch with the one at which a multiplier is one."""
-    fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=WORKING)
+    fold = last_whirl(
+        with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
+    )
 
     def least_load(tolerance: float) -> float:
         # The load is flat there, so that its least value changes with the tolerance as that at this crossing.
@@ -132,6 +134,7 @@ def whirl_ends(engine: Engine) -> Measured:
             at_crossing=float(fold.state[0]),
             tolerance=tolerance,
             samples=2,
+            precision=engine.precision,
         )
         return orbit.system.friction_force
 

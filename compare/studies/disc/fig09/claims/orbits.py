@@ -65,7 +65,14 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Meas
 def orbit_of(engine: Engine, load: float, which: int, tolerance: float, offset: float = RING.offset) -> Orbit:
     """Return the same whirl as the engine has it."""
     guess = orbit_of_reference(load, which, offset)
-    return whirl_orbit(guess.system, simulate=engine.simulate, guess=guess, tolerance=tolerance, samples=64)
+    return whirl_orbit(
+        guess.system,
+        simulate=engine.simulate,
+        guess=guess,
+        tolerance=tolerance,
+        samples=64,
+        precision=engine.precision,
+    )
 
 
 def sizes_of(orbit: Orbit) -> FloatArray:

@@ -1,0 +1,94 @@
+"""What an engine of low precision measures has errors that say so."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import reference_model
+from compare.claims.error_estimates import COARSENING, refined
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.engines import Engine, reference
+from reference_model import Trajectory, whirl_orbit
+
+SLIDES = ((0.9, 0.0, 0.0, 0.9), (0.0, 5.0, 10.0, 15.0))
+"""A start of Fig. 5 near its whirl, and times in s."""
+
+
+def in_single_precision(system, start, times, *, tolerance=1e-9):
+    """Round states as an engine in single precision does at its best, whatever the tolerance."""
+    start = np.asarray(start, dtype=np.float32).astype(float)
+    run = reference_model.simulate(system, start, times, tolerance=tolerance)
+    return Trajectory(system, run.times, run.states.astype(np.float32).astype(float))
+
+
+def engine(precision=1e-6):
+    return Engine("single", in_single_precision, phases=False, precision=precision)
+
+
+def energy(engine, tolerance):
+    states = engine.simulate(FIG5, *SLIDES, tolerance=tolerance).states[1:]
+    return 0.5 * np.sum(states**2, axis=1)
+
+
+def test_errors_of_rounding_are_estimated():
+    exact = energy(reference, 1e-13)
+    unsaid = refined(lambda tolerance: energy(engine(0.0), tolerance))
+    said = refined(lambda tolerance: energy(engine(), tolerance))
+
+    assert np.any(np.abs(unsaid.value - exact) > unsaid.error)  # rounding is the same at both tolerances
+    assert np.all(np.abs(said.value - exact) <= said.error)
+    assert np.all(said.error < 1e-4)
+
+
+def test_an_effect_of_either_sign_is_estimated():
+    """The mean of |noise| is the same at both tolerances unless its size changes, its sum unless its sign does."""
+    for quantity in (np.sum, lambda deviations: np.sum(np.abs(deviations))):
+        exact = reference_model.simulate(FIG5, *SLIDES, tolerance=1e-13).states[1:]
+
+        def deviation(tolerance, quantity=quantity, exact=exact):
+            return quantity(engine(1e-4).simulate(FIG5, *SLIDES, tolerance=tolerance).states[1:] - exact)
+
+        found = refined(deviation)
+        assert abs(found.value) <= found.error
+
+
+def test_the_same_question_has_the_same_answer():
+    one, other, finer = (
+        engine().simulate(FIG5, *SLIDES, tolerance=tolerance).states
+        for tolerance in (1e-9, 1e-9, 1e-9 / COARSENING)
+    )
+
+    assert np.array_equal(one, other)
+    assert not np.array_equal(one[1:], finer[1:])
+    assert np.array_equal(one[0], SLIDES[0])
+
+
+def test_what_begins_with_stick_sticks():
+    start = np.array([0.05, 0.0, 0.0, 0.05 * FIG5.disc_speed])
+    times = [0.0, 1.0]
+
+    assert engine().simulate(replace(FIG5, offset=0.0), start, times).phases[0].kind == "stick"
+
+
+def test_stick_is_found_in_noise():
+    exact = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 30.0]).phases
+    found = engine(1e-6).simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 30.0]).phases
+
+    assert [phase.kind for phase in found] == [phase.kind for phase in exact]
+    assert np.allclose([phase.start for phase in found], [phase.start for phase in exact], atol=1e-3)
+
+
+def test_an_orbit_is_found_to_the_precision_of_its_engine():
+    exact = whirl_orbit(FIG5)
+
+    with pytest.raises(RuntimeError, match="relative miss"):
+        whirl_orbit(FIG5, simulate=engine().simulate, tolerance=1e-9)
+    found = whirl_orbit(FIG5, simulate=engine().simulate, tolerance=1e-9, precision=1e-6)
+    assert found.mean == pytest.approx(exact.mean, abs=1e-5)
+
+
+@pytest.mark.parametrize("precision", [-1e-6, 0.1, float("nan")])
+def test_a_precision_that_is_none_is_refused(precision):
+    with pytest.raises(ValueError, match="precision = "):
+        engine(precision)
