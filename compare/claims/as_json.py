@@ -55,7 +55,8 @@ def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
 def _tag(kind: Any, value: Any) -> Any:
     """Return the value of a field of type ``kind``, with the name of its own type where several are possible."""
     content = as_json(value)
-    return {TYPE: type(value).__name__} | content if _dataclasses(kind) else content
+    tagged = value is not None and _dataclasses(kind)
+    return {TYPE: type(value).__name__} | content if tagged else content
 
 
 def _value(kind: Any, content: Any) -> Any:
@@ -98,6 +99,8 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "numerical_error": as_json(claim.budget.numerical),
         "model_error": claim.budget.model,
         "resolution": as_json(claim.budget.resolution),
+        "size": None if claim.size is None else as_json(claim.size),
+        "grade": "" if claim.grade is None else claim.grade.value,
         "verdict": claim.verdict.value,
         "parameters": as_json(claim.parameters),
         "source": claim.source,
@@ -134,5 +137,6 @@ def claim_from_json(content: dict[str, Any]) -> Claim:
         answers=content["answers"],
         named=content["named"],
         identity=content["id"],
+        size=None if content["size"] is None else numbers_from_json(content["size"]),
         axes=content["axes"],
     )

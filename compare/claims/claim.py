@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -54,6 +55,18 @@ class Verdict(Enum):
     INCONCLUSIVE = "inconclusive"
 
 
+class Grade(Enum):
+    """How finely a claim agrees: by its error over the size of what is predicted, see ``Claim.grade``."""
+
+    EXACT = "exact"
+    FINE = "fine"
+    COARSE = "coarse"
+
+
+GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
+"""The largest relative error of each grade."""
+
+
 @dataclass(frozen=True)
 class ErrorBudget:
     """The difference that the engine's and the formula's own errors can explain.
@@ -66,7 +79,8 @@ class ErrorBudget:
     model : float
         Zero for an identity; for an approximation the derived size of the first term left out.
     resolution : float
-        The largest total budget with which agreement still says something.
+        The largest total budget with which agreement says all that the claim says. With a larger one it may still
+        say that the engine is right to a coarser grade, see ``Claim.grade``.
 
     """
 
@@ -126,6 +140,9 @@ class Claim:
         ``compare.report.quotes``.
     identity : str
         What the claim is called for good, as "fig06/rests"; "" where it is made by hand.
+    size : float or array that fits to the numbers, optional
+        Beside which an error is small, where the prediction does not say it, as a zero doesn't, see
+        ``relative_error``.
     axes : tuple
         Names of the places along each axis of the numbers, () for an axis where they have none; () for none at all.
 
@@ -147,6 +164,7 @@ class Claim:
     answers: bool = False
     named: Mapping[str, int | None] = field(default_factory=dict)
     identity: str = ""
+    size: FloatArray | None = None
     axes: tuple[tuple[str, ...], ...] = ()
 
     def __init__(
@@ -168,6 +186,7 @@ class Claim:
         answers: bool = False,
         named: Mapping[str, int | None] | None = None,
         identity: str = "",
+        size: ArrayLike | None = None,
         axes: Sequence[Sequence[str]] = (),
     ) -> None:
         values = {
@@ -187,6 +206,7 @@ class Claim:
             "answers": answers,
             "named": dict(named or {}),
             "identity": identity,
+            "size": None if size is None else np.asarray(size, dtype=float),
             "axes": tuple(tuple(names) for names in axes),
         }
         for name, value in values.items():
@@ -248,12 +268,48 @@ class Claim:
         return _place_of_largest(self.difference)
 
     @property
+    def relative_error(self) -> float:
+        """The largest total error over the size of what is predicted; infinite where that has none.
+
+        Without a ``size`` it is that of the largest prediction, of each of the last axis' units if they are named.
+        Orders and answers have no size beside which an error is small.
+        """
+        if self.answers or self.kind == "order":
+            return math.inf
+        total, size = np.broadcast_arrays(self.budget.total, self._size())
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = np.where(total == 0.0, 0.0, total / size)
+        return float(np.max(np.nan_to_num(relative, nan=math.inf), initial=0.0))
+
+    def _size(self) -> FloatArray:
+        """Return what an error is small beside, of a shape that fits to the numbers."""
+        if self.size is not None:
+            return self.size
+        numbers = np.abs(self.predicted)
+        names = self.axes[-1] if self.axes else ()
+        if not names or any(" = " in name for name in names):  # which are values of what was varied
+            return np.asarray(np.max(numbers, initial=0.0))
+        units = np.array([name.partition(" in ")[2] for name in names])
+        return np.array([np.max(numbers[..., units == unit], initial=0.0) for unit in units])
+
+    @property
+    def grade(self) -> Grade | None:
+        """The finest grade to which the claim is conclusive; None where only its resolution says what is small."""
+        relative = self.relative_error
+        return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
+
+    @property
     def verdict(self) -> Verdict:
-        """Differs beyond the budget or without a number, is inconclusive beyond the resolution, agrees elsewhere."""
-        within = self.difference <= self.budget.total  # False for NaN
-        if not np.all(np.isfinite(self.measured)) or not np.all(within):
+        """Differs beyond the budget or without a number, else agrees within the resolution or to a grade.
+
+        It is inconclusive where the error is larger than both.
+        """
+        difference, total = np.broadcast_arrays(self.difference, self.budget.total)
+        missing = ~np.isfinite(self.measured)
+        open_ = missing & np.isinf(total)  # there at one tolerance and not at another
+        if not np.all((difference <= total) & ~missing | open_):  # False for NaN
             return Verdict.DIFFERS
-        if np.any(self.budget.total > self.budget.resolution):
+        if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
             return Verdict.INCONCLUSIVE
         return Verdict.AGREES
 

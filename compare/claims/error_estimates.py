@@ -33,6 +33,9 @@ a *larger* tolerance would be 7 times the error too; but it falls short wherever
 as far off in place of 8 times, which is so in one number of twenty of the reference, and in one of fifty of Exudyn.
 """
 
+COARSE = 1e-4
+"""Relative error of states from which on what is read off them may come and go: a stick phase, a release."""
+
 ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
 
@@ -78,9 +81,30 @@ def refined(
     return Measurement(found, change_as_error(found, other, alike=alike))
 
 
+def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
+    """Return ``errors``, infinite where they are no number although the value is one.
+
+    Where the value is missing too they stay so: that is a mistake, and no doubt.
+    """
+    return np.where(np.isnan(errors) & np.isfinite(values), np.inf, errors)
+
+
+def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
+    """Return ``found`` with infinite errors of what is missing in it, if the ``states`` it is read off are coarse.
+
+    Whether a body sticks once more, or when it is let go at last, may hang on less than they are off by.
+    """
+    coarse = states.largest > COARSE * float(np.max(np.abs(states.value)))
+    missing = ~np.isfinite(found.value)
+    return Measurement(found.value, np.where(missing & coarse, np.inf, found.error))
+
+
 def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:
-    """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape."""
-    change = np.abs(other - found)
+    """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape.
+
+    It is infinite where only one of them has a number: what comes and goes with the tolerance is not known.
+    """
+    change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
     numbers = np.where(np.isfinite(change), change, 0.0)
     largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
     return np.asarray(np.maximum(SAFETY * change, largest) + ROUNDING * np.max(np.abs(found), initial=0.0))

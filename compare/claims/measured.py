@@ -47,6 +47,8 @@ class Measured:
         Arrays by name, for the figures.
     named : mapping
         Names by which texts quote an element (its flat index), besides the declared ones.
+    size : float or array that fits to the numbers, optional
+        Beside which an error is small, where the prediction does not say it, see ``Claim.relative_error``.
     answers : bool
         Whether the numbers count answers of yes or no, see ``answers_of``.
 
@@ -65,6 +67,7 @@ class Measured:
     note: str = ""
     data: Mapping[str, ArrayLike] = field(default_factory=dict)
     named: Mapping[str, int | None] = field(default_factory=dict)
+    size: ArrayLike | None = None
     answers: bool = False
 
     @property
@@ -107,7 +110,8 @@ def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int 
     margins : array of n numbers or truth values
         By how much each quantity is on the right side of its threshold, in any unit; a number that is missing is no.
     errors : array that fits to it
-        What each margin can be off; not a number where an engine gave none to estimate it from, which is a no.
+        What each margin can be off; not a number where an engine gave none to estimate it from, which is a no;
+        infinite where nothing is known.
     may_be_open : int
         How many answers may be open in a claim that still says something.
     more
@@ -115,7 +119,7 @@ def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int 
 
     """
     margins, errors = np.broadcast_arrays(_as_numbers(margins), np.asarray(errors, dtype=float))
-    yes, unsure = margins > errors, np.abs(margins) <= errors
+    yes, unsure = margins > errors, (np.abs(margins) <= errors) | np.isposinf(errors)
     return replace(
         Measured(
             predicted=float(margins.size),

@@ -373,6 +373,7 @@ class Study:
             answers=measured.answers,
             named={**declared.named, **measured.named},
             identity=declared.identity(self.name, case),
+            size=measured.size,
             axes=measured.axes,
         )
 

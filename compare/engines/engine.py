@@ -26,6 +26,10 @@ KINDS = {"pin": "a pin", "points": "a disc on single points", "ring": "a disc on
 EVERY_KIND = tuple(KINDS)
 
 
+COARSE_STEP = 30.0
+"""How coarse a fixed step is, see ``StatesOnly``: contact that sticks along tangents creeps by ωh/2 of its speed."""
+
+
 class Simulate(Protocol):
     """The one function that an engine implements.
 
@@ -76,6 +80,8 @@ class Engine:
     contact_only : bool
         Whether all but its contact is its kin's: then it is measured only where the contact decides, see
         ``Study.contact``, unless it is asked for by its name.
+    version : str
+        What the engine calls its version.
     about : str
         What a reader of the report has to know of it, in a sentence or two.
 
@@ -97,6 +103,7 @@ class Engine:
     step: float | None = None
     kin: str = ""
     contact_only: bool = False
+    version: str = ""
     about: str = ""
 
     def __post_init__(self) -> None:
@@ -152,7 +159,10 @@ class Engine:
         found = asked(times)
         if self.phases or any(phase.kind != "slip" for phase in found.phases):
             return found
-        return StatesOnly(found, lambda more: asked(more).states, tolerance / USUAL_TOLERANCE, self.precision)
+        coarseness = tolerance / USUAL_TOLERANCE
+        if self.step is not None:
+            coarseness = COARSE_STEP * self._step(tolerance) / self.step
+        return StatesOnly(found, lambda more: asked(more).states, coarseness, self.precision)
 
     def _step(self, tolerance: float) -> float:
         """Return the step in s, which goes with the square root of ``tolerance``.

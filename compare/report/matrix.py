@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Literal
 
-from compare.claims.claim import THEORY, Claim, Evidence, Verdict
+from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.evidence import evidence_of
 from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by
@@ -40,6 +40,9 @@ _SYMBOLS = {
     "missing": "…",
     "not simulated": "∅",
 }
+
+GRADE_SYMBOLS = {Grade.EXACT: "✔", Grade.FINE: "✓", Grade.COARSE: "≈"}
+"""Marks of what agrees; "✓" too where only the claim's resolution says what is small."""
 
 VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
 
@@ -83,6 +86,19 @@ class Cell:
     def number(self) -> str:
         """What stands beside the verdict, see ``compare.report.worst.in_short``; "" where there is none."""
         return in_short(deciding(self._decisive)) if self.claims else ""
+
+    @property
+    def grade(self) -> Grade | None:
+        """How finely it agrees, the coarsest of several claims; None where none has a size or it does not agree."""
+        if self.state is not State.AGREES:
+            return None
+        found = {claim.grade for claim in self.claims}
+        return next((grade for grade in reversed(GRADES) if grade in found), None)
+
+    @property
+    def symbol(self) -> str:
+        """A mark that is told apart without colour."""
+        return GRADE_SYMBOLS[self.grade] if self.grade is not None else self.state.symbol
 
     @property
     def _decisive(self) -> list[Claim]:
@@ -190,6 +206,12 @@ class Matrix:
     def count(self, column: str) -> Counter[State]:
         """Return how many cells of the column are in each state."""
         return sum((group.count(column) for group in self.groups), Counter())
+
+    def grades(self, column: str) -> Counter[Grade]:
+        """Return how many cells of the column agree to each grade, from the finest on."""
+        cells = [row.cells[column] for group in self.groups for row in group.rows if column in row.cells]
+        found = Counter(cell.grade for cell in cells)
+        return Counter({grade: found[grade] for grade in GRADES if found[grade]})
 
     def reasons(self, state: State) -> Counter[str]:
         """Return the reasons of all cells in ``state``, and how many cells give each."""

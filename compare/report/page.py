@@ -11,10 +11,10 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from compare.claims.claim import EVIDENCE, THEORY, Claim, Evidence
+from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.study import Study
 from compare.report import quotes
-from compare.report.matrix import WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
+from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
 from compare.report.worst import Worst, answers_text, in_short, worst
 from compare.run.runner import Drawing, Run
@@ -69,6 +69,8 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
             stamp=stamp,
             State=State,
             EVIDENCE=EVIDENCE,
+            GRADES=GRADES,
+            GRADE_SYMBOLS=GRADE_SYMBOLS,
             kinds=[evidence for evidence in EVIDENCE if matrix.of_evidence(evidence)],
             summary=summary(matrix),
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],

@@ -19,7 +19,8 @@ from compare.report.worst import worst
         (0.6, 0.5, 0.0, 1e-6, Verdict.DIFFERS),  # further off than even a poor measurement explains
         (np.nan, 1.0, 0.0, 1.0, Verdict.DIFFERS),
         (np.inf, 1.0, 0.0, 1.0, Verdict.DIFFERS),
-        (np.nan, np.inf, 0.0, 1.0, Verdict.DIFFERS),
+        (np.nan, np.nan, 0.0, 1.0, Verdict.DIFFERS),
+        (np.nan, np.inf, 0.0, 1.0, Verdict.INCONCLUSIVE),  # there at one tolerance, and not at another
     ],
 )
 def test_verdict_of_a_number(difference, numerical, model, resolution, verdict):

@@ -247,10 +247,11 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
     assert said["overview"] == [
         "2 of 2 agree",  # independent evidence
         "2 of 2 agree, 2 not simulated",
+        "2 exact",  # how finely
         "2 of 2 agree, 1 not simulated",
         "1 not simulated",
     ]
-    assert said["matrix"] == ["✓ agrees", "✓ agrees", "∅ not simulated", "∅ not simulated"]
+    assert said["matrix"] == ["✔ agrees exact", "✔ agrees exact", "∅ not simulated", "∅ not simulated"]
     assert '<ul class="exceptions">' not in page
 
 

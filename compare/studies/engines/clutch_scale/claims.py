@@ -97,7 +97,7 @@ def rests(engine: Engine) -> Measured:
     return Measured(
         predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
         value=places[-1],
-        error=_largest(error[-1] + left),
+        error=float(np.max(error[-1] + left)),
         components=("x/X0", "y/X0"),
         data={
             "states": motion.states / CLUTCH.states(np.ones(4)),
@@ -125,7 +125,13 @@ def sticks(engine: Engine) -> Measured:
 
     events, error = refined(measured)
     names = [f"{('stick', 'release')[i % 2]} {i // 2 + 1}" for i in range(len(predicted))]
-    return Measured(predicted=predicted, value=events, error=_largest(error), components=names)
+    return Measured(
+        predicted=predicted,
+        value=events,
+        error=float(np.max(error)),
+        components=names,
+        size=1.0 / FIG5.natural_frequency,
+    )
 
 
 @STUDY.claim(
@@ -167,7 +173,7 @@ def whirls(engine: Engine) -> Measured:
     return Measured(
         predicted=orbit.state / unit,
         value=found.value,
-        error=_largest(found.error) + 1e-9,
+        error=float(np.max(found.error)) + 1e-9,
         components=("x/X0", "y/X0", "vx/(ω·X0)", "vy/(ω·X0)"),
         system=scaled(WHIRLING),
         source=SOURCE.format("Fig. 6, μN = 0.12 N"),
@@ -190,7 +196,7 @@ def spins(engine: Engine) -> Measured:
     return Measured(
         predicted=np.array([rest.x, rest.y, rest.spin]) / unit,
         value=found.value,
-        error=_largest(found.error) + 1e-9,
+        error=float(np.max(found.error)) + 1e-9,
         components=("x/X0", "y/X0", "spin/ω"),
         system=scaled(FIG8),
         source=SOURCE.format("Fig. 8"),
@@ -217,7 +223,7 @@ def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
     return Measured(
         predicted=predicted,
         value=found.value,
-        error=_largest(found.error) + float(np.max(np.abs(rougher - predicted))),
+        error=float(np.max(found.error)) + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": times[1:]},
         components=("x", "y", "angle", "vx", "vy", "spin"),
         system=scaled(disc),
@@ -252,8 +258,3 @@ def shares(starts: int = ENSEMBLE) -> Measured:
         components=("share of the equilibrium", "share of the whirl", "share with another end"),
         note=f"{starts} starts.",
     )
-
-
-def _largest(error: FloatArray) -> float:
-    """Return the largest error; without bounds where a number is missing."""
-    return float(np.max(np.nan_to_num(error, nan=np.inf)))

@@ -82,6 +82,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
         predicted=0.0,
         value=found.value[0],
         error=found.largest + min(quadrature) + ROUNDING,
+        size=1.0,
         system=motion.system,
         source=motion.source,
         data=_drawn(balances[motion.tolerance]) if motion.drawn else {},

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, Measurement, refined
+from compare.claims.error_estimates import TRUTH, Measurement, open_where_coarse, refined
 from compare.claims.measured import Measured
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
@@ -103,6 +103,11 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
+def states_of(engine: Engine, motion: Motion) -> Measurement:
+    """Return the states of a motion, and their errors."""
+    return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
+
+
 @of_bodies(
     "A body moves state by state as the reference does: {}",
     of_pins="m, m/s",
@@ -114,7 +119,7 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 @together
 def moves(engine: Engine, motion: Motion) -> Measured:
     """Compare all states with the reference's."""
-    found = refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
+    found = states_of(engine, motion)
     predicted = by_reference(motion).states
     times, data = times_of(motion), {}
     if motion in NAMES:
@@ -195,6 +200,7 @@ def balance(
         predicted=np.zeros_like(found.value),
         value=found.value,
         error=found.largest + cut + 2.0 * motion.tolerance,
+        size=float(np.max(np.abs(amounts(by_reference(motion).states)))),
         resolution=motion.resolution,
         at={"from t in s": at_bounds(times_of(motion))[:-1]},
         components=names_of(motion.system)[: found.value.shape[1]],
@@ -221,6 +227,7 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
     found = refined(
         lambda tolerance: as_many(stick_times(run(engine, motion, tolerance)), predicted), motion.tolerance
     )
+    found = open_where_coarse(found, states_of(engine, motion))
     return of_stick(motion, predicted, found, ("stick", "release"))
 
 
@@ -239,6 +246,7 @@ def release(engine: Engine, motion: Motion) -> Measured | None:
     if not isinstance(pin, PinOnDisc) or not middles:
         return None
     found = refined(lambda tolerance: late(run(engine, motion, tolerance), pin, middles), motion.tolerance)
+    found = open_where_coarse(found, states_of(engine, motion))
     return of_stick(motion, np.zeros(len(middles)), found, ("release",))
 
 
@@ -249,6 +257,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
         value=found.value,
         # An error of the state may make the first number of two right by chance; one of the tolerance is in all.
         error=found.largest + motion.tolerance * motion.until,
+        size=1.0 / motion.system.natural_frequency,
         components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],
         system=motion.system,
         source=motion.source,

@@ -13,6 +13,7 @@ from compare.claims.parameters import at_each, parameters_of
 from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.trajectories.drawn import Drawn
 from compare.studies.engines.trajectories.parameters import MOTIONS, ONE_OF_EACH_KIND, UNTIL, Motion
+from reference_model.systems import FloatArray
 
 Motions = Iterable[Motion]
 """Those of which one claim is made."""
@@ -48,6 +49,7 @@ def pooled(parts: Sequence[Measured]) -> Measured:
         predicted=np.concatenate([np.ravel(part.predicted) for part in parts]),
         value=np.concatenate([np.ravel(part.value) for part in parts]),
         error=np.concatenate([np.broadcast_to(part.error, np.shape(part.value)).ravel() for part in parts]),
+        size=np.concatenate([_sizes(part) for part in parts]),
         resolution=first.resolution,
         components=[
             ", ".join((f"ω = {speed:g} rad/s", *place))
@@ -58,6 +60,12 @@ def pooled(parts: Sequence[Measured]) -> Measured:
         source=first.source,
         note=f"{len(parts)} motions to t = {UNTIL:g} s, for {at_each('ω', speeds)} rad/s.",
     )
+
+
+def _sizes(part: Measured) -> FloatArray:
+    """Return the size beside which errors of each number are small."""
+    size = np.max(np.abs(part.predicted)) if part.size is None else part.size
+    return np.broadcast_to(size, np.shape(part.value)).ravel()
 
 
 def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, refined
+from compare.claims.error_estimates import WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5
 from compare.claims.shares import of_grid
@@ -136,7 +136,7 @@ def returns(engine: Engine) -> Measured:
     return Measured(
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
         value=found.value,
-        error=np.nan_to_num(found.plus(np.array([0.0, 0.0, bent])).error, nan=np.inf),
+        error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
         components=("period", "time of stick", "multiplier"),
     )
 

@@ -211,10 +211,12 @@ def cycle_attracts(engine: Engine) -> Measured:
     # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
     wide = _decay_in_a_turn(engine, orbit, TOLERANCE, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
+    if math.isfinite(found.value) and math.isnan(error):  # one of the others has no number
+        error = math.inf
     return Measured(
         predicted=abs(orbit.multipliers[1]),
         value=found.value,
-        error=error if math.isfinite(error) else math.inf,
+        error=error,
         system=orbit.system,
     )
 

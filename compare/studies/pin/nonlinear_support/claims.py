@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING, observed_exponent, refined
+from compare.claims.error_estimates import TRUTH, WORKING, known, observed_exponent, refined
 from compare.claims.measured import Measured
 from compare.claims.paper_parameters import CENTRED, FIG5_STARTS
 from compare.claims.study import Study
@@ -210,7 +210,7 @@ def sticks(engine: Engine) -> Measured:
     return Measured(
         predicted=first_stick(Engine("reference", simulate), TRUTH),
         value=found.value,
-        error=np.nan_to_num(found.largest, nan=np.inf),
+        error=known(found.value, found.largest),
         components=("stick", "release"),
         system=STICKING,
         source="Fig. 5, second start; μN, ω, X0 and the support are our choice, so that the pin sticks",
@@ -310,7 +310,7 @@ def disc_whirl(engine: Engine) -> Measured:
     return Measured(
         predicted=[whirl.radius, whirl.frequency, whirl.spin],
         value=found.value,
-        error=np.nan_to_num(found.largest, nan=np.inf) + sharpness(DISC, whirl) * CONVERGED,
+        error=known(found.value, found.largest) + sharpness(DISC, whirl) * CONVERGED,
         components=("radius", "frequency", "spin"),
         system=DISC,
         source="Figs. 9 and 10 with X0 = 0; β, μN and C₃ are our choice",

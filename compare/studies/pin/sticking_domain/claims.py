@@ -16,6 +16,7 @@ from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.sticking_domain.parameters import (
     BRACKET,
+    CREEP,
     DAMPINGS,
     FAST,
     INSIDE,
@@ -72,22 +73,34 @@ def two_revolutions(
     return np.array(displacements), sticks
 
 
+def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement:
+    """Return the displacements of ``two_revolutions`` and their errors."""
+    found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
+    # Displacements of zero have no scale of their own for rounding: that of a turn is theirs.
+    return found.plus(ROUNDING)
+
+
+def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> bool:
+    """Return whether pins may creep so far, where they should stick, that what is read off their stick is open."""
+    return displaced(engine, speeds).largest > CREEP
+
+
 @STUDY.claim(
     "A pin stuck at 0.98 of the radius (9) is at the same place of the disc two revolutions later",
     equation="(9)",
-    resolution=1e-2,
+    resolution=CREEP,
     note="Displacement on the disc over the distance from the axis; starts where the least force holds the pin. "
     "Error: the change at a smaller tolerance, by which a law that only approximates stick shows its creep.",
     swept=("disc_speed",),
 )
 def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     """Measure how far pins that start inside of the radius (9) are from their place in the end."""
-    found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
+    found = displaced(engine, speeds)
     return Measured(
         predicted=np.zeros_like(found.value),
         value=found.value,
-        # Displacements of zero have no scale of their own for rounding: that of a turn is theirs.
-        error=found.plus(ROUNDING).rows,
+        error=found.rows,
+        size=1.0,
         at={"ω in rad/s": speeds},
         components=("x", "y"),
     )
@@ -101,7 +114,10 @@ def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
 )
 def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     """See whether pins that start inside of the radius (9) stick all the time."""
-    return answers_of(*asked(lambda tolerance: two_revolutions(engine, speeds, tolerance)[1], TOLERANCE))
+    margins, errors = asked(lambda tolerance: two_revolutions(engine, speeds, tolerance)[1], TOLERANCE)
+    if np.any(margins < 0.0) and creeps(engine, speeds):
+        errors = np.full_like(margins, np.inf)
+    return answers_of(margins, errors)
 
 
 @STUDY.claim(
@@ -130,7 +146,7 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
     return Measured(
         predicted=predicted_turns(speeds),
         value=found.value,
-        error=np.where(np.isfinite(found.rows), found.rows, 0.0),
+        error=_unless_missing(engine, found.value, found.rows),
         at={"ω in rad/s": speeds, "radius/(9)": OUTSIDE},
         data={"speed": speeds, "turn": found.value, "turn_error": found.rows},
     )
@@ -157,7 +173,15 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
 
     found = refined(radii, SEARCH_TOLERANCE)
     error = found.error + PRECISION * found.value / 2.0
-    return Measurement(found.value, np.where(np.isfinite(error), error, 0.0))  # one not found is NaN itself
+    return Measurement(found.value, _unless_missing(engine, found.value, error))
+
+
+def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
+    """Return the errors of ``values``; where one is missing it is open if the engine creeps, else a mistake."""
+    missing = ~np.isfinite(values)
+    if not np.any(missing):
+        return errors
+    return np.where(missing, np.inf if creeps(engine) else 0.0, np.where(np.isnan(errors), np.inf, errors))
 
 
 def _anywhere(pin: PinOnDisc) -> tuple[float, float]:

@@ -21,6 +21,9 @@ INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
 """Radii of the starts, in units of (9)."""
 
+CREEP = 1e-2
+"""Relative displacement of a stuck pin from which on it is not known whether it sticks."""
+
 LATEST = 1.1
 """How long a pin outside is watched, in units of the time that (7) predicts."""
 

@@ -38,15 +38,16 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return √ of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A.
+    ``relative_error`` is that of the radii A. Where one of them is missing so is the vertex, and open if they are.
     """
 
     def found(values: FloatArray) -> float:
         square, linear, _ = np.polyfit(s, values, 2)
         return math.sqrt(max(-linear / (2.0 * square), 0.0))
 
-    if not np.all(np.isfinite(values)):
-        return math.nan, 0.0
+    missing = ~np.isfinite(values)
+    if np.any(missing):
+        return math.nan, math.inf if np.all(np.isinf(relative_error[missing])) else 0.0
     middle = found(values)
     shifts = [
         abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)

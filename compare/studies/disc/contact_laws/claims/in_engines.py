@@ -94,6 +94,7 @@ def friction_on(
         predicted=predicted,
         value=found[:, 0],
         error=np.max(error[:, 0], axis=0) + truncation,
+        size=1.0,
         at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]},
         components=("F_x", "F_y", "M"),
         system=disc,

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09.parameters import CIRCLES, ORBIT_TOLERANCE
 from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, rest_of
@@ -76,7 +76,8 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
-        noise = np.nan_to_num(error / gaps, nan=math.inf)
+        noise = error / gaps
     step = (orders[1] - orders[0]) / 3.0
     numerical = np.asarray(5.0 / 3.0 * (noise[1] + noise[2]) / math.log(2.0))
-    return orders[1] + step, numerical, float(np.nan_to_num(np.max(np.abs(step))))
+    order = orders[1] + step
+    return order, known(order, numerical), float(np.nan_to_num(np.max(np.abs(step))))

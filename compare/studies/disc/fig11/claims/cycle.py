@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import functools
 
-import numpy as np
-
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import Measurement, known, refined
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig11.claims.study import STUDY
@@ -69,7 +67,7 @@ def modulation(engine: Engine) -> Measurement:
         lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
     )
     error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
-    return Measurement(found.value, np.nan_to_num(error, nan=np.inf))
+    return Measurement(found.value, known(found.value, error))
 
 
 @functools.lru_cache(maxsize=4)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, Measurement, refined
+from compare.claims.error_estimates import WORKING, Measurement, known, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import at_each
 from compare.engines import Engine
@@ -66,10 +66,10 @@ def critical_of(engine: Engine) -> tuple[float, Measurement]:
         _, interpolation, slope, near = found(WORKING)
         exact = multipliers_by_variation(disc_at(float(measured)), near)
     except RuntimeError:  # no whirl, or none that could be critical
-        return math.nan, Measurement(np.array(math.nan), np.array(math.inf))
+        return math.nan, Measurement(np.array(math.nan), np.array(0.0))
     error = error + interpolation + error_of_monodromy(near) / abs(slope)
     predicted = float(measured) - (pair_modulus(exact) - 1.0) / slope
-    return predicted, Measurement(measured, np.nan_to_num(error, nan=np.inf))
+    return predicted, Measurement(measured, known(measured, error))
 
 
 def error_of_monodromy(orbit: Orbit) -> float:

@@ -1,0 +1,194 @@
+"""What is found of one engine in parts, each measured by itself: one that hangs costs itself only."""
+
+from __future__ import annotations
+
+import functools
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compare.claims.error_estimates import ROUNDING, TRUTH
+from compare.claims.paper_parameters import FIG11
+from compare.diagnosis import probes
+from compare.diagnosis.ladder import SAFETY, Ladder, step_ratio
+from compare.diagnosis.laws import Friction, fitted, smoothing_of
+from compare.engines import Engine
+from compare.foreign.cases import CASES, Quantity
+from reference_model import simulate
+from reference_model.systems import FloatArray
+
+
+@functools.cache
+def _exact_ring() -> Quantity:
+    ring = MOTIONS["ring"]
+    return ring.quantity(simulate(ring.system, ring.start, ring.times, tolerance=TRUTH))
+
+
+MOTIONS = CASES | {
+    "ring": replace(
+        CASES["disc"],
+        title="a disc on a ring",
+        sentence="A ring follows Coulomb's law",
+        system=FIG11,
+        exact=_exact_ring,
+    )
+}
+"""What every engine is asked, if it promises it."""
+
+FITS = 0.2
+"""Largest relative misfit of a smoothing that is named."""
+
+
+@dataclass(frozen=True)
+class Creep:
+    """How a block moves that friction should hold.
+
+    Parameters
+    ----------
+    speed : float
+        Of a block pulled with half of μN, in m/s, at the finest rung.
+    order : float
+        By which it falls with the step, or with the tolerance where no step is fixed; NaN where there is none.
+    smoothing : str
+        The law of friction at slow slip that makes blocks creep so; "" where none does.
+    epsilon : float
+        Of that law, in m/s, at the finest rung.
+
+    """
+
+    speed: float
+    order: float
+    smoothing: str
+    epsilon: float
+
+
+@dataclass(frozen=True)
+class Lag:
+    """By how many s friction acts along an earlier slip, at the finest rung, its error, and its order in the step."""
+
+    seconds: float
+    error: float
+    order: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How far off the exact motion one case of ``compare.foreign.cases`` is.
+
+    Parameters
+    ----------
+    errors : tuple of float
+        Of all rungs, in m, the largest over time.
+    estimate : float
+        What the last of them may be by the engine's own change from rung to rung.
+    order : float
+        By which it falls with the step, or with the tolerance where no step is fixed; NaN where it has none.
+    resolution : float
+        In m: a tenth of what another law would change, see ``Case``.
+    seconds : float
+        Of the processor, at the finest rung.
+
+    """
+
+    errors: tuple[float, ...]
+    estimate: float
+    order: float
+    resolution: float
+    seconds: float
+
+    @property
+    def error(self) -> float:
+        """That of the finest rung, in m."""
+        return self.errors[-1]
+
+    @property
+    def converges(self) -> bool:
+        """Whether the engine's own error explains how far it is off."""
+        return self.error <= self.estimate
+
+    @property
+    def conclusive(self) -> bool:
+        """Whether that error is small enough to tell another law."""
+        return self.estimate <= self.resolution
+
+
+Part = Friction | Creep | Lag | Motion
+
+
+def friction(engine: Engine) -> Friction:
+    """Return the law by which blocks are retarded that slide on a plane at rest."""
+    ladder = Ladder.of(engine, functools.partial(probes.forces, engine))
+    noise = engine.precision * probes.SPEED * probes.SLIDE.mass / (probes.FRICTION * probes.SLIDES_FOR)
+    return fitted(ladder.finest, float(np.max(ladder.error[:, :2])) + noise)
+
+
+def creep(engine: Engine) -> Creep:
+    """Return how blocks creep that are pulled with less than friction can hold."""
+    ladder = Ladder.of(engine, functools.partial(probes.creep, engine))
+    half = ladder.values[:, probes.PULLS.index(0.5)]
+    smoothing, epsilon = "", math.nan
+    if np.all(ladder.finest > 0.0):
+        found, size, misfit = smoothing_of(ladder.finest)
+        if misfit < FITS:
+            smoothing, epsilon = found.name, size
+    return Creep(float(half[-1]), falling(np.abs(half), step_ratio(engine)), smoothing, epsilon)
+
+
+def lag(engine: Engine) -> Lag:
+    """Return by how much friction lags behind the slip."""
+    ladder = Ladder.of(engine, functools.partial(probes.lag, engine))
+    return Lag(float(ladder.finest), float(ladder.error), falling(np.abs(ladder.values), step_ratio(engine)))
+
+
+def motion(engine: Engine, name: str) -> Motion:
+    """Return what the engine makes of the case of that name."""
+    case, seconds = MOTIONS[name], 0.0
+
+    def question(tolerance: float) -> FloatArray:
+        nonlocal seconds
+        before = time.process_time()
+        run = engine.simulate(case.system, case.start, case.times, tolerance=tolerance)
+        seconds = time.process_time() - before
+        return _plane(case.quantity(run))
+
+    ladder = Ladder.of(engine, question)
+    errors = [_largest(value - _plane(case.exact())) for value in ladder.values]
+    change = max(map(_largest, np.diff(ladder.values[-3:], axis=0)))
+    rounding = (ROUNDING + engine.precision) * max(map(abs, case.start))
+    order = falling(errors, step_ratio(engine))
+    return Motion(tuple(errors), SAFETY * change + rounding, order, case.resolution, seconds)
+
+
+def _plane(numbers: np.ndarray) -> FloatArray:
+    return np.stack((numbers.real, numbers.imag), axis=-1)
+
+
+def _largest(vectors: FloatArray) -> float:
+    return float(np.max(np.hypot(*vectors.T)))
+
+
+def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
+    """Return by which power of the step the last of ``sizes`` is below the one before, at a ``ratio``-fold step."""
+    if len(sizes) < 2 or not (0.0 < sizes[-2] < math.inf and 0.0 < sizes[-1] < math.inf):
+        return math.nan
+    return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
+
+
+def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
+    """Return what is measured of an engine, by name: the law at rest and at slip first, then the motions it promises.
+
+    The functions can be sent to other processes.
+    """
+    parts: dict[str, Callable[[Engine], Part]] = {}
+    if engine.simulates(probes.SLIDE):
+        parts |= {"law": friction, "creep": creep}
+    if engine.simulates(probes.TURN):
+        parts["lag"] = lag
+    return parts | {
+        name: functools.partial(motion, name=name)
+        for name, case in MOTIONS.items()
+        if engine.simulates(case.system)
+    }

@@ -1,0 +1,181 @@
+"""A row of the matrix: what was found of one engine, and what that means in sentences."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from compare.diagnosis.findings import Creep, Lag, Motion
+from compare.diagnosis.laws import CONE, DISTINCT, FITS, Friction
+from compare.diagnosis.probes import FRICTION, SPEED
+from compare.report.numbers import error_text
+
+LEAST_DEVIATION = 1e-8
+"""Of a force or its direction, relative, that is told."""
+
+FALLS = 0.3
+"""Order in the step from which on something is taken to fall with it."""
+
+RESTS = 1e-9
+"""Speed in m/s, over that of what slides, below which a block is at rest."""
+
+LEAST_LAG = 1e-6
+"""In s, that is told."""
+
+STEPS = (0.2, 3.0)
+"""Lags in steps that are called a step's."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What was found of an engine.
+
+    Parameters
+    ----------
+    engine, version : str
+        What it calls itself.
+    step : float
+        Of the finest rung, in s; NaN where the engine has a tolerance.
+    law, creep, lag
+        What the probes say; None where they were not asked or gave nothing.
+    motions : mapping
+        Of each motion that it was asked for, by name.
+    gaps : mapping
+        Why a part has no result, by its name.
+    not_simulated : tuple of str
+        Parts that the engine says it does not simulate.
+    seconds : float
+        That all took, on the clock.
+
+    """
+
+    engine: str
+    version: str = ""
+    step: float = math.nan
+    law: Friction | None = None
+    creep: Creep | None = None
+    lag: Lag | None = None
+    motions: dict[str, Motion] = field(default_factory=dict)
+    gaps: dict[str, str] = field(default_factory=dict)
+    not_simulated: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the engine is, in a few sentences, the law first."""
+        said = [
+            *([_of_law(self.law)] if self.law is not None else []),
+            *([_of_creep(self.creep, self._refined)] if self.creep is not None else []),
+            *([_of_lag(self.lag, self.step)] if self.lag is not None and self._is_coulombs else []),
+            _of_motions(self.motions, self._refined),
+            *(f"No result of {name}: {reason}." for name, reason in self.gaps.items()),
+        ]
+        return tuple(one for one in said if one)
+
+    @property
+    def _refined(self) -> str:
+        """What falls from rung to rung."""
+        return "tolerance" if math.isnan(self.step) else "step"
+
+    @property
+    def _is_coulombs(self) -> bool:
+        """Whether it acts against the slip with μN: against that of an earlier time, then, if it lags."""
+        return self.law is not None and self.law.sure and not _faults_of_law(self.law)
+
+    @property
+    def wrong(self) -> bool:
+        """Whether something was found that no smaller step cures."""
+        return (
+            (self.law is not None and bool(_faults_of_law(self.law)))
+            or (self.creep is not None and _creeps_for_good(self.creep))
+            or (self.lag is not None and self._is_coulombs and _lags_for_good(self.lag))
+            or any(not motion.converges for motion in self.motions.values())
+        )
+
+
+def _of_law(law: Friction) -> str:
+    if law.misfit > max(DISTINCT * law.error, FITS):
+        return (
+            f"Friction is no law that is known here: {error_text(law.misfit)} μN is left by the one that fits best, "
+            f"the {law.shape}."
+        )
+    if not law.sure:
+        return (
+            f"Which law of friction it is stays open: forces are known to ±{error_text(law.error)} μN only."
+        )
+    deviations = [text for text in _faults_of_law(law) if text != law.shape]
+    name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
+    if deviations:
+        return f"{name}, but {' and '.join(deviations)}."
+    return f"{name}, its force right to ±{error_text(law.error)} μN."
+
+
+def _faults_of_law(law: Friction) -> list[str]:
+    """Return in words what is not Coulomb's."""
+    found = [] if law.shape == CONE or not law.sure else [law.shape]
+    least = max(DISTINCT * law.error, LEAST_DEVIATION)
+    if abs(law.strength - 1.0) > least:
+        size = "large" if law.strength > 1.0 else "small"
+        found.append(
+            f"μ is {error_text(100.0 * abs(law.strength - 1.0))} % too {size} (±{error_text(100.0 * law.error)} %)"
+        )
+    if abs(law.angle) > least:
+        found.append(
+            f"its force is turned by {error_text(math.degrees(law.angle))}° from where it should act "
+            f"(±{error_text(math.degrees(law.error))}°)"
+        )
+    return found
+
+
+def _of_creep(creep: Creep, refined: str) -> str:
+    if abs(creep.speed) < RESTS * SPEED:
+        return "A block that friction can hold rests."
+    how = f"falls with the {refined}" if creep.order > FALLS else f"is the same at every {refined}"
+    if creep.smoothing:
+        return (
+            f"A block that friction can hold creeps: friction is smoothed as {creep.smoothing}, and "
+            f"ε = {error_text(creep.epsilon)} m/s {how}."
+        )
+    return (
+        f"A block that friction can hold creeps at {error_text(abs(creep.speed))} m/s under half of "
+        f"μN = {FRICTION:g} N, which {how}."
+    )
+
+
+def _creeps_for_good(creep: Creep) -> bool:
+    return abs(creep.speed) >= RESTS * SPEED and not creep.order > FALLS
+
+
+def _of_lag(lag: Lag, step: float) -> str:
+    if abs(lag.seconds) < LEAST_LAG:
+        return ""
+    when = "earlier" if lag.seconds > 0.0 else "later"
+    if _lags_for_good(lag):
+        return f"It acts along the slip {error_text(abs(lag.seconds))} s {when}, at every step."
+    if lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
+        return f"It acts along the slip {error_text(abs(lag.seconds) / step)} steps {when}."
+    return ""
+
+
+def _lags_for_good(lag: Lag) -> bool:
+    return abs(lag.seconds) > max(DISTINCT * lag.error, LEAST_LAG)
+
+
+def _of_motions(motions: dict[str, Motion], refined: str) -> str:
+    """Return how errors fall, and which motions tend to another end than the exact one."""
+    others = {name: motion for name, motion in motions.items() if not motion.converges}
+    said = []
+    orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
+    if orders:
+        least, most = (f"{order:.1f}" for order in (min(orders), max(orders)))
+        said.append(
+            f"Its errors fall as the {refined} to the power {least}" + f" to {most}" * (least != most)
+        )
+    open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
+    if open_:
+        said.append(f"too coarse to tell: {', '.join(open_)}")
+    if others:
+        off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
+        said.append(f"what it tends to is another motion than the exact one, off by: {off}")
+    text = "; ".join(said)
+    return f"{text[0].upper()}{text[1:]}." if text else ""

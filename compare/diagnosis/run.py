@@ -1,0 +1,90 @@
+"""Diagnoses engines: each part in a process of its own, a row as soon as its parts are there."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compare.diagnosis.findings import Creep, Lag, Motion, parts_of
+from compare.diagnosis.laws import Friction
+from compare.diagnosis.row import Row
+from compare.engines import Engine, UnsupportedSystemError
+from compare.run.workers import Failure, Workers
+
+LIMIT = 60.0
+"""Time in s after which a part of an engine is given up."""
+
+
+def diagnosed(
+    engines: tuple[Engine, ...],
+    *,
+    jobs: int = 1,
+    limit: float = LIMIT,
+    progress: Callable[[int, int, str], None] = lambda done, total, name: None,
+) -> Iterator[Row]:
+    """Yield the row of each engine, in the order in which they are complete.
+
+    Parameters
+    ----------
+    engines : tuple of Engine
+        Which are to be diagnosed; one that simulates nothing of what is asked has an empty row.
+    jobs : int
+        Number of processes.
+    limit : float
+        In s, after which a part is given up; the row says so.
+    progress : callable
+        Called with the number of finished and of all parts, and the name of the last one.
+
+    """
+    work = {(engine.name, part): engine for engine in engines for part in parts_of(engine)}
+    rows = {engine.name: _empty(engine) for engine in engines}
+    left = {engine.name: len(parts_of(engine)) for engine in engines}
+    yield from (rows[name] for name, count in left.items() if count == 0)
+    with Workers(jobs, limit) as workers:
+        for (name, part), engine in work.items():
+            workers.submit((name, part), measured, engine, part)
+        for number, done in enumerate(workers.finished(), 1):
+            name, part = done.key  # type: ignore[misc]
+            rows[name] = _with(rows[name], part, done.value, done.seconds)
+            progress(number, len(work), f"{name} {part}")
+            left[name] -= 1
+            if left[name] == 0:
+                yield rows[name]
+
+
+def measured(engine: Engine, part: str) -> Any:
+    """Return one part of an engine's diagnosis, or why it is none of what the engine does."""
+    try:
+        return parts_of(engine)[part](engine)
+    except UnsupportedSystemError as error:
+        return str(error)
+
+
+def at_once(engine: Engine) -> Row:
+    """Return the row of an engine, measured in this process."""
+    row = _empty(engine)
+    for part in parts_of(engine):
+        before = time.perf_counter()
+        row = _with(row, part, measured(engine, part), time.perf_counter() - before)
+    return row
+
+
+def _empty(engine: Engine) -> Row:
+    return Row(engine.name, engine.version, engine.step or np.nan)
+
+
+def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
+    """Return ``row`` with what was found of a part."""
+    row = replace(row, seconds=row.seconds + seconds)
+    if isinstance(found, Failure):
+        return replace(row, gaps=row.gaps | {part: str(found)})
+    if isinstance(found, str):
+        return replace(row, not_simulated=(*row.not_simulated, part))
+    if isinstance(found, Motion):
+        return replace(row, motions=row.motions | {part: found})
+    kinds = {Friction: "law", Creep: "creep", Lag: "lag"}
+    return replace(row, **{kinds[type(found)]: found})
