@@ -142,7 +142,7 @@ class _Samples:
         order = np.argsort(np.concatenate((self.times, times)))
         self.times = np.concatenate((self.times, times))[order]
         self.states = np.concatenate((self.states, states))[order]
-        self.slip = _slip(Trajectory(self.system, self.times, self.states))
+        self.slip = slip_of(Trajectory(self.system, self.times, self.states))
 
     def _where_it_may_rest_between(self) -> FloatArray:
         """Return times between samples where the slip, falling and growing as beside them, may come to nothing."""
@@ -252,7 +252,7 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
     return np.concatenate([np.empty(0), *times])
 
 
-def _slip(run: Trajectory) -> FloatArray:
+def slip_of(run: Trajectory) -> FloatArray:
     """Return how fast a body moves on the master disc in m/s, shape (n,): its centre, and its rim about that."""
     system = run.system
     if isinstance(system, DiscOnDisc):
