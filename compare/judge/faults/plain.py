@@ -134,7 +134,9 @@ class _Run:
 
         def started(t: float, x: FloatArray) -> LSODA:
             return LSODA(
-                (lambda t, x: turning_rates(t, x, *law)) if turning else (lambda t, x: rates(t, x, *slipping)),
+                (lambda t, x: turning_rates(t, x, *law))
+                if turning
+                else (lambda t, x: rates(t, x, *slipping)),
                 t,
                 x,
                 end,
