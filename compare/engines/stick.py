@@ -108,8 +108,7 @@ class _Samples:
         """Return the phases from ``begin`` to ``end`` in s."""
         self.look(np.linspace(begin, end, self._how_many(end - begin)))
         self.look(self._where_it_may_rest_between())
-        omega = abs(self.system.disc_speed)
-        self.largest = max(np.max(self.slip), omega * np.max(np.hypot(*self.states[:, :2].T)))
+        self.largest = self._largest_speed()
         spans = self._spans(REST * self.largest)
         for _ in range(LOOKS):
             self.look(_joined(map(self._edges, spans)))
@@ -125,6 +124,18 @@ class _Samples:
             begun += [("stick", start), ("slip", stop)] if stop < end else [("stick", start)]
         self.look(np.array([at for _, at in begun]))
         return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)
+
+    def _largest_speed(self) -> float:
+        """Return the largest speed of the motion in m/s, of the slip or of what the disc below carries.
+
+        Of what creeps on a plane at rest, which carries nothing, it is that which the springs would give.
+        """
+        fastest, omega = float(np.max(self.slip)), abs(self.system.disc_speed)
+        x, y = self.states[:, :2].T
+        if omega > 0.0:
+            return max(fastest, omega * float(np.max(np.hypot(x, y))))
+        by_springs = self.system.natural_frequency * float(np.max(np.hypot(x - self.system.offset, y)))
+        return by_springs if fastest <= CREEP * self.coarseness * by_springs else fastest
 
     def _how_many(self, duration: float) -> int:
         natural = math.sqrt(self.system.stiffness / self.system.mass)

@@ -33,7 +33,13 @@ def not_quite_against_the_slip(system, initial_state, times, *, tolerance=1e-9):
 
 class TestBlock(StudyTests):
     study = STUDY
-    sound = ("reference", "intact", "exudyn")
+    sound = ("reference", "intact", "exudyn", "exudyn-native", "compiled", "plain")
+    # slip to rest, stick, release, and none of that
+    parts = {
+        "exudyn-native": ("stops", "lets_go", "swings"),
+        "compiled": ("stops", "holds", "lets_go", "swings"),
+        "plain": ("slows", "pulled_along"),
+    }
     # Without dampers half the damping is all of it.
     faults = (
         {name: GROSS[name] for name in ("wrong sign", "square")}
