@@ -61,6 +61,12 @@ class TestBlock(StudyTests):
             "a degree beside": Engine("a degree beside", not_quite_against_the_slip),
         }
     )
+    few_of_faults = {
+        **{
+            name: {"headings": (22.5, 45.0)} for name in ("slows", "stops", "lets_go", "cone", "pulled_along")
+        },
+        "holds": {"loads": (0.99,)},
+    }
     columns = ("slows", "stops", "holds", "lets_go", "cone", "swings", "pulled_along", "pulled_across")
     table = {
         "wrong sign": (*[SEES] * 8,),
@@ -75,7 +81,7 @@ class TestBlock(StudyTests):
         "friction 0.1 % off": (SEES, SEES, BLIND, SEES, BLIND, SEES, SEES, SEES),
         "friction 1.5 % off": (LEFT_OUT, LEFT_OUT, BLIND, SEES, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT),
         "mass 0.1 % off": (SEES, SEES, LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, SEES),
-        "stiffness 0.1 % off": (BLIND, BLIND, BLIND, SEES, BLIND, SEES, SEES, SEES),
+        "stiffness 0.1 % off": (BLIND, BLIND, LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, SEES),
         "a degree beside": (SEES, *[LEFT_OUT] * 5, SEES, SEES),
     }
 
