@@ -21,7 +21,6 @@ from compare.studies.plane.thrown_disc.parameters import (
     SOURCE,
     SPEED,
     TO_REST,
-    TOLERANCE,
     WHILE_SLIDING,
     Throw,
 )
@@ -61,13 +60,11 @@ def compared(
         found = [seen(follow(throw, throw.time * shares, tolerance)[1:]) for throw in throws]
         return np.array(found)
 
-    found = refined(
-        states, TOLERANCE
-    )  # friction takes all of the speed: an error of it is as large a share of that
+    found = refined(states)
     return Measured(
         predicted=[throw.seen_at(shares[1:]) for throw in throws],
         value=found.value,
-        error=found.largest + error * SPEED,
+        error=found.largest + error * SPEED,  # friction takes all of the speed
         at={"throw": [throw.name for throw in throws], "t over the time to rest": shares[1:]},
         components=SEEN,
         system=throws[0].disc(points),

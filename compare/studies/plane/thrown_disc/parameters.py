@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING
 from reference_model.systems import DiscOnDisc, FloatArray
 
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
@@ -91,7 +90,7 @@ RING = (
     Throw("spins", 0.5, 0.0, -SPEED, moment=1.0),
     Throw("both", 1.0, SPEED, SPEED, force=2.0 / math.pi, moment=2.0 / math.pi),
 )
-"""∂P/∂U = ∂P/∂W = 2/π where U = W: the mean of |cos χ/2| over the ring, times cos χ/2 that of the directions."""
+"""Where U = W, the point at χ slips with 2U·|cos χ/2| and by |cos χ/2| of that along U: in the mean by 2/π."""
 
 POINTS: Mapping[int, tuple[Throw, ...]] = {3: RING[:2], 6: RING[:2]}
 """By the number of points, on which there is no closed form for both motions."""
@@ -108,5 +107,3 @@ TO_REST = np.array([0.0, 0.5, 1.25])
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """The same for a full disc, which a smoothed law need not bring to rest."""
-
-TOLERANCE = WORKING

@@ -1,6 +1,7 @@
 """The study of the block: what its claims see, and that its closed forms are those of the motion in time."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -146,7 +147,7 @@ def test_the_velocity_across_a_pull_is_that_of_newtons_law_to_what_the_spring_ch
     run = solve_ivp(
         rates, (0.0, times[-1]), (0.0, 0.0, 0.0, parameters.SPEED), "DOP853", times, rtol=1e-12, atol=1e-13
     )
-    monkeypatch.setattr(theory, "ACROSS", parameters.replace(block, stiffness=stiffness))
+    monkeypatch.setattr(theory, "ACROSS", replace(block, stiffness=stiffness))
     apart = np.max(np.abs(run.y[2:].T - theory.across(times)))
     bound = theory.bend_by_spring(times)
     assert apart <= bound + 1e-10
@@ -158,7 +159,7 @@ def test_half_of_the_speed_is_left_in_the_end():
 
 
 def test_a_sliding_block_is_slowed_down_or_pulled_as_by_a_constant_force_when_the_spring_is_weak():
-    block, t = parameters.replace(parameters.AFAR, stiffness=1e-9), np.array([0.5, 2.0])
+    block, t = replace(parameters.AFAR, stiffness=1e-9), np.array([0.5, 2.0])
     s, v = theory.pulled(block, 1.0, 1.5e9, t).T
     assert s == pytest.approx(t + 0.25 * t**2, abs=1e-6)
     assert v == pytest.approx(1.0 + 0.5 * t, abs=1e-6)
