@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from exudyn_models import PASSENGER_CAR
-from reference_model import DiscOnDisc, self_centred_equilibria, simulate
+from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = ["README.md", "docs/friction-in-your-own-model.md"]
@@ -36,6 +36,15 @@ def test_the_two_motions_of_the_pin_end_at_rest_in_space_and_on_the_whirl():
     # Exudyn's law is viscous below ε = 1e-7 m/s, which nine stick phases amplify to some 300·ε.
     assert example["in_exudyn"].at_end == pytest.approx(example["to_whirl"].at_end, abs=1e-4)
     assert "9 stick phases" in example["describe"](example["to_whirl"])
+
+
+def test_a_block_stops_straight_ahead_by_a_cone_and_too_soon_by_a_box():
+    example = run("10_block_on_a_plane.py")
+    block = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
+    start, times = [0.0, 0.0, *np.sqrt([0.5, 0.5])], [0.0, 1.5]
+    stops = [example[law](block, start, times, step=0.01).at_end for law in ("cone", "box")]
+    assert stops[0] == pytest.approx([*np.sqrt([0.125, 0.125]), 0.0, 0.0], abs=1e-3)  # half a metre
+    assert stops[1] == pytest.approx([0.25, 0.25, 0.0, 0.0], abs=1e-3)  # each axis by itself
 
 
 def test_the_steady_motions_of_the_pin_are_those_of_the_formulas():

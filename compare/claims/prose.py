@@ -26,6 +26,7 @@ NAME = "study.md"
 SECTIONS = {
     "pin": "The friction pin",
     "disc": "The friction disc",
+    "plane": "A plane at rest",
     "drivetrain": "The drivetrain",
     "engines": "The engines",
 }

@@ -122,8 +122,7 @@ class _Samples:
         """Return the phases from ``begin`` to ``end`` in s."""
         self.look(np.linspace(begin, end, self._how_many(end - begin)))
         self.look(self._where_it_may_rest_between())
-        omega = abs(self.system.disc_speed)
-        self.largest = max(np.max(self.slip), omega * np.max(np.hypot(*self.states[:, :2].T)))
+        self.largest = self._largest_speed()
         spans = self._spans(REST * self.largest)
         for _ in range(LOOKS):
             self.look(_joined(map(self._edges, spans)))
@@ -139,6 +138,18 @@ class _Samples:
             begun += [("stick", start), ("slip", stop)] if stop < end else [("stick", start)]
         self.look(np.array([at for _, at in begun]))
         return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)
+
+    def _largest_speed(self) -> float:
+        """Return the largest speed of the motion in m/s, of the slip or of what the disc below carries.
+
+        Of what creeps on a plane at rest, which carries nothing, it is that which the springs would give.
+        """
+        fastest, omega = float(np.max(self.slip)), abs(self.system.disc_speed)
+        x, y = self.states[:, :2].T
+        if omega > 0.0:
+            return max(fastest, omega * float(np.max(np.hypot(x, y))))
+        by_springs = self.system.natural_frequency * float(np.max(np.hypot(x - self.system.offset, y)))
+        return by_springs if fastest <= CREEP * self.coarseness * by_springs else fastest
 
     def _how_many(self, duration: float) -> int:
         natural = math.sqrt(self.system.stiffness / self.system.mass)
@@ -156,7 +167,7 @@ class _Samples:
         order = np.argsort(np.concatenate((self.times, times)))
         self.times = np.concatenate((self.times, times))[order]
         self.states = np.concatenate((self.states, states))[order]
-        self.slip = _slip(Trajectory(self.system, self.times, self.states))
+        self.slip = slip_of(Trajectory(self.system, self.times, self.states))
 
     def _where_it_may_rest_between(self) -> FloatArray:
         """Return times between samples where the slip, falling and growing as beside them, may come to nothing."""
@@ -264,7 +275,7 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
     return np.concatenate([np.empty(0), *times])
 
 
-def _slip(run: Trajectory) -> FloatArray:
+def slip_of(run: Trajectory) -> FloatArray:
     """Return how fast a body moves on the master disc in m/s, shape (n,): its centre, and its rim about that."""
     system = run.system
     if isinstance(system, DiscOnDisc):

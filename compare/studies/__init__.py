@@ -33,6 +33,8 @@ from compare.studies.pin.fig06 import STUDY as FIG06
 from compare.studies.pin.nonlinear_support import STUDY as NONLINEAR_SUPPORT
 from compare.studies.pin.sticking_domain import STUDY as STICKING_DOMAIN
 from compare.studies.pin.whirl_stability import STUDY as WHIRL_STABILITY
+from compare.studies.plane.block import STUDY as BLOCK
+from compare.studies.plane.thrown_disc import STUDY as THROWN_DISC
 
 STUDIES: tuple[Study, ...] = (
     FIG03,
@@ -50,6 +52,8 @@ STUDIES: tuple[Study, ...] = (
     SIMULATED_MAP,
     CONTACT_LAWS,
     FREE_RING,
+    BLOCK,
+    THROWN_DISC,
     DRIVETRAIN_RUN_UP,
     DRIVETRAIN_FROZEN,
     DRIVETRAIN_LAUNCH,

@@ -30,6 +30,13 @@ TIGHTEST = 1e-13
 MOST_STEPS = 150_000
 """Several times what any right motion takes; what is wrong may be singular."""
 
+MOST_ALIKE = 200
+"""Steps of the same size, after which LSODA is started anew.
+
+It bounds its steps by the stiffness that it saw last, and on a straight way, where its guess is right to the last
+digit, it never looks again: a block that is let go would be followed for ever in steps of its first moment.
+"""
+
 SAFETY = 1e-3
 """The tolerance is of the end, not of a step."""
 
@@ -124,21 +131,26 @@ class _Run:
         start, base = t, np.concatenate((y[:half], np.zeros(half))) if turning else np.zeros(2 * half)
         law = (start, base, width, strength, self.numbers, self.make)
         slipping = law[2:]
-        solver = LSODA(
-            (lambda t, x: turning_rates(t, x, *law)) if turning else (lambda t, x: rates(t, x, *slipping)),
-            start,
-            y - base,
-            end,
-            rtol=local,
-            atol=[0.1 * local] * half + [min(0.1 * local, ACCURACY_IN_STICK * self.epsilon)] * half,
-            first_step=min(1e-6, end - start),
-            max_step=longest,
-        )
+
+        def started(t: float, x: FloatArray) -> LSODA:
+            return LSODA(
+                (lambda t, x: turning_rates(t, x, *law))
+                if turning
+                else (lambda t, x: rates(t, x, *slipping)),
+                t,
+                x,
+                end,
+                rtol=local,
+                atol=[0.1 * local] * half + [min(0.1 * local, ACCURACY_IN_STICK * self.epsilon)] * half,
+                first_step=min(1e-6, end - t),
+                max_step=longest,
+            )
 
         def at(t: float, x: FloatArray) -> FloatArray:
             return rotated(x, omega * (t - start), base)
 
         left = False
+        solver, size, alike = started(start, y - base), 0.0, 0
         while solver.status == "running" and not left:
             message = solver.step()
             self.steps += 1
@@ -148,6 +160,8 @@ class _Run:
                 raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
             t, y = float(solver.t), at(solver.t, solver.y)
             left = inside(y) < 0.0
+            alike = alike + 1 if math.isclose(solver.step_size, size, rel_tol=1e-6) else 0
+            size = solver.step_size
             if left or self.pending(t):
                 dense = solver.dense_output()
                 if left:
@@ -156,6 +170,9 @@ class _Run:
                 for i in range(self.recorded, stop):
                     self.unknowns[i] = at(self.times[i], dense(self.times[i]))
                 self.recorded = max(self.recorded, stop)
+            if alike == MOST_ALIKE and size < 0.99 * longest and solver.status == "running":
+                self.evaluations += solver.nfev
+                solver, alike = started(t, solver.y), 0
         self.evaluations += solver.nfev
         return t, y
 

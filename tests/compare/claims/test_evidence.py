@@ -109,6 +109,8 @@ def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
         "trajectories",
         "power-balance",
         "connector",
+        "block",
+        "thrown-disc",
     }
     asked = Run(STUDIES, ("exudyn", usual.name), contact_only=(usual.name,))
     assert {study.name for study in STUDIES if usual.name in asked.columns(study)} == about_contact

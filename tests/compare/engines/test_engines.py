@@ -103,20 +103,22 @@ def test_an_engine_whose_module_fails_is_refused_in_a_sentence(code, reason, tmp
 
 
 POINTS, RING = replace(FIG11, contact_points=6), FIG11
+BLOCK = replace(FIG5, disc_speed=0.0)
 
 
 @pytest.mark.parametrize(
     ("kinds", "lacking"),
     [
-        (("pin",), "mine does not simulate a disc on a continuous ring or a disc on single points"),
-        (("pin", "points"), "mine does not simulate a disc on a continuous ring"),
-        (("points", "ring"), "mine does not simulate a pin"),
+        (("pin", "block"), "mine does not simulate a disc on a continuous ring or a disc on single points"),
+        (("pin", "block", "points"), "mine does not simulate a disc on a continuous ring"),
+        (("points", "ring"), "mine does not simulate a pin or a block on a plane at rest"),
+        (("block", "points", "ring"), "mine does not simulate a pin"),
         (EVERY_KIND, ""),
     ],
 )
 def test_an_engine_simulates_what_it_promises_and_says_what_it_lacks(kinds, lacking):
     engine = Engine("mine", fake_studies.straight, kinds)
-    systems = {"pin": FIG5, "ring": RING, "points": POINTS}
+    systems = {"pin": FIG5, "block": BLOCK, "ring": RING, "points": POINTS}
     assert engine.lacking([*systems.values(), RING]) == lacking
     for kind, system in systems.items():
         state = [0.0] * system.state_size
@@ -126,6 +128,17 @@ def test_an_engine_simulates_what_it_promises_and_says_what_it_lacks(kinds, lack
         else:
             with pytest.raises(UnsupportedSystemError, match=r"^mine does not simulate a "):
                 engine.simulate(system, state, [0.0, 1.0])
+
+
+def test_who_simulates_pins_simulates_blocks_on_a_plane_at_rest_too():
+    pins, blocks = (
+        Engine("mine", fake_studies.straight, (kind,), nonlinear=False) for kind in ("pin", "block")
+    )
+    hard = replace(BLOCK, hardening=2.0)
+    assert [pins.simulates(one) for one in (FIG5, BLOCK, hard)] == [True, True, False]
+    assert [blocks.simulates(one) for one in (FIG5, BLOCK, hard)] == [False, True, False]
+    sentence = "mine does not simulate a block on a plane at rest on a nonlinear support"
+    assert pins.lacking([hard]) == blocks.lacking([hard]) == sentence
 
 
 def test_an_engine_goes_to_other_processes_with_its_promise():
@@ -254,6 +267,18 @@ def test_an_engine_that_only_slides_is_asked_for_no_motion_that_sticks():
     whirling = [0.9, 0.0, 0.0, 0.9]
     assert engine.simulate(FIG5, whirling, TIMES).times is not None
     assert replace(engine, sticks=True).simulate(FIG5, turning, TIMES).times is not None
+
+
+@pytest.mark.parametrize(("velocity", "asked"), [(0.0, False), (1e-3, True)])
+def test_an_engine_that_only_slides_is_asked_for_no_motion_that_starts_at_rest(velocity, asked):
+    """A block that is let go slips from the first, but no slip says in which direction."""
+    engine = Engine("mine", resting, sticks=False)
+    motion = replace(BLOCK, friction_force=0.01), [0.2, 0.0, -velocity, 0.0], TIMES
+    if asked:
+        assert engine.simulate(*motion).times is not None
+        return
+    with pytest.raises(UnsupportedSystemError, match=r"^mine does not simulate stick$"):
+        engine.simulate(*motion)
 
 
 def test_a_fixed_step_takes_the_place_of_the_tolerance_and_goes_with_its_root():

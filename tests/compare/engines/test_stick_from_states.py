@@ -25,6 +25,10 @@ PASSES_BY = replace(
 """From the start below its slip falls to 2e-4 of its largest speed and grows again."""
 
 
+BLOCK = replace(FIG5, stiffness=0.1, damping=0.0, friction_force=1.0, disc_speed=0.0, offset=0.0)
+"""On a plane at rest: at 10 m from the origin its spring pulls as friction does."""
+
+
 def drawn(seed):
     """Return a pin and a start; many stick on their way, some at the end, some for ever."""
     random = np.random.default_rng(seed)
@@ -43,6 +47,10 @@ MOTIONS = {
     "the way to the whirl, whose last stick is nearly slip": (FIG5, FIG5_STARTS["whirl"]),
     "a ring that comes to rest": (RING, (0.05, 0.0, 0.0, 0.1, 0.0, 0.5)),
     "slip that passes by rest": (PASSES_BY, (-0.04926085, -0.06287503, -0.1125771, -0.05500665)),
+    "a block that is thrown": (replace(BLOCK, stiffness=0.0), (0.0, 0.0, 2.0, 1.0)),
+    "a block that is held": (BLOCK, (9.0, 3.0, 0.0, 0.0)),
+    "a block that is let go": (BLOCK, (9.0, 5.0, 0.0, 0.0)),
+    "a block that swings to rest": (replace(BLOCK, stiffness=1.0), (6.0, 6.0, 0.0, 0.0)),
 } | {f"drawn {seed}": drawn(seed) for seed in range(6)}
 
 
@@ -76,6 +84,18 @@ def test_it_is_the_reference_s(function, off, system, start):
     found = engine(function, phases=False).simulate(system, start, TIMES)
     assert [phase.kind for phase in found.phases] == [phase.kind for phase in exact.phases]
     np.testing.assert_allclose(found.stick_times, exact.stick_times, rtol=0.0, atol=off)
+
+
+@pytest.mark.parametrize("load", [0.1, 0.99])
+def test_a_block_that_only_creeps_is_held_all_the_time(load):
+    """On a plane at rest nothing but the springs says what is slow."""
+
+    def creeping(pin, start, times, *, tolerance):
+        return plain.simulate(pin, start, times, tolerance=tolerance)
+
+    found = engine(creeping, phases=False).simulate(BLOCK, (6.0 * load, 8.0 * load, 0.0, 0.0), TIMES)
+    assert np.any(found.slip_speed > 0.0)
+    np.testing.assert_array_equal(found.stick_times, TIMES[[0, -1]])
 
 
 def test_what_a_law_that_creeps_comes_to_is_nearer_at_a_smaller_tolerance():

@@ -75,6 +75,15 @@ def apart_in_time(first, second):
 # ---------------------------------------------------------------- the plain engine is right
 
 
+def test_a_block_that_is_let_go_straight_between_the_axes_is_not_followed_in_steps_of_its_first_moment():
+    """LSODA keeps the stiffness of the start in mind, as long as its guess is right to the last digit."""
+    block = PinOnDisc(mass=1.0, stiffness=0.1, damping=0.0, friction_force=1.0, disc_speed=0.0)
+    start = [-10.1 * math.cos(math.pi / 4.0), -10.1 * math.sin(math.pi / 4.0), 0.0, 0.0]
+    run = simulate(block, start, [0.0, 11.0], tolerance=1.25e-10)
+    assert run.solution.steps < 5_000
+    np.testing.assert_allclose(run.at_end[:2], np.full(2, -9.9 * math.sqrt(0.5)), atol=1e-7)
+
+
 @pytest.mark.parametrize("ratio", [1e-9, 1e-3, 0.3, 0.999, 1.0 - 1e-9, 1.0 + 1e-9, 1.7, 1e3, 1e9])
 def test_mean_slip_is_that_of_the_elliptic_integrals_of_scipy(ratio):
     u, w = ratio, 1.0

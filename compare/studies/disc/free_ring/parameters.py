@@ -89,8 +89,6 @@ INTEGRATED = (*RINGS, *OTHERS)
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Beyond the limits of 1/2 and 2."""
 
-PURE = tuple(Throw(inertia, degrees) for inertia in (1.0, 2.5) for degrees in (0.0, -90.0))
-
 INTERVALS = 400
 """Of the time to rest, for the heat and the figure."""
 

@@ -17,7 +17,6 @@ from compare.studies.disc.free_ring.parameters import (
     DECELERATION,
     HEADING,
     INTEGRATED,
-    PURE,
     RINGS,
     SPEED,
     TABLE,
@@ -70,36 +69,6 @@ def _integrated(throw: Throw, near: float) -> list[float]:
     place = cmath.rect(rest.slid / DECELERATION, HEADING)
     turned = math.copysign(rest.turned, throw.rim) / DECELERATION / TABLE.contact_radius
     return [rest.time / DECELERATION, place.real, place.imag, turned]
-
-
-@STUDY.claim(
-    "A ring that only slides or only spins is slowed down by all of the friction",
-    equation="(19), (20)",
-    unit="s, m, rad",
-    resolution=1e-7,
-    note="mU/μN and mU²/2μN, or JW/(μN·R²) and JW²/(2μN·R³).",
-    swept=("polar_inertia",),
-)
-def pure_throws(engine: Engine) -> Measured:
-    """Compare throws without spin, and without sliding, with uniform deceleration."""
-    found = stops_of(engine, PURE)
-    predicted = []
-    for throw in PURE:
-        inertia = throw.inertia if throw.sliding == 0.0 else 1.0
-        time = inertia * SPEED / DECELERATION
-        way = 0.5 * SPEED * time
-        place = cmath.rect(way, HEADING) if throw.sliding else 0j
-        predicted.append(
-            [time, place.real, place.imag, 0.0 if throw.sliding else -way / TABLE.contact_radius]
-        )
-    return Measured(
-        system=TABLE,
-        predicted=predicted,
-        value=found.value,
-        error=found.largest,
-        at={"throw": [throw.name for throw in PURE]},
-        components=("time", "x", "y", "angle"),
-    )
 
 
 @STUDY.claim(

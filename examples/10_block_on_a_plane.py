@@ -1,0 +1,41 @@
+"""An engine without a turntable, which steps through time: a cone for its friction passes, a box does not.
+
+cd examples && friction-discs report block --engine 10_block_on_a_plane:cone --engine 10_block_on_a_plane:box
+"""
+
+from functools import partial
+from math import ceil
+
+import numpy as np
+
+from reference_model import Trajectory
+
+
+def time_stepping(block, initial_state, times, *, step, bounded):
+    """Brake by the impulse that would stop the block in a step, bounded by that of μN (Moreau and Jean)."""
+    m, friction = block.mass, block.friction_force
+    states = [np.array(initial_state, dtype=float)]
+    for span in np.diff(times):
+        z, v = states[-1].view(complex).tolist()  # place and velocity, x + iy
+        steps = ceil(span / step)
+        h = span / steps
+        for _ in range(steps):
+            z += h / 2 * v
+            v -= h / m * (block.stiffness * (z - block.offset) + block.damping * v)
+            v += bounded(-m * v, friction * h) / m
+            z += h / 2 * v
+        states.append(np.array([z, v]).view(float))
+    return Trajectory(block, np.array(times), np.array(states))
+
+
+def in_circle(impulse, most):  # noqa: D103
+    return impulse * min(1.0, most / max(abs(impulse), 1e-99))
+
+
+def in_box(impulse, most):  # noqa: D103
+    return complex(max(-most, min(impulse.real, most)), max(-most, min(impulse.imag, most)))
+
+
+cone, box = (partial(time_stepping, bounded=law) for law in (in_circle, in_box))
+for engine in (cone, box):
+    engine.kinds, engine.nonlinear, engine.step = ("block",), False, 1e-3  # s
