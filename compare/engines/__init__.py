@@ -27,6 +27,7 @@ from compare.engines.engine import (
     UnsupportedSystemError,
 )
 from compare.engines.names import one_of
+from compare.engines.program import Program
 from compare.engines.registry import (
     engines,
     imported,
@@ -37,6 +38,7 @@ from compare.engines.registry import (
     shares_code,
 )
 from compare.engines.stick import StatesOnly
+from compare.engines.unseen import Unseen
 
 __all__ = [
     "EVERY_KIND",
@@ -45,8 +47,10 @@ __all__ = [
     "BadTrajectoryError",
     "ByName",
     "Engine",
+    "Program",
     "Simulate",
     "StatesOnly",
+    "Unseen",
     "UnsupportedSystemError",
     "compiled",
     "engines",
