@@ -38,7 +38,7 @@ Engines = Annotated[
     typer.Option(
         metavar="NAME",
         help="Engine to measure, several times for several; all without any. "
-        "MODULE:FUNCTION takes a simulate() of your own.",
+        "MODULE:FUNCTION takes a simulate() of your own, and exec:COMMAND a program of any language.",
         show_default=False,
     ),
 ]

@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import shlex
 import signal
 import sys
@@ -16,12 +17,20 @@ from processes import wait_until
 
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.cli import app as cli
-from compare.engines import BadTrajectoryError, UnsupportedSystemError, conversation, engines, known_name
+from compare.engines import (
+    BadTrajectoryError,
+    UnsupportedSystemError,
+    conversation,
+    engines,
+    json_lines,
+    known_name,
+)
 from compare.engines.program import name_of
 from compare.run.code_files import UnknownCodeError
 from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES
 from compare.run.workers import Failure, Workers
+from reference_model import simulate
 
 FAULTY = Path(__file__).with_name("program_of_many_faults.py")
 START = (0.1, 1.0 / 3.0, -0.03, 1e-300)
@@ -336,3 +345,15 @@ def test_an_engine_may_not_be_called_as_one_that_is_registered(tmp_path, monkeyp
 def test_a_program_is_always_measured_anew():
     with pytest.raises(UnknownCodeError, match="it is a program"):
         fingerprint(faulty("none"), PACKAGES)
+
+
+def test_the_lines_in_the_document_are_those_that_are_exchanged():
+    document = (Path(__file__).parents[3] / "docs" / "judge-your-engine.md").read_text("utf-8")
+    section = document.partition("## Any language")[2].partition("\n## ")[0]
+    greeting, question, answer, *_ = re.findall(r"```\n( *\{.*?)```", section, re.DOTALL)
+    assert json_lines.greeting(greeting.encode()).who == "exec_pin 1"
+    state, times = (0.1, 0.0, 0.03, 0.0), (0.0, 0.5, 1.0)
+    line = json_lines.question(FIG5, state, times, {"tolerance": 1e-9})
+    assert json.loads(question) == json.loads(line)
+    found = json_lines.answered(answer.encode(), FIG5, times)
+    np.testing.assert_allclose(found.states, simulate(FIG5, state, times).states, atol=5.1e-4)
