@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | judge | simulate | sweep | errata | compile``.
+"""The command line: ``friction-discs list | report | plan | judge | simulate | sweep | errata | compile``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -30,6 +30,7 @@ try:
     from compare.cli.compiling import compile_kernels
     from compare.cli.judge import judge
     from compare.cli.listing import errata, list_studies
+    from compare.cli.plan import plan
     from compare.cli.report import report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
@@ -49,7 +50,7 @@ app = typer.Typer(
 )
 app.command("list", cls=Command)(list_studies)
 app.command("compile", cls=Command)(compile_kernels)
-for command in (report, judge, errata):
+for command in (report, plan, judge, errata):
     app.command(cls=Command)(command)
 app.add_typer(simulate, name="simulate")
 app.add_typer(sweep, name="sweep")
@@ -103,6 +104,7 @@ def friction_discs(
     Examples:
       friction-discs list
       friction-discs report
+      friction-discs plan --level quick
       friction-discs judge
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json

@@ -26,6 +26,7 @@ from compare.engines.engine import (
     Simulate,
     UnsupportedSystemError,
 )
+from compare.engines.motion_files import MotionFiles
 from compare.engines.names import one_of
 from compare.engines.program import Program
 from compare.engines.registry import (
@@ -47,6 +48,7 @@ __all__ = [
     "BadTrajectoryError",
     "ByName",
     "Engine",
+    "MotionFiles",
     "Program",
     "Simulate",
     "StatesOnly",
