@@ -50,7 +50,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="MODULE:FUNCTION",
-        help="engine to judge, the name of an installed one, or exec:COMMAND; several times for several",
+        help="engine to judge, the name of an installed one, exec:COMMAND, files:DIR or fmu:FILE; "
+        "several times for several",
     )
     group.addoption(
         "--level",

@@ -38,8 +38,8 @@ Engines = Annotated[
     typer.Option(
         metavar="NAME",
         help="Engine to measure, several times for several; all without any. "
-        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, and files:DIR "
-        "answers to what plan has asked for.",
+        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, files:DIR "
+        "answers to what plan has asked for, and fmu:FILE a model for co-simulation.",
         show_default=False,
     ),
 ]

@@ -26,6 +26,7 @@ from compare.engines.engine import (
     Simulate,
     UnsupportedSystemError,
 )
+from compare.engines.fmu import Fmu
 from compare.engines.motion_files import MotionFiles
 from compare.engines.names import one_of
 from compare.engines.program import Program
@@ -48,6 +49,7 @@ __all__ = [
     "BadTrajectoryError",
     "ByName",
     "Engine",
+    "Fmu",
     "MotionFiles",
     "Program",
     "Simulate",
