@@ -11,6 +11,7 @@ exist.
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
@@ -49,7 +50,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="MODULE:FUNCTION",
-        help="engine to judge, or the name of an installed one; several times for several",
+        help="engine to judge, the name of an installed one, exec:COMMAND, files:DIR or fmu:FILE; "
+        "several times for several",
     )
     group.addoption(
         "--level",
@@ -210,9 +212,11 @@ class ClaimTest(pytest.Item):
             pytest.fail("what the engine did gave no ground to measure this", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
-            pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS]), pytrace=False)
+            pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS], self.engine), pytrace=False)
         if Verdict.INCONCLUSIVE in verdicts:
-            self._without_verdict(INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE]))
+            self._without_verdict(
+                INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE], self.engine)
+            )
 
     def _without_verdict(self, why: str, reason: str) -> NoReturn:
         self.user_properties.append((PROPERTY, why))
@@ -253,8 +257,8 @@ def _measured(study: Study, name: str) -> Findings:
     return measured(study, engines([name])[0])
 
 
-def _account(study: Study, claim: Claim) -> str:
-    """Return a claim with the numbers that decide, and all that is needed to repeat it."""
+def _account(study: Study, claim: Claim, engine: str) -> str:
+    """Return a claim with the numbers that decide, and all that is needed to repeat it with the named engine."""
     from compare.claims.claim import Verdict
     from compare.report.numbers import error_text, value_text
     from compare.report.worst import answers_text, in_short, worst
@@ -264,7 +268,7 @@ def _account(study: Study, claim: Claim) -> str:
         "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
         "source": claim.source,
         "note": claim.note,
-        "again": f"friction-discs report {study.name} --engine {claim.engine}",
+        "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
     }
     if claim.answers:
         first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"

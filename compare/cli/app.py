@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | matrix | judge | simulate | sweep | errata | compile``.
+"""The command line: ``friction-discs list | report | matrix | plan | judge | simulate | sweep | errata | compile``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -31,6 +31,7 @@ try:
     from compare.cli.judge import judge
     from compare.cli.listing import errata, list_studies
     from compare.cli.matrix import matrix
+    from compare.cli.plan import plan
     from compare.cli.report import report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
@@ -50,7 +51,7 @@ app = typer.Typer(
 )
 app.command("list", cls=Command)(list_studies)
 app.command("compile", cls=Command)(compile_kernels)
-for command in (report, matrix, judge, errata):
+for command in (report, matrix, plan, judge, errata):
     app.command(cls=Command)(command)
 app.add_typer(simulate, name="simulate")
 app.add_typer(sweep, name="sweep")
@@ -105,6 +106,7 @@ def friction_discs(
       friction-discs list
       friction-discs report
       friction-discs matrix --engine reference
+      friction-discs plan --level quick
       friction-discs judge
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json

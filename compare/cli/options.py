@@ -184,12 +184,15 @@ def changed(system: System, settings: Sequence[str]) -> System:
     return replace(system, **changes)
 
 
-def studies_of(context: typer.Context, names: Sequence[str]) -> tuple[Study, ...]:
-    """Return the studies of these names, or all; those of ``main`` where it was given its own."""
+def studies_of(context: typer.Context, names: Sequence[str], level: str = "full") -> tuple[Study, ...]:
+    """Return the studies of these names, or all of a level; those of ``main`` where it was given its own."""
     from compare.studies import STUDIES, studies
 
     with refused():
-        return studies(names, STUDIES if context.obj is None else context.obj)
+        if level == "quick" and names:
+            raise ValueError(f"--level quick chooses the studies: leave out {', '.join(names)}, or the level")
+        found = studies(names, STUDIES if context.obj is None else context.obj)
+    return tuple(study for study in found if study.quick or level == "full")
 
 
 def check_folder(folder: Path) -> None:

@@ -38,7 +38,8 @@ Engines = Annotated[
     typer.Option(
         metavar="NAME",
         help="Engine to measure, several times for several; all without any. "
-        "MODULE:FUNCTION takes a simulate() of your own.",
+        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, files:DIR "
+        "answers to what plan has asked for, and fmu:FILE a model for co-simulation.",
         show_default=False,
     ),
 ]
@@ -87,14 +88,8 @@ def report(
     """
     from compare.engines import engines
 
-    studies = studies_of(context, names or [])
+    studies = studies_of(context, names or [], level)
     with refused():
-        if level == "quick":
-            if names:
-                raise ValueError(
-                    f"--level quick chooses the studies: leave out {', '.join(names)}, or the level"
-                )
-            studies = tuple(study for study in studies if study.quick)
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
 

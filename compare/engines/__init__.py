@@ -25,7 +25,10 @@ from compare.engines.engine import (
     Simulate,
     UnsupportedSystemError,
 )
+from compare.engines.fmu import Fmu
+from compare.engines.motion_files import MotionFiles
 from compare.engines.names import one_of
+from compare.engines.program import Program
 from compare.engines.registry import (
     engines,
     imported,
@@ -37,6 +40,7 @@ from compare.engines.registry import (
 )
 from compare.engines.stick import StatesOnly
 from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
+from compare.engines.unseen import Unseen
 
 __all__ = [
     "COARSENING",
@@ -46,8 +50,12 @@ __all__ = [
     "BadTrajectoryError",
     "ByName",
     "Engine",
+    "Fmu",
+    "MotionFiles",
+    "Program",
     "Simulate",
     "StatesOnly",
+    "Unseen",
     "UnsupportedSystemError",
     "compiled",
     "engines",

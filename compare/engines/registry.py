@@ -5,9 +5,11 @@ from __future__ import annotations
 import importlib
 import os
 import sys
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
+from typing import NamedTuple
 
 from compare.engines.engine import Engine
 from compare.engines.names import one_of
@@ -20,6 +22,24 @@ DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "vers
 
 _REGISTRY: dict[str, Engine] = {}
 _ON_REQUEST: set[str] = set()
+
+
+class Scheme(NamedTuple):
+    """What names of the form "scheme:REST" mean: the engine of REST, and a quick check of it.
+
+    Both raise ``ValueError`` for a REST that is none.
+    """
+
+    engine: Callable[[str], Engine]
+    check: Callable[[str], object]
+
+
+_SCHEMES: dict[str, Scheme] = {}
+
+
+def register_scheme(name: str, scheme: Scheme) -> None:
+    """Let engines be named "name:REST"."""
+    _SCHEMES[name] = scheme
 
 
 def register(engine: Engine, *, on_request: bool = False) -> Engine:
@@ -40,11 +60,22 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
 
     One that is named is measured in all that it promises, see ``Engine.contact_only``.
     A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
-    does one of the entry points "friction_discs.engines" of an installed package.
+    does "exec:COMMAND", see ``compare.engines.program``, nor one of the entry points "friction_discs.engines" of an
+    installed package.
     Raises ``ValueError`` for a name that is unknown or can't be imported.
     """
-    return tuple(_named(name) for name in names) or tuple(
+    names = list(names)
+    return _told_apart(names, [_named(name) for name in names]) or tuple(
         engine for name, engine in _REGISTRY.items() if name not in _ON_REQUEST
+    )
+
+
+def _told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
+    """Return the engines, called as they were asked for where a shorter name of theirs is another's too."""
+    taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
+    return tuple(
+        replace(engine, name=name) if engine.name != name and taken[engine.name] > 1 else engine
+        for name, engine in zip(names, found, strict=True)
     )
 
 
@@ -65,7 +96,10 @@ def repeated_by(name: str) -> str:
 
 
 def _named(name: str) -> Engine:
-    if ":" in name:
+    scheme, colon, rest = name.partition(":")
+    if colon and scheme in _SCHEMES:
+        return _SCHEMES[scheme].engine(rest)
+    if colon:
         return imported(name, name)
     if name in _REGISTRY:
         return replace(_REGISTRY[name], contact_only=False)
@@ -74,6 +108,9 @@ def _named(name: str) -> Engine:
 
 def known_name(name: str) -> str:
     """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
+    scheme, colon, rest = name.partition(":")
+    if colon and scheme in _SCHEMES:
+        _SCHEMES[scheme].check(rest)
     return name if ":" in name else one_of("engine", name, [*_REGISTRY, *_installed()])
 
 

@@ -24,7 +24,7 @@ from types import (
 )
 from typing import Any
 
-from compare.engines import ByName
+from compare.engines import ByName, Unseen
 from compare.run.code_files import CodeFiles, UnknownCodeError, located
 
 ATOMS = (NoneType, bool, int, float, complex, str, bytes, EllipsisType)
@@ -156,6 +156,8 @@ class _Contents:
 
     def _add_object(self, thing: Any) -> None:
         kind = type(thing)
+        if isinstance(thing, Unseen):
+            raise UnknownCodeError(thing.why)
         if isinstance(thing, ByName):
             self._code.add(thing.module)
         function = getattr(thing, "py_func", None)

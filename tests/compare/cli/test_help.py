@@ -11,9 +11,11 @@ import compare.cli.sweep.run
 import compare.judge.judge
 import compare.run.kernels
 import compare.run.runner
+import compare.run.workers
 import compare.sweep.store.files
 from compare.cli import app as cli
 from compare.engines import Engine
+from compare.run.plan import write_plan
 from compare.sweep.store.store import SweepStore
 
 COMMAND = "friction-discs "
@@ -66,8 +68,11 @@ def idle(monkeypatch, tmp_path):
         raise Understood
 
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "motions").mkdir()
+    write_plan(tmp_path / "motions", ["pin"], [])  # that of a document
     monkeypatch.setattr(compare.run.runner, "run", stop)
     monkeypatch.setattr(compare.judge.judge, "judge", stop)
+    monkeypatch.setattr(compare.run.workers.Workers, "finished", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
     monkeypatch.setattr(compare.sweep.store.files.Files, "write", stop)

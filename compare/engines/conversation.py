@@ -1,0 +1,353 @@
+"""A program that is kept alive and asked one line after the other, and that never outlives who asks.
+
+Whatever it does ends in a sentence: a time limit ends a program that does not answer, one that has answered nonsense
+is ended too, and after either the next question goes to a new one.
+"""
+
+from __future__ import annotations
+
+import atexit
+import math
+import multiprocessing
+import os
+import shutil
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from numpy.typing import ArrayLike
+
+from compare.engines.json_lines import (
+    BadLineError,
+    Greeting,
+    RefusedError,
+    answered,
+    greeting,
+    most_bytes,
+    question,
+)
+from compare.engines.program import own_name
+from reference_model.systems import System
+from reference_model.trajectory import Trajectory
+
+GREETING_LIMIT = 60.0
+"""In s: a program may have to be compiled when it starts."""
+
+GREETING_BYTES = 100_000
+
+TICK = 0.1
+"""In s: how often the time limit is looked at."""
+
+FAREWELL = 1.0
+"""Time in s that a program has to end by itself when nothing more is asked."""
+
+AT_ONCE = 1 << 18
+"""Bytes that are read from a pipe at once: all that it may hold."""
+
+LAST_LINES, LAST_BYTES = 3, 4000
+"""What is kept of a program's standard error."""
+
+POSIX = os.name == "posix"
+
+END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
+"""For a shell whose standard input we hold: it is closed when we are gone, killed perhaps."""
+
+
+class ProgramError(RuntimeError):
+    """A program has no answer; the message says why, with the last lines of its standard error."""
+
+
+def simulate(
+    command: tuple[str, ...],
+    folder: str,
+    system: System,
+    state: ArrayLike,
+    times: ArrayLike,
+    **accuracy: float,
+) -> Trajectory:
+    """Return what the program of ``command`` answers, started in ``folder`` if it does not run yet.
+
+    Raises
+    ------
+    UnsupportedSystemError
+        If the program says that it does not simulate this.
+    ProgramError
+        If it says that it failed, ends, hangs, or writes something else.
+    OSError
+        If it can't be started.
+
+    """
+    conversation = conversation_with(command, folder)
+    line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))
+    try:
+        return answered(line, system, times)
+    except RefusedError as error:
+        raise ProgramError(conversation.sentence(f"says: {error}")) from None
+    except BadLineError as error:
+        conversation.end()
+        raise ProgramError(conversation.sentence(str(error))) from None
+
+
+def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
+    """Return what the program promises; raise ``ValueError`` if it can't be started or does not greet."""
+    check_command(command, folder)
+    try:
+        return conversation_with(command, folder).greeting
+    except OSError as error:
+        raise ValueError(f"{command[0]} can't be started: {error.strerror}") from None
+    except ProgramError as error:
+        raise ValueError(str(error)) from None
+
+
+def check_command(command: tuple[str, ...], folder: str) -> None:
+    """Raise ``ValueError`` unless there is a program of that name."""
+    program = command[0]
+    if os.path.dirname(program):
+        found = Path(folder, program)
+        reason = (
+            ""
+            if os.access(found, os.X_OK)
+            else "it is not executable"
+            if found.exists()
+            else "it is not there"
+        )
+        reason = "it is a folder" if found.is_dir() else reason
+    else:
+        reason = "" if shutil.which(program) else "no folder of PATH has it"
+        if reason and Path(folder, program).is_file():
+            reason += f", write ./{program} for the one in this folder"
+    if reason:
+        raise ValueError(f"{program} can't be started: {reason}")
+
+
+_OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}
+
+
+def conversation_with(command: tuple[str, ...], folder: str) -> Conversation:
+    """Return this process's conversation with the program, a new one if the last has ended."""
+    key = os.getpid(), command, folder  # a process that was forked from this one has to have its own
+    found = _OPEN.get(key)
+    if found is None or found.over:
+        found = _OPEN[key] = Conversation(command, folder)
+    return found
+
+
+@atexit.register
+def end_all() -> None:
+    """End the programs that this process has started."""
+    for (process, _, _), conversation in list(_OPEN.items()):
+        if process == os.getpid():
+            conversation.end(FAREWELL)
+    _OPEN.clear()
+
+
+class Conversation:
+    """One process of a program.
+
+    Parameters
+    ----------
+    command : sequence of str
+        The program and its arguments.
+    folder : str
+        Where it is started.
+
+    Attributes
+    ----------
+    greeting : Greeting
+        What it promises.
+    over : bool
+        Whether it has ended.
+
+    """
+
+    def __init__(self, command: Sequence[str], folder: str) -> None:
+        self._name = own_name(command)
+        self.over = False
+        self._asking = threading.Lock()
+        # A session of its own: Ctrl-C is not for it, and all that it starts in turn can be ended with it.
+        self._process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=_environment(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            bufsize=0,
+            start_new_session=True,
+        )
+        streams = self._process.stdin, self._process.stdout, self._process.stderr
+        self._input, self._output, errors = (stream for stream in streams if stream is not None)
+        self._guard = _guard_of(self._process.pid) if POSIX else None
+        self._errors = _LastWords(errors)
+        self._watch = _Watch(self._kill)
+        try:
+            self.greeting = greeting(self._exchanged(b"", GREETING_BYTES, GREETING_LIMIT, "greeting"))
+        except ValueError as error:
+            self.end()
+            raise ProgramError(self.sentence(str(error))) from None
+
+    def ask(self, line: bytes, most: int) -> bytes:
+        """Write ``line`` and return the line that comes back, of at most some ``most`` bytes."""
+        with self._asking:
+            return self._exchanged(line, most, self.greeting.limit, "answer")
+
+    def sentence(self, what: str) -> str:
+        """Return "NAME did what", with its last words."""
+        said = self._errors.text(ended=self.over)
+        return f"{self._name} {what}" + (f"; its standard error ends with: {said}" if said else "")
+
+    def end(self, patience: float = 0.0) -> None:
+        """End the program, which has ``patience`` in s to do so by itself when its input is closed."""
+        if self.over:
+            return
+        self.over = True
+        self._watch.close()
+        with suppress(OSError):
+            self._input.close()
+        if patience > 0.0:
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)
+        self._kill()
+        self._process.wait()
+        self._output.close()
+        if self._guard is not None:
+            self._guard.kill()
+            self._guard.communicate()
+
+    def _kill(self) -> None:
+        with suppress(OSError):
+            if POSIX:
+                os.killpg(self._process.pid, signal.SIGKILL)
+            else:
+                self._process.kill()
+
+    def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
+        """Write ``line`` and return the next line; end the program where there is none, or more than one."""
+        self._watch.begin(limit)
+        try:
+            with suppress(BrokenPipeError):  # its end shows when it is read from
+                _write(self._input, line)
+            answer = _read(self._output, most)
+        except BaseException:  # Ctrl-C: what comes back then is no answer to the next question
+            self.end()
+            raise
+        in_time = self._watch.in_time()
+        if answer.endswith(b"\n") and in_time and answer.count(b"\n") == 1:
+            return answer
+        if not in_time:
+            why = f"gave no {what} within {limit:g} s"
+        elif len(answer) > most:
+            why = f"wrote {len(answer)} bytes as its {what} and no end of it"
+        elif b"\n" in answer:
+            why = f"wrote more than one line as its {what}"
+        else:
+            why = f"ended without {what} ({self._cause()})"
+        self.end()
+        raise ProgramError(self.sentence(why))
+
+    def _cause(self) -> str:
+        """Return how the program ended, once it has closed its output."""
+        try:
+            code = self._process.wait(FAREWELL)
+        except subprocess.TimeoutExpired:
+            return "it closed its output"
+        return signal.Signals(-code).name if code < 0 else f"exit status {code}"
+
+
+def _environment() -> dict[str, str]:
+    """Return that of this process, without what it was given as a worker, see ``compare.run.workers``."""
+    environment = dict(os.environ)
+    if multiprocessing.parent_process() is not None:
+        environment.pop("PYTHONSAFEPATH", None)  # a program in Python may import what is beside it
+    return environment
+
+
+def _guard_of(group: int) -> subprocess.Popen[bytes]:
+    """Return a process that ends those of ``group`` when this one is no more."""
+    return subprocess.Popen(
+        ("/bin/sh", "-c", END_WITH_US, str(group)),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
+def _write(stream: IO[bytes], line: bytes) -> None:
+    """Write all of ``line``: a pipe may take less at once."""
+    rest = memoryview(line)
+    while rest:
+        rest = rest[stream.write(rest) :]
+
+
+def _read(stream: IO[bytes], most: int) -> bytes:
+    """Return what comes up to the end of a line, or of the stream, or up to some more than ``most`` bytes."""
+    parts: list[bytes] = []
+    length = 0
+    while length <= most:
+        part = stream.read(AT_ONCE)
+        parts.append(part)
+        length += len(part)
+        if not part or b"\n" in part:
+            break
+    return b"".join(parts)
+
+
+class _Watch:
+    """Calls ``expire`` when a time limit has passed, at a cost of next to nothing where none does."""
+
+    def __init__(self, expire: Callable[[], None]) -> None:
+        self._expire = expire
+        self._deadline = math.inf
+        self._deciding = threading.Lock()
+        self._closed = threading.Event()
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def begin(self, limit: float) -> None:
+        """Let the limit of ``limit`` in s begin."""
+        self._deadline = time.monotonic() + limit
+
+    def in_time(self) -> bool:
+        """Return whether the limit has not passed, and will not any more."""
+        with self._deciding:
+            expired = self._deadline == -math.inf
+            self._deadline = math.inf
+        return not expired
+
+    def close(self) -> None:
+        """Look no more."""
+        self._closed.set()
+
+    def _run(self) -> None:
+        while not self._closed.wait(TICK):
+            with self._deciding:
+                if time.monotonic() > self._deadline > -math.inf:
+                    self._deadline = -math.inf
+                    self._expire()
+
+
+class _LastWords:
+    """Reads a program's standard error, so that it never waits for that, and keeps the end."""
+
+    def __init__(self, stream: IO[bytes]) -> None:
+        self._stream = stream
+        self._kept = b""
+        self._reader = threading.Thread(target=self._run, daemon=True)
+        self._reader.start()
+
+    def text(self, *, ended: bool) -> str:
+        """Return the last lines as one; where the program has ``ended``, all of them are waited for."""
+        if ended:
+            self._reader.join(FAREWELL)  # no longer: others may hold it open
+        lines = self._kept.decode(errors="replace").split("\n")
+        return " / ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:])
+
+    def _run(self) -> None:
+        with self._stream:
+            while part := self._stream.read(AT_ONCE):
+                self._kept = (self._kept + part)[-LAST_BYTES:]

@@ -1,0 +1,205 @@
+"""``fmu:FILE``: a model for co-simulation by the standards FMI 2 and 3 as an engine, by FMPy.
+
+Its parameters are called as those of the systems, and its outputs as their states: x, y, vx, vy, and angle and spin
+of a disc. A motion starts with ``x_start`` where there is such a variable, else with x itself, and so do the others.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import itertools
+import math
+import tempfile
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.engines.engine import Engine, UnsupportedSystemError
+from compare.engines.registry import Scheme, register_scheme
+from compare.engines.unseen import Unseen
+from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.trajectory import Trajectory
+
+POINTS = "contact_points"
+
+NONLINEAR = ("hardening", "stop_gap", "stop_stiffness")
+
+OPTIONAL = ("offset", *NONLINEAR)
+"""Parameters that a model may leave out: then they are 0."""
+
+
+class FmuError(RuntimeError):
+    """A model has no answer; the message says why."""
+
+
+@dataclass(frozen=True)
+class Fmu(Unseen):
+    """The ``simulate`` of a model.
+
+    Parameters
+    ----------
+    file : str
+        Where it is.
+
+    """
+
+    file: str
+
+    why: ClassVar[str] = "it is a model that was compiled elsewhere"
+
+    def __call__(
+        self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
+    ) -> Trajectory:
+        """Return the motion, in communication steps of at most the step in s, or from one time to the next.
+
+        Raises
+        ------
+        UnsupportedSystemError
+            If the system has a parameter that the model has not.
+        FmuError
+            If a call of the model fails.
+
+        """
+        name, model = Path(self.file).name, _model(self.file)
+        at, state = np.array(times, dtype=float), np.asarray(initial_state, dtype=float)
+        values = _values(system, state, model.variables)
+        try:
+            instance = model.instance()
+        except (
+            Exception
+        ) as error:  # of the library: for another platform, or without what a model has to have
+            raise FmuError(f"{name} can't be started: {error}") from None
+        try:
+            states = _states(instance, model, values, system, at, **accuracy)
+        except Exception as error:  # of FMPy, which has one class for each version of the standard
+            raise FmuError(f"{name}: {error}") from None
+        finally:
+            instance.freeInstance()
+        return Trajectory(system, at, states)
+
+
+@dataclass(frozen=True)
+class _Model:
+    """What is known of a model, and where its files are; ``folder`` is removed with this."""
+
+    description: Any
+    folder: tempfile.TemporaryDirectory[str]
+    variables: Mapping[str, Any]
+
+    @property
+    def newer(self) -> bool:
+        """Whether it is of FMI 3, which calls the same things by other names."""
+        return str(self.description.fmiVersion).startswith("3")
+
+    def instance(self) -> Any:
+        """Return a new instance, which has to be freed."""
+        return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
+
+
+def _fmpy() -> Any:
+    """Return FMPy, which is loaded only when a model is asked for."""
+    try:
+        return importlib.import_module("fmpy.simulation")
+    except ImportError as error:
+        raise ValueError(f"fmu:FILE needs FMPy, pip install 'friction-discs[fmu]': {error}") from None
+
+
+@functools.cache
+def _model(file: str) -> _Model:
+    """Return the model of a file, unpacked; raise ``ValueError`` if it is none."""
+    _fmpy()
+    fmpy, name = importlib.import_module("fmpy"), Path(file).name
+    try:
+        description = fmpy.read_model_description(file)
+    except Exception as error:  # of the archive, of its XML, or of what stands in it
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise ValueError(f"{name} is no model: {reason}") from None
+    if description.coSimulation is None or not str(description.fmiVersion).startswith(("2", "3")):
+        raise ValueError(
+            f"{name} is a model of FMI {description.fmiVersion}: it must be for co-simulation, by FMI 2 or 3"
+        )
+    folder = tempfile.TemporaryDirectory(prefix="friction-discs-")
+    fmpy.extract(file, folder.name)
+    return _Model(description, folder, {one.name: one for one in description.modelVariables})
+
+
+def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> dict[str, float]:
+    """Return what to set: parameters of the system, and the start."""
+    parameters = {name: value for name, value in asdict(system).items() if value is not None}
+    lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
+    if lacking:
+        raise UnsupportedSystemError(f"the model has no {', '.join(lacking)}")
+    starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
+    known = {name: value for name, value in parameters.items() if name in variables}
+    return known | {
+        f"{name}_start" if f"{name}_start" in variables else name: value for name, value in starts
+    }
+
+
+def _states(
+    instance: Any,
+    model: _Model,
+    values: Mapping[str, float],
+    system: System,
+    times: FloatArray,
+    tolerance: float | None = None,
+    step: float = math.inf,
+) -> FloatArray:
+    """Return the states at ``times`` (n,) of an instance that was not asked before, of shape (n, 4) or (n, 6)."""
+    for name, value in values.items():
+        variable = model.variables[name]
+        whole = "Int" in variable.type  # the number of points, by any of the standard's types
+        getattr(instance, f"set{variable.type}")(
+            [variable.valueReference], [int(value) if whole else float(value)]
+        )
+    if model.newer:
+        instance.enterInitializationMode(tolerance=tolerance, startTime=times[0])
+    else:
+        instance.setupExperiment(tolerance=tolerance, startTime=times[0])
+        instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    get = instance.getFloat64 if model.newer else instance.getReal
+    outputs = [model.variables[name].valueReference for name, _ in COLUMNS[type(system)]]
+    states = np.empty((len(times), len(outputs)))
+    states[0] = get(outputs)
+    for i, (start, end) in enumerate(itertools.pairwise(times), 1):
+        bounds = np.linspace(start, end, max(1, math.ceil((end - start) / step)) + 1)
+        for at, until in itertools.pairwise(bounds):
+            instance.doStep(at, until - at)
+        states[i] = get(outputs)
+    instance.terminate()
+    return states
+
+
+def fmu_engine(text: str) -> Engine:
+    """Return the engine "fmu:TEXT"; raise ``ValueError`` if the file is no model of a system."""
+    file = Path(text).resolve()
+    if not file.is_file():
+        raise ValueError(f"fmu:{text}: there is no such file")
+    model = _model(str(file))
+    kinds = _kinds(file.name, model.variables)
+    experiment = model.description.defaultExperiment
+    step = None if experiment is None or experiment.stepSize is None else float(experiment.stepSize)
+    nonlinear = set(NONLINEAR) <= set(model.variables)
+    return Engine(file.stem, Fmu(str(file)), kinds, nonlinear=nonlinear, phases=False, step=step)
+
+
+def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the kinds of systems that variables of these names are those of."""
+    disc = "spin" in variables
+    system = DiscOnDisc if disc else PinOnDisc
+    needed = [*(field.name for field in fields(system)), *(name for name, _ in COLUMNS[system])]
+    lacking = [one for one in needed if one not in variables and one not in (*OPTIONAL, POINTS)]
+    if lacking:
+        raise ValueError(
+            f"{name} is no model of a {'disc' if disc else 'pin'}: it has no {', '.join(lacking)}"
+        )
+    return (("points",) if POINTS in variables else ("ring",)) if disc else ("pin",)
+
+
+register_scheme("fmu", Scheme(fmu_engine, fmu_engine))

@@ -1,0 +1,176 @@
+"""What is said to a program that is an engine, and what it answers: a line of JSON each.
+
+The contract for authors is in ``docs/judge-your-engine.md``. Numbers are written with as many digits as they need to
+come back to the last bit.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import reprlib
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.engines.engine import UnsupportedSystemError
+from compare.engines.names import one_of
+from compare.engines.registry import DECLARED
+from reference_model.systems import PinOnDisc, System, finite_number
+from reference_model.trajectory import Phase, Trajectory, phases_of
+
+PROTOCOL = 1
+
+ANSWER_LIMIT = 60.0
+"""In s, for one motion, unless the program asks for another."""
+
+PHASES = ("slip", "pivot", "stick")
+
+_written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
+
+
+class BadLineError(RuntimeError):
+    """A program wrote what is no answer to the question; the message says why, as the end of "NAME ..."."""
+
+
+class RefusedError(RuntimeError):
+    """A program says that it has no answer; the message is its own."""
+
+
+@dataclass(frozen=True)
+class Greeting:
+    """The first line of a program: what it promises, all of it optional.
+
+    Parameters
+    ----------
+    promises : dict
+        Parameters of ``Engine``.
+    name, version : str
+        As the program calls itself.
+    limit : float
+        Time in s after which an answer is no longer waited for.
+
+    """
+
+    promises: dict[str, Any] = field(default_factory=dict)
+    name: str = ""
+    version: str = ""
+    limit: float = ANSWER_LIMIT
+
+    @property
+    def who(self) -> str:
+        """Name and version in a word or two, "" if neither is told."""
+        return " ".join(filter(None, (self.name, self.version)))
+
+
+def greeting(line: bytes) -> Greeting:
+    """Return what the first line of a program says; raise ``ValueError`` if it is none."""
+    try:
+        content = _object(line)
+    except BadLineError as error:
+        raise ValueError(str(error)) from None
+    for key in content:
+        one_of("word in its greeting", key, ("protocol", "name", "version", "limit", *DECLARED))
+    if content.get("protocol", PROTOCOL) != PROTOCOL:
+        raise ValueError(f"speaks protocol {content['protocol']!r}: known is {PROTOCOL}")
+    if not isinstance(content.get("kinds", []), list):
+        raise ValueError(f'greets with "kinds": {json.dumps(content["kinds"])}: it must be a list')
+    limit = finite_number("limit", content.get("limit", ANSWER_LIMIT))
+    if limit <= 0.0:
+        raise ValueError(f'greets with "limit": {limit:g}: it must be > 0 s')
+    promises = {key: content[key] for key in DECLARED if key in content}
+    return Greeting(promises, str(content.get("name", "")), str(content.get("version", "")), limit)
+
+
+def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
+    """Return the line that asks for a motion; ``accuracy`` is its tolerance, or the step in s."""
+    ((name, value),) = accuracy.items()
+    numbers = (_written(np.asarray(values, dtype=float).tolist()) for values in (state, times))
+    text = '{{"system":{},"state":{},"times":{},"{}":{!r}}}\n'.format(
+        _system(system), *numbers, name, float(value)
+    )
+    return text.encode("ascii")
+
+
+@functools.lru_cache(maxsize=64)  # the same system is asked for many times after each other
+def _system(system: System) -> str:
+    return _written({"kind": kind_of(system)} | asdict(system))
+
+
+def kind_of(system: System) -> str:
+    """Return what a program knows a system as: "pin", "ring" or "points"."""
+    if isinstance(system, PinOnDisc):
+        return "pin"
+    return "ring" if system.contact_points is None else "points"
+
+
+def most_bytes(system: System, times: ArrayLike) -> int:
+    """Return a length that no answer exceeds: numbers with all their digits and much white space, and phases."""
+    return 1_000_000 + 100 * system.state_size * np.size(times)
+
+
+def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
+    """Return the motion that a line tells, in the times (n,) that were asked for.
+
+    Raises
+    ------
+    UnsupportedSystemError, RefusedError
+        If the line says so.
+    BadLineError
+        If it is no answer. Shapes and numbers of the states are still to be looked at.
+
+    """
+    content = _object(line)
+    if "unsupported" in content:
+        raise UnsupportedSystemError(str(content["unsupported"]))
+    if "error" in content:
+        raise RefusedError(str(content["error"]))
+    if "states" not in content:
+        raise BadLineError(f'answered without "states": {_short(line)}')
+    states = _array("states", content["states"])
+    phases = _phases(content.get("phases", []), system, float(np.asarray(times)[-1]))
+    return Trajectory(system, np.array(times, dtype=float), states, phases)
+
+
+def _object(line: bytes) -> dict[str, Any]:
+    try:
+        content = json.loads(line)
+    except (ValueError, RecursionError):
+        raise BadLineError(f"wrote a line that is no JSON: {_short(line)}") from None
+    if not isinstance(content, dict):
+        raise BadLineError(f"wrote a line that is no JSON object: {_short(line)}")
+    return content
+
+
+def _array(name: str, rows: object) -> Any:
+    try:
+        return np.array(rows, dtype=float)
+    except (TypeError, ValueError):
+        raise BadLineError(
+            f'answered with "{name}" that are no rows of numbers, all as long: {reprlib.repr(rows)}'
+        ) from None
+
+
+def _phases(told: object, system: System, end: float) -> tuple[Phase, ...]:
+    """Return the phases that are told as objects with kind, start and the state there."""
+    begun = []
+    for phase in told if isinstance(told, list) else [told]:
+        if not isinstance(phase, dict) or phase.get("kind") not in PHASES:
+            raise BadLineError(
+                f'answered with a phase {reprlib.repr(phase)}: its "kind" must be one of {PHASES}'
+            )
+        start, state = _array("start", phase.get("start")), _array("state", phase.get("state"))
+        if start.shape != () or state.shape != (system.state_size,) or not np.isfinite([start, *state]).all():
+            raise BadLineError(
+                f'answered with a phase {reprlib.repr(phase)}: its "start" must be a time, '
+                f'and "state" {system.state_size} numbers'
+            )
+        begun.append((phase["kind"], float(start), state))
+    return phases_of(begun, end) if begun else ()
+
+
+def _short(line: bytes) -> str:
+    text = line.decode(errors="replace").strip()
+    return repr(text if len(text) <= 60 else f"{text[:57]}...")

@@ -1,0 +1,109 @@
+"""``exec:COMMAND``: a program of any language as an engine, asked by lines of JSON."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any, ClassVar
+
+from numpy.typing import ArrayLike
+
+from compare.engines.engine import Engine
+from compare.engines.registry import Scheme, register_scheme
+from compare.engines.unseen import Unseen
+from reference_model.systems import System
+from reference_model.trajectory import Trajectory
+
+INTERPRETERS = re.compile(
+    r"(python|pypy|node|deno|bun|julia|ruby|perl|lua|php|java|mono|dotnet|octave|Rscript|sbcl|guile|sh|bash|env|wine)"
+    r"[\d.]*"
+)
+"""Programs that are known by what they run."""
+
+
+def _conversation() -> Any:
+    """Return the module that starts programs, loaded only when one is asked for."""
+    return importlib.import_module("compare.engines.conversation")
+
+
+@dataclass(frozen=True)
+class Program(Unseen):
+    """The ``simulate`` of a program: whichever process calls it has a process of the program for itself.
+
+    Parameters
+    ----------
+    command : tuple of str
+        The program and its arguments.
+    folder : str
+        Where it is started.
+
+    """
+
+    command: tuple[str, ...]
+    folder: str
+
+    why: ClassVar[str] = "it is a program, and what that consists of no import says"
+
+    def __call__(
+        self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
+    ) -> Trajectory:
+        """Ask for a motion."""
+        trajectory: Trajectory = _conversation().simulate(
+            self.command, self.folder, system, initial_state, times, **accuracy
+        )
+        return trajectory
+
+
+def program_engine(text: str) -> Engine:
+    """Return the engine "exec:TEXT" with what the program promises; raise ``ValueError`` if there is none."""
+    program = _program(text)
+    greeting = _conversation().greeting_of(program.command, program.folder)
+    name = name_of(program.command)
+    about = f"{name} is a program that calls itself {greeting.who}." if greeting.who else ""
+    try:
+        return Engine(name, program, about=about, **{"phases": False, **greeting.promises})
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} greets with {greeting.promises}: {error}") from None
+
+
+def check_program(text: str) -> None:
+    """Raise ``ValueError`` unless "exec:TEXT" names a program that is there."""
+    program = _program(text)
+    _conversation().check_command(program.command, program.folder)
+
+
+def _program(text: str) -> Program:
+    try:
+        command = tuple(shlex.split(text))
+    except ValueError as error:
+        raise ValueError(f"exec:{text}: {str(error).lower()}") from None
+    if not command or not command[0]:
+        raise ValueError(f"exec:{text}: a command has to follow, as in exec:./my_engine")
+    return Program(command, os.getcwd())
+
+
+def name_of(command: Sequence[str]) -> str:
+    """Return what an engine is called: its program's own name, and the arguments that follow."""
+    return " ".join([own_name(command), *_run(command)[1:]])
+
+
+def own_name(command: Sequence[str]) -> str:
+    """Return the name of the program, or of what an interpreter runs, without folder and ending."""
+    path = PurePath(_run(command)[0])
+    return path.stem if path.suffix.lstrip(".").isalpha() else path.name
+
+
+def _run(command: Sequence[str]) -> Sequence[str]:
+    """Return the command without an interpreter and its options."""
+    if not INTERPRETERS.fullmatch(PurePath(command[0]).name.removesuffix(".exe")):
+        return command
+    own = next((i for i, word in enumerate(command) if i > 0 and not word.startswith("-")), 0)
+    return command[own:]
+
+
+register_scheme("exec", Scheme(program_engine, check_program))

@@ -1,0 +1,179 @@
+"""Models for co-simulation as engines: one that is right agrees, one with a mistake differs, others are refused."""
+
+import shutil
+import subprocess
+import zipfile
+from dataclasses import asdict, replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed")
+pytest.importorskip("fmpy.fmi3")
+
+from compare.claims.claim import Verdict  # noqa: E402
+from compare.claims.paper_parameters import FIG5, FIG11  # noqa: E402
+from compare.cli import app as cli  # noqa: E402
+from compare.engines import UnsupportedSystemError, engines, fmu  # noqa: E402
+from compare.engines.fmu import FmuError  # noqa: E402
+from compare.studies.engines.trajectories import STUDY  # noqa: E402
+from reference_model.systems import COLUMNS  # noqa: E402
+
+SOURCE = Path(__file__).with_name("pin_fmu.c")
+COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
+STATES = ("x", "y", "vx", "vy")
+START = (0.9, 0.0, 0.0, 0.9)
+STEP = '<DefaultExperiment stepSize="0.002"/>'
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+
+
+def description(fmi, names, interface="CoSimulation"):
+    """Return the description of a model of these variables, in the order of the source."""
+    places = [(PARAMETERS + STATES).index(name) for name in names]
+    parameter, output = 'causality="parameter" variability="tunable"', 'causality="output"'
+    known = [
+        f'name="{name}" valueReference="{at}" initial="exact" {parameter if name in PARAMETERS else output}'
+        for name, at in zip(names, places, strict=True)
+    ]
+    if fmi == 2:
+        head = 'fmiVersion="2.0" guid="{1}"'
+        variables = (f'<ScalarVariable {one}><Real start="0"/></ScalarVariable>' for one in known)
+        unknown = (f'<Unknown index="{i}"/>' for i, name in enumerate(names, 1) if name in STATES)
+        structure = f"<Outputs>{''.join(unknown)}</Outputs>"
+    else:
+        head = 'fmiVersion="3.0" instantiationToken="{1}"'
+        time = '<Float64 name="time" valueReference="99" causality="independent" variability="continuous"/>'
+        variables = (time, *(f'<Float64 {one} start="0"/>' for one in known))
+        structure = "".join(f'<Output valueReference="{at}"/>' for at in places if at >= len(PARAMETERS))
+    return (
+        f'<fmiModelDescription {head} modelName="pin"><{interface} modelIdentifier="pin"/>'
+        f"{STEP if fmi == 2 else ''}<ModelVariables>{''.join(variables)}</ModelVariables>"
+        f"<ModelStructure>{structure}</ModelStructure></fmiModelDescription>"
+    )
+
+
+def rest(folder, fmi):
+    """Return a source of all that a library has to have and nothing calls."""
+    master = fmpy.fmi2.FMU2Slave if fmi == 2 else fmpy.fmi3.FMU3Slave
+    names = [name for name in dir(master) if name.startswith(f"fmi{fmi}") and name not in SOURCE.read_text()]
+    path = folder / f"rest{fmi}.c"
+    path.write_text("".join(f"int {name}(void) {{ return 3; }}\n" for name in names))
+    return path
+
+
+@pytest.fixture(scope="session")
+def packed(tmp_path_factory):
+    """Makes models, and names their files."""
+    folder = tmp_path_factory.mktemp("models")
+
+    def pack(name, fmi=2, mistake=1, names=PARAMETERS + STATES, **more):
+        library = folder / f"{name}.so"
+        options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+        defined = [f"-DFMI={fmi}", f"-DMISTAKE={mistake}"]
+        sources = [str(SOURCE), str(rest(folder, fmi))]
+        subprocess.run([COMPILER, *options, *defined, "-o", str(library), *sources, "-lm"], check=True)
+        platform = fmpy.platform if fmi == 2 else fmpy.platform_tuple
+        with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
+            archive.writestr("modelDescription.xml", description(fmi, names, **more))
+            archive.write(library, f"binaries/{platform}/pin{fmpy.sharedLibraryExtension}")
+        return folder / f"{name}.fmu"
+
+    return pack
+
+
+@pytest.fixture(scope="session", params=[2, 3], ids=["FMI 2", "FMI 3"])
+def right(packed, request):
+    (engine,) = engines([f"fmu:{packed(f'right{request.param}', request.param)}"])
+    return engine
+
+
+def moves(engine):
+    (claim,) = STUDY.measure(engine, only=["moves/a pin"]).claims
+    return claim.verdict
+
+
+def test_a_model_that_is_right_agrees(right):
+    assert moves(right) is Verdict.AGREES
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_model_with_a_mistake_differs(packed, fmi):
+    (engine,) = engines([f"fmu:{packed(f'wrong{fmi}', fmi, mistake=2)}"])
+    assert moves(engine) is Verdict.DIFFERS
+
+
+def test_a_model_promises_what_its_variables_say(right):
+    assert (right.kinds, right.nonlinear, right.phases) == (("pin",), False, False)
+    assert right.step == (2e-3 if right.name == "right2" else None)
+    assert right.lacking([FIG11, replace(FIG5, hardening=1.0)]).endswith(
+        "a disc on a continuous ring or a pin on a nonlinear support"
+    )
+
+
+class Stub:
+    """An instance that stays where it is, and a list of what it was told."""
+
+    def __init__(self):
+        self.told = {}
+
+    def __getattr__(self, name):
+        if name.startswith("get"):
+            return lambda references: [self.told[reference] for reference in references]
+        if name.startswith("set"):
+            return lambda references, values: self.told.update(zip(references, values, strict=True))
+        return lambda *arguments, **more: None
+
+
+@pytest.mark.parametrize(("points", "kind"), [(None, "ring"), (6, "points")])
+def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(points, kind):
+    disc, start = replace(FIG11, contact_points=points), np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+    names = [*asdict(FIG11), *(name for name, _ in COLUMNS[type(disc)])]
+    names = [name for name in names if points or name != "contact_points"]
+    variables = {
+        name: SimpleNamespace(type="Int32" if name == "contact_points" else "Float64", valueReference=name)
+        for name in names
+    }
+    model = fmu._Model(SimpleNamespace(fmiVersion="3.0"), None, variables)
+    stub = Stub()
+    states = fmu._states(stub, model, fmu._values(disc, start, variables), disc, np.array([0.0, 1.0]))
+    np.testing.assert_array_equal(states, [start, start])
+    assert stub.told.get("contact_points") == points
+    assert fmu._kinds("disc.fmu", variables) == (kind,)
+
+
+def test_a_motion_may_start_at_any_time_and_is_the_same_each_time(right):
+    times = np.array([0.0, 0.1, 0.1 + 1e-9, 1.0])
+    found = [right.simulate(FIG5, START, shift + times).states for shift in (0.0, 0.0, 8.0)]
+    np.testing.assert_array_equal(found[1], found[0])
+    np.testing.assert_allclose(found[2], found[0], atol=1e-9)
+
+
+def test_a_call_that_fails_is_told(right):
+    with pytest.raises(FmuError, match=r"^right[23]\.fmu: fmi[23]DoStep failed with status 3 \(error\)\.$"):
+        right.simulate(replace(FIG5, mass=200.0), START, [0.0, 1.0])
+
+
+def test_a_parameter_that_the_model_lacks_is_not_attempted_unless_it_is_nothing(packed):
+    centred = tuple(name for name in PARAMETERS + STATES if name != "offset")
+    (engine,) = engines([f"fmu:{packed('centred', names=centred)}"])
+    engine.simulate(replace(FIG5, offset=0.0), START, [0.0, 0.1])
+    with pytest.raises(UnsupportedSystemError, match="the model has no offset"):
+        engine.simulate(FIG5, START, [0.0, 0.1])
+
+
+def test_what_is_no_model_of_a_system_is_refused_in_one_sentence(packed, tmp_path, capsys):
+    (tmp_path / "text.fmu").write_text("no archive")
+    lacking = packed("lacking", names=tuple(name for name in PARAMETERS + STATES if name != "mass"))
+    for file, reason in (
+        (tmp_path / "missing.fmu", "there is no such file"),
+        (tmp_path / "text.fmu", "text.fmu is no model: "),
+        (lacking, "lacking.fmu is no model of a pin: it has no mass"),
+        (packed("exchange", interface="ModelExchange"), "exchange.fmu is "),
+    ):
+        assert cli.status(["report", "--engine", f"fmu:{file}", "--output", str(tmp_path)]) == 2
+        (sentence,) = capsys.readouterr().err.splitlines()
+        assert reason in sentence

@@ -1,0 +1,154 @@
+"""Motions from a folder of files: what is there is taken, what is missing is named, what is wrong is told."""
+
+import json
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.cli import app as cli
+from compare.cli.trajectory_files import write_csv
+from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
+from compare.engines.json_lines import question
+from compare.engines.motion_files import BadFileError, name_of
+from compare.run.code_files import UnknownCodeError
+from compare.run.fingerprint import fingerprint
+from compare.run.plan import write_plan
+from compare.run.stamp import PACKAGES
+from reference_model import simulate
+
+START = (0.1, 0.0, 0.03, 0.0)
+TIMES = (0.0, 1.0 / 3.0, 1.0)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    folder = tmp_path / "motions"
+    folder.mkdir()
+    write_plan(folder, ["pin"], [question(FIG5, START, TIMES, {"tolerance": 1e-9})])
+    return folder
+
+
+@pytest.fixture
+def answer(folder):
+    """Writes the answer, with some change, and returns what the engine makes of it."""
+    exact = simulate(FIG5, START, TIMES)
+    (asked,) = (path for path in folder.glob("*.json") if path.name != "plan.json")
+    path = asked.with_suffix(".csv")
+
+    def ask(change=lambda text: text):
+        with open(path, "w", encoding="utf-8") as stream:
+            write_csv(exact, "mine", stream)
+        path.write_text(change(path.read_text("utf-8")), "utf-8")
+        (engine,) = engines([f"files:{folder}"])
+        return engine.simulate(FIG5, START, TIMES)
+
+    ask.exact, ask.path = exact, path
+    return ask
+
+
+def test_what_simulate_has_written_is_an_answer_to_the_last_bit(answer):
+    np.testing.assert_array_equal(answer().states, answer.exact.states)
+
+
+def test_a_line_of_names_may_be_missing_and_empty_lines_do_no_harm(answer):
+    found = answer(lambda text: text.partition("\n")[2].replace("\n", "\r\n\r\n"))
+    np.testing.assert_array_equal(found.states, answer.exact.states)
+
+
+def test_the_engine_is_called_by_its_folder_and_promises_what_was_planned(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (engine,) = engines(["files:motions"])
+    assert (engine.name, engine.kinds, engine.phases) == ("motions", ("pin",), False)
+    assert engine.lacking([FIG11]) == "motions does not simulate a disc on a continuous ring"
+    with pytest.raises(UnknownCodeError, match="files, which may have changed"):
+        fingerprint(engine, PACKAGES)
+
+
+def lines(change):
+    """Return a change of the text that changes the list of its lines."""
+    return lambda text: "\n".join(change(text.splitlines())) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lines(lambda rows: rows[:-1]), "ends after 2 of 3 times, before t = 1 s"),
+        (lines(lambda rows: rows[:1]), "ends after 0 of 3 times, before t = 0 s"),
+        (lambda text: "", "ends after 0 of 3 times, before t = 0 s"),
+        (lambda text: text[: text.rindex(",")], "ends after 2 of 3 times, before t = 1 s"),
+    ],
+)
+def test_what_is_cut_short_is_named_and_not_scored(change, reason, answer):
+    with pytest.raises(UnsupportedSystemError) as error:
+        answer(change)
+    assert str(error.value) == f"motions/{answer.path.name} {reason}"
+
+
+def test_what_is_missing_is_named_and_not_scored(answer, folder):
+    (engine,) = engines([f"files:{folder}"])
+    with pytest.raises(UnsupportedSystemError, match=f"^motions/{answer.path.name} is missing$"):
+        engine.simulate(FIG5, START, TIMES)
+    with pytest.raises(UnsupportedSystemError, match=r"^motions has no such motion"):
+        engine.simulate(FIG5, START, TIMES, tolerance=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "reason"),
+    [
+        (lines(lambda rows: [*rows, rows[-1]]), BadFileError, " has 4 rows: 3 times were asked for"),
+        (
+            lines(lambda rows: [rows[0], rows[1], rows[2] + ",1", rows[3]]),
+            BadFileError,
+            ", line 3, has 6 numbers: it must have 5, t, x, y, vx, vy",
+        ),
+        (
+            lines(lambda rows: [rows[0], rows[1], "1,2,three,4,5", rows[3]]),
+            BadFileError,
+            ", line 3, is not made of numbers: '1,2,three,4,5'",
+        ),
+        (
+            lines(lambda rows: [rows[0], rows[1], "0.3,2,nan,4,5", rows[3]]),
+            BadFileError,
+            ", line 3, has a number that is not finite",
+        ),
+        (
+            lines(lambda rows: [rows[0], rows[1], rows[1], rows[3]]),
+            BadTrajectoryError,
+            "times[1] = 0.0 s: 0.3333333333333333 s was asked for",
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_told_with_its_line(change, kind, reason, answer):
+    with pytest.raises(kind) as error:
+        answer(change)
+    assert str(error.value).endswith(reason)
+    assert kind is BadTrajectoryError or str(error.value).startswith(f"motions/{answer.path.name}")
+
+
+@pytest.mark.parametrize(
+    ("index", "reason"),
+    [
+        (None, "No such file or directory; friction-discs plan writes it"),
+        ("{", "it is no plan of this version"),
+        (json.dumps({"format": 0, "kinds": [], "motions": []}), "it is no plan of this version"),
+        (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is no plan of this version"),
+    ],
+)
+def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folder, capsys):
+    if index is None:
+        (folder / "plan.json").unlink()
+    else:
+        (folder / "plan.json").write_text(index)
+    assert cli.status(["report", "--engine", f"files:{folder}"]) == 2
+    assert capsys.readouterr().err == f"motions/plan.json can't be read: {reason}\n"
+    with pytest.raises(ValueError, match=reason):
+        known_name(f"files:{folder}")
+
+
+def test_another_question_has_other_files():
+    lines = {
+        question(FIG5, START, TIMES, {"tolerance": tolerance})
+        for tolerance in (1e-9, 1e-9 * (1.0 + 2.0**-52), 1.25e-10)
+    }
+    assert len({name_of(line) for line in lines}) == 3

@@ -1,0 +1,144 @@
+"""What studies ask for, as far as it does not depend on the answers."""
+
+import json
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from compare.claims.error_estimates import refined
+from compare.claims.measured import Measured
+from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.study import Study
+from compare.cli import app as cli
+from compare.cli.trajectory_files import write_csv
+from compare.engines import engines
+from compare.run.plan import planned
+from reference_model import PinOnDisc, simulate
+
+STUDY = Study("planned", "A study of all sorts", "")
+START = (0.1, 0.0, 0.03, 0.0)
+MORE = {"unit": "m", "resolution": 1e-6}
+
+
+@lru_cache
+def radius(engine, tolerance):
+    return float(np.hypot(*engine.simulate(FIG5, START, (0.0, 1.0), tolerance=tolerance).states[-1, :2]))
+
+
+def measured(quantity):
+    found = refined(quantity)
+    exact = simulate(FIG5, START, (0.0, 1.0), tolerance=1e-12)
+    return Measured(predicted=np.hypot(*exact.states[-1, :2]), value=found.value, error=found.largest)
+
+
+@STUDY.claim("The radius is found", **MORE)
+def fixed(engine):
+    return measured(lambda tolerance: radius(engine, tolerance))
+
+
+@STUDY.claim("The radius is found once more, from what is kept", **MORE)
+def fixed_again(engine):
+    return measured(lambda tolerance: radius(engine, tolerance))
+
+
+@STUDY.claim("Where a motion ends another begins", **MORE)
+def chained(engine):
+    end = engine.simulate(FIG5, START, (0.0, 1.0)).states[-1]
+    engine.simulate(FIG5, end, (0.0, 1.0))
+    return measured(lambda tolerance: radius(engine, tolerance))
+
+
+@STUDY.claim("Stick is looked for in the states", **MORE)
+def looked_closer(engine):
+    assert engine.simulate(FIG5, START, (0.0, 15.0)).phases
+    return measured(lambda tolerance: radius(engine, tolerance))
+
+
+@STUDY.claim("A disc moves", **MORE)
+def of_a_disc(engine):
+    engine.simulate(FIG11, (*START, 0.0, 0.0), (0.0, 0.1))
+    return measured(lambda tolerance: radius(engine, tolerance))
+
+
+def questions(found):
+    return [json.loads(line) for line in found.motions]
+
+
+def test_claims_that_ask_the_same_of_any_engine_are_planned_and_others_are_not():
+    found = planned(STUDY, ("pin",))
+    assert (found.claims, found.adaptive) == (2, 2)
+    assert [question["tolerance"] for question in questions(found)] == [1e-9, 1.25e-10]
+    assert {question["system"]["kind"] for question in questions(found)} == {"pin"}
+
+
+def test_what_another_kind_of_engine_is_asked_is_planned_for_that():
+    found = planned(STUDY, ("pin", "ring"))
+    assert (found.claims, found.adaptive) == (3, 2)
+    assert {question["system"]["kind"] for question in questions(found)} == {"pin", "ring"}
+
+
+def test_the_plan_of_the_command_line_is_judged_when_it_is_answered(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.status(["plan", "--jobs", "1"], (STUDY,)) == 0
+    out = capsys.readouterr().out
+    assert "planned: 2 motions for 2 claims, 2 left out" in out
+    assert "report --engine files:plan" in out
+    paths = [path for path in (tmp_path / "plan").glob("*.json") if path.name != "plan.json"]
+    assert len(paths) == 2
+    (engine,) = engines(["files:plan"])
+    empty = STUDY.measure(engine)
+    assert empty.claims == ()
+    assert all(
+        path.with_suffix(".csv").name in empty.not_simulated for path in paths[:1] if _asked_first(path)
+    )
+    for path in paths:
+        question = json.loads(path.read_text())
+        assert question["system"].pop("kind") == "pin"
+        pin = PinOnDisc(**question["system"])
+        found = simulate(pin, question["state"], question["times"], tolerance=question["tolerance"])
+        with open(path.with_suffix(".csv"), "w", encoding="utf-8") as stream:
+            write_csv(found, "mine", stream)
+    judged = STUDY.measure(engine)
+    assert [claim.sentence for claim in judged.claims] == [
+        "The radius is found",
+        "The radius is found once more, from what is kept",
+    ]
+    assert {claim.verdict.name for claim in judged.claims} == {"AGREES"}
+    assert "plan has no such motion" in judged.not_simulated
+
+
+def _asked_first(path):
+    return json.loads(path.read_text())["tolerance"] == 1e-9
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--kind", "sphere"], "unknown kind of system 'sphere'"),
+        (
+            ["--level", "quick", "planned"],
+            "--level quick chooses the studies: leave out planned, or the level",
+        ),
+        (["--kind", "points"], "no study of these asks for motions that do not depend on the answers"),
+    ],
+)
+def test_a_plan_that_there_is_none_of_is_refused_in_one_sentence(arguments, reason, tmp_path, capsys):
+    assert cli.status(["plan", *arguments, "--jobs", "1", "--output", str(tmp_path)], (STUDY,)) == 2
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert reason in sentence
+    assert not (tmp_path / "plan.json").exists()
+
+
+def test_a_study_that_fails_with_the_answers_of_the_reference_is_told_and_the_others_are_planned(
+    tmp_path, capsys
+):
+    broken = Study("broken", "A study with a mistake", "", by_hand=_broken)
+    assert cli.status(["plan", "--jobs", "1", "--output", str(tmp_path)], (broken, STUDY)) == 1
+    said = capsys.readouterr()
+    assert said.err.startswith("broken can't be planned: a mistake (test_plan.py:")
+    assert said.out.startswith("planned: 2 motions for 2 claims, 2 left out")
+
+
+def _broken(engine):
+    raise ValueError("a mistake")

@@ -1,0 +1,72 @@
+"""The examples in other languages are engines, over ``exec:``, wherever there is what runs them."""
+
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from compare.claims.claim import Verdict
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.engines import UnsupportedSystemError, engines
+from compare.studies.engines.trajectories import STUDY
+from reference_model import simulate
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
+NODE = shutil.which("node")
+
+DRAWN = "with parameters from the whole range"
+
+in_c = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+in_javascript = pytest.mark.skipif(NODE is None, reason="there is no node")
+
+
+@pytest.fixture(scope="session")
+def compiled(tmp_path_factory):
+    """The engine of the example in C, compiled without a word of warning."""
+    program = tmp_path_factory.mktemp("in c") / "exec_pin"
+    options = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2"]
+    source = EXAMPLES / "exec_pin.c"
+    subprocess.run([COMPILER, *options, "-o", str(program), str(source), "-lm"], check=True)
+    (engine,) = engines([f"exec:{shlex.quote(str(program))}"])
+    return engine
+
+
+def in_node():
+    (engine,) = engines([f"exec:{shlex.join([NODE, str(EXAMPLES / 'exec_pin.js')])}"])
+    return engine
+
+
+@in_c
+def test_the_pin_in_c_sticks_nine_times_as_the_reference_does_and_better_with_a_smaller_tolerance(compiled):
+    times = np.linspace(0.0, 60.0, 101)
+    exact = simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=1e-12).states
+    errors = [
+        np.max(np.abs(compiled.simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=t).states - exact))
+        for t in (1e-8, 1e-9)
+    ]
+    assert errors[0] < 1e-5
+    assert errors[1] < 0.2 * errors[0]
+
+
+@in_c
+@pytest.mark.parametrize("case", ["a pin", "a pin that sticks on its way", f"pins {DRAWN}"])
+def test_the_pin_in_c_moves_as_the_study_of_plain_motions_claims(compiled, case):
+    (claim,) = STUDY.measure(compiled, only=[f"moves/{case}"]).claims
+    assert claim.verdict is Verdict.AGREES
+
+
+@in_javascript
+@pytest.mark.parametrize("case", ["a pin", f"pins on stops {DRAWN}"])
+def test_the_pin_in_javascript_moves_as_the_study_of_plain_motions_claims(case):
+    (claim,) = STUDY.measure(in_node(), only=[f"moves/{case}"]).claims
+    assert claim.verdict is Verdict.AGREES
+
+
+@in_javascript
+def test_the_pin_in_javascript_knows_no_stick():
+    with pytest.raises(UnsupportedSystemError, match="does not simulate stick"):
+        in_node().simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 15.0])
