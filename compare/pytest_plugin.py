@@ -36,6 +36,9 @@ NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
 
 PROPERTY = "friction-discs"
 
+NOTHING_SHOWN = 6
+"""Exit status beyond those of pytest: no claim differs, but too few say anything."""
+
 
 # Options of these names may well be another's: they are there only for a run that asks for this package.
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser) -> None:
@@ -75,6 +78,14 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         default=120.0,
         metavar="SECONDS",
         help="time after which a study of an engine is given up (default: 120)",
+    )
+    group.addoption(
+        "--min-conclusive",
+        dest="friction_discs_least",
+        type=int,
+        default=1,
+        metavar="N",
+        help=f"how many claims have to pass or fail; with fewer, pytest ends with status {NOTHING_SHOWN} (default: 1)",
     )
 
 
@@ -316,8 +327,41 @@ def _why_none(report: pytest.TestReport) -> str:
     return next((str(value) for name, value in report.user_properties if name == PROPERTY), "")
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say why claims have no verdict, each reason once."""
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """End with a status of its own where nothing was shown."""
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if not _engines(session.config) or exitstatus != pytest.ExitCode.OK or reporter is None:
+        return
+    if session.config.getoption("collectonly"):
+        return
+    if len(reporter.stats.get("passed", [])) < session.config.getoption("friction_discs_least"):
+        session.exitstatus = NOTHING_SHOWN
+
+
+def _diagnoses(config: pytest.Config, failed: list[pytest.TestReport]) -> Iterator[str]:
+    """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
+    from compare.diagnosis.run import diagnosed
+    from compare.engines import engines
+
+    names = [name for name in _engines(config) if len(_engines(config)) == 1 or _is_named(name, failed)]
+    for name in names:
+        try:
+            yield from (f"{row.engine}: {' '.join(row.sentences)}" for row in diagnosed(engines([name])))
+        except ValueError as error:  # it can't even be imported
+            yield str(error)
+
+
+def _is_named(name: str, reports: list[pytest.TestReport]) -> bool:
+    return any(report.nodeid.endswith(f"[{name}]") for report in reports)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say why claims have no verdict, each reason once, and what is behind those that differ."""
+    failed = terminalreporter.stats.get("failed", [])
+    if failed and _engines(config) and not hasattr(config, "workerinput"):
+        for line in _diagnoses(config, failed):
+            terminalreporter.write_line(f"diagnosis: {line}")
     for why in NO_VERDICT:
         reports = terminalreporter.stats.get(why, [])
         reasons = Counter(report.longrepr[2].removeprefix("Skipped: ").splitlines()[0] for report in reports)

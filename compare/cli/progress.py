@@ -1,8 +1,9 @@
-"""Progress bars: on a terminal, and nothing at all elsewhere."""
+"""Progress: a bar on a terminal, and of measurements a line now and then elsewhere."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -10,12 +11,15 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from compare.sweep.compute.run import Progress
 
+SELDOM = 10.0
+"""In s, between lines where there is no terminal."""
+
 
 @contextmanager
 def measurements() -> Iterator[Callable[[int, int, str], None]]:
-    """Show how many measurements are done on a terminal, and nothing at all elsewhere."""
+    """Show how many measurements are done: a bar on a terminal, and a line every ``SELDOM`` seconds elsewhere."""
     if not sys.stderr.isatty():
-        yield lambda done, total, name: None
+        yield _lines()
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -24,6 +28,18 @@ def measurements() -> Iterator[Callable[[int, int, str], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("")
         yield lambda done, total, name: bar.update(task, completed=done, total=total, description=name)
+
+
+def _lines() -> Callable[[int, int, str], None]:
+    last = time.monotonic()
+
+    def show(done: int, total: int, name: str) -> None:
+        nonlocal last
+        if time.monotonic() - last >= SELDOM:
+            last = time.monotonic()
+            print(f"{done} of {total}: {name}", file=sys.stderr, flush=True)
+
+    return show
 
 
 @contextmanager

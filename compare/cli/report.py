@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.command import FINE, INTERRUPTED, NOTHING_SHOWN, SOMETHING_DIFFERS, printing, refused, say
 from compare.cli.options import (
     Folder,
     Jobs,
@@ -18,10 +18,12 @@ from compare.cli.options import (
     cores,
     positive,
     studies_of,
+    whole,
 )
 from compare.cli.progress import measurements
 
 if TYPE_CHECKING:
+    from compare.engines import Engine
     from compare.report.matrix import Matrix
     from compare.run.runner import Run
     from compare.run.workers import Failure
@@ -64,20 +66,32 @@ Limit = Annotated[
 ]
 
 
+LeastConclusive = Annotated[
+    int,
+    typer.Option(
+        "--min-conclusive",
+        metavar="N",
+        help="How many verdicts there have to be that are neither inconclusive nor missing.",
+        parser=whole("min-conclusive", 0, 1_000_000),
+    ),
+]
+
+
 def report(
     context: typer.Context,
     names: Names = None,
     engine: Engines = None,
     level: Level = "full",
     study_limit: Limit = None,
+    min_conclusive: LeastConclusive = 1,
     output: Folder = Path("report"),
     jobs: Jobs = None,
     resume: Resume = False,
 ) -> int:
     """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
 
-    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, and
-    130 after Ctrl-C; the report then holds what was finished, and --resume does the rest. Files of data that
+    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
+    little was conclusive, and 130 after Ctrl-C; the report then holds what was finished, and --resume does the rest. Files of data that
     an engine of your own reads are not looked at then: when they change, measure anew.
 
     \b
@@ -116,10 +130,33 @@ def report(
         matrix = write_report(result, output)
     with printing():
         _print_summary(result, matrix, output / "index.html")
-    return _status(result, matrix)
+    if not result.interrupted:
+        suspects = tuple(one for one in chosen if _is_suspect(matrix, one.name))
+        with measurements() as progress:
+            _print_diagnoses(suspects, jobs or cores(), progress)
+    return _status(result, matrix, min_conclusive)
 
 
-def _status(result: Run, matrix: Matrix) -> int:
+def _is_suspect(matrix: Matrix, engine: str) -> bool:
+    """Return whether any claim of an engine differs or has no result."""
+    from compare.report.matrix import State
+
+    found = matrix.count(engine)
+    return bool(found[State.DIFFERS] or found[State.FAILED])
+
+
+def _print_diagnoses(
+    suspects: tuple[Engine, ...], jobs: int, progress: Callable[[int, int, str], None]
+) -> None:
+    """Print what is behind the claims of engines that differ, in a few sentences."""
+    from compare.diagnosis.run import diagnosed
+
+    for row in diagnosed(suspects, jobs=jobs, progress=progress):
+        with printing():
+            print(f"{row.engine}: {' '.join(row.sentences)}")
+
+
+def _status(result: Run, matrix: Matrix, least_conclusive: int) -> int:
     """Return the exit status of a report; say what is missing of one that was interrupted."""
     from compare.report.matrix import State
 
@@ -129,7 +166,12 @@ def _status(result: Run, matrix: Matrix) -> int:
             f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
         )
     wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
-    return SOMETHING_DIFFERS if wrong else FINE
+    if wrong:
+        return SOMETHING_DIFFERS
+    conclusive = matrix.totals[State.AGREES]
+    if conclusive < least_conclusive:
+        return say(f"{conclusive} verdicts are conclusive: {least_conclusive} are asked for", NOTHING_SHOWN)
+    return FINE
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:

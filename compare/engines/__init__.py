@@ -17,7 +17,8 @@ import os
 os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError
-from compare.engines.built_in import ByName, compiled, exudyn, exudyn_native, plain, reference
+from compare.engines.built_in import compiled, exudyn, exudyn_native, plain, reference
+from compare.engines.by_name import ByName
 from compare.engines.engine import (
     EVERY_KIND,
     KINDS,

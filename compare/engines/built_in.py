@@ -3,29 +3,10 @@
 from __future__ import annotations
 
 import functools
-import importlib
-from dataclasses import dataclass
-from typing import Any
 
+from compare.engines.by_name import ByName
 from compare.engines.engine import EVERY_KIND, Engine
 from compare.engines.registry import register
-from reference_model.trajectory import Trajectory
-
-
-@dataclass(frozen=True)
-class ByName:
-    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn."""
-
-    module: str
-    function: str
-
-    def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
-        """Call it."""
-        trajectory: Trajectory = getattr(importlib.import_module(self.module), self.function)(
-            *arguments, **options
-        )
-        return trajectory
-
 
 _simulate_reference = ByName("reference_model", "simulate")
 

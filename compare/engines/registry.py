@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import pickle
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -11,6 +12,7 @@ from dataclasses import replace
 from importlib.metadata import entry_points
 from typing import NamedTuple
 
+from compare.engines.by_name import ByName
 from compare.engines.engine import Engine
 from compare.engines.names import one_of
 
@@ -143,8 +145,18 @@ def imported(name: str, place: str) -> Engine:
     if not callable(simulate):
         raise ValueError(f"engine {name!r} is no function")
     declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
+    travels = simulate if _can_be_sent(simulate) else ByName(module_name, function_name)
     try:
-        return Engine(name, simulate, **{"phases": False, **declared})
+        return Engine(name, travels, **{"phases": False, **declared})
     except (TypeError, ValueError) as error:
         attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
+
+
+def _can_be_sent(function: object) -> bool:
+    """Return whether another process gets ``function`` as it is; a closure has to be imported there by its name."""
+    try:
+        pickle.dumps(function)
+    except Exception:  # whatever an object's own pickling may raise
+        return False
+    return True
