@@ -85,7 +85,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=int,
         default=1,
         metavar="N",
-        help=f"how many claims have to pass or fail; with fewer, pytest ends with status {NOTHING_SHOWN} (default: 1)",
+        help=f"how many claims have to pass, or pytest ends with status {NOTHING_SHOWN} if none fails (default: 1)",
     )
 
 
@@ -341,13 +341,13 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 def _diagnoses(config: pytest.Config, failed: list[pytest.TestReport]) -> Iterator[str]:
     """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
-    from compare.diagnosis.run import diagnosed
+    from compare.diagnosis.run import in_short
     from compare.engines import engines
 
     names = [name for name in _engines(config) if len(_engines(config)) == 1 or _is_named(name, failed)]
     for name in names:
         try:
-            yield from (f"{row.engine}: {' '.join(row.sentences)}" for row in diagnosed(engines([name])))
+            yield f"{name}: {' '.join(in_short(engines([name])[0]).sentences)}"
         except ValueError as error:  # it can't even be imported
             yield str(error)
 

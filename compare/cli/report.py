@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -91,8 +91,8 @@ def report(
     """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
 
     The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
-    little was conclusive, and 130 after Ctrl-C; the report then holds what was finished, and --resume does the rest. Files of data that
-    an engine of your own reads are not looked at then: when they change, measure anew.
+    little was conclusive, and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
+    Files of data that an engine of your own reads are not looked at by that: when they change, measure anew.
 
     \b
     Examples:
@@ -131,9 +131,7 @@ def report(
     with printing():
         _print_summary(result, matrix, output / "index.html")
     if not result.interrupted:
-        suspects = tuple(one for one in chosen if _is_suspect(matrix, one.name))
-        with measurements() as progress:
-            _print_diagnoses(suspects, jobs or cores(), progress)
+        _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
     return _status(result, matrix, min_conclusive)
 
 
@@ -145,13 +143,12 @@ def _is_suspect(matrix: Matrix, engine: str) -> bool:
     return bool(found[State.DIFFERS] or found[State.FAILED])
 
 
-def _print_diagnoses(
-    suspects: tuple[Engine, ...], jobs: int, progress: Callable[[int, int, str], None]
-) -> None:
+def _print_diagnoses(suspects: Iterable[Engine]) -> None:
     """Print what is behind the claims of engines that differ, in a few sentences."""
-    from compare.diagnosis.run import diagnosed
+    from compare.diagnosis.run import in_short
 
-    for row in diagnosed(suspects, jobs=jobs, progress=progress):
+    for engine in suspects:
+        row = in_short(engine)
         with printing():
             print(f"{row.engine}: {' '.join(row.sentences)}")
 

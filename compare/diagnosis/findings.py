@@ -177,6 +177,10 @@ def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
     return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
 
 
+PROBES = ("law", "creep", "lag")
+"""The parts that tell the law."""
+
+
 def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     """Return what is measured of an engine, by name: the law at rest and at slip first, then the motions it promises.
 

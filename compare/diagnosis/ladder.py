@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -16,8 +15,8 @@ from reference_model.systems import FloatArray
 RUNGS = 4
 """Of a ladder, for every engine and on every machine: what one costs depends on neither."""
 
-HALVED = 4.0
-"""Factor between the tolerances of an engine with a fixed step, which halves it."""
+HALVED = 2.0
+"""Ratio of fixed steps from rung to rung."""
 
 SAFETY = 3.0
 """Error of the finest rung over its change. Of a first order and halved steps that is three times the error."""
@@ -25,7 +24,7 @@ SAFETY = 3.0
 
 def tolerances(engine: Engine) -> FloatArray:
     """Return the tolerances of the rungs, from the largest, shape (RUNGS,); the last one is the usual."""
-    factor = COARSENING if engine.step is None else HALVED
+    factor = COARSENING if engine.step is None else HALVED**engine.root
     return USUAL_TOLERANCE * factor ** np.arange(RUNGS - 1, -1, -1.0)
 
 
@@ -57,4 +56,4 @@ class Ladder:
 
 def step_ratio(engine: Engine) -> float:
     """Return by how much what is called a step falls from rung to rung: the tolerance, where none is fixed."""
-    return COARSENING if engine.step is None else math.sqrt(HALVED)
+    return COARSENING if engine.step is None else HALVED

@@ -42,5 +42,5 @@ def drawn(rows: Sequence[Row]) -> Figure:
 
 def steps_of(row: Row) -> np.ndarray:
     """Return the steps of the rungs, or the tolerances of an engine that has no step, over the finest."""
-    factor = COARSENING if np.isnan(row.step) else np.sqrt(HALVED)
+    factor = COARSENING if np.isnan(row.step) else HALVED
     return np.asarray(factor ** np.arange(RUNGS - 1, -1, -1.0))

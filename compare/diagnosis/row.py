@@ -68,9 +68,19 @@ class Row:
             *([_of_creep(self.creep, self._refined)] if self.creep is not None else []),
             *([_of_lag(self.lag, self.step)] if self.lag is not None and self._is_coulombs else []),
             _of_motions(self.motions, self._refined),
-            *(f"No result of {name}: {reason}." for name, reason in self.gaps.items()),
+            *(
+                f"No result of {', '.join(names)}: {reason}."
+                for reason, names in self._gaps_by_reason.items()
+            ),
         ]
         return tuple(one for one in said if one)
+
+    @property
+    def _gaps_by_reason(self) -> dict[str, list[str]]:
+        found: dict[str, list[str]] = {}
+        for name, reason in self.gaps.items():
+            found.setdefault(reason, []).append(name)
+        return found
 
     @property
     def _refined(self) -> str:

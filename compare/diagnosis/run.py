@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from compare.diagnosis.findings import Creep, Lag, Motion, parts_of
+from compare.diagnosis.findings import PROBES, Creep, Lag, Motion, parts_of
 from compare.diagnosis.laws import Friction
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError
@@ -17,6 +16,9 @@ from compare.run.workers import Failure, Workers
 
 LIMIT = 60.0
 """Time in s after which a part of an engine is given up."""
+
+IN_SHORT = 20.0
+"""The same of a diagnosis in short, in s."""
 
 
 def diagnosed(
@@ -40,20 +42,34 @@ def diagnosed(
         Called with the number of finished and of all parts, and the name of the last one.
 
     """
-    work = {(engine.name, part): engine for engine in engines for part in parts_of(engine)}
+    parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}
-    left = {engine.name: len(parts_of(engine)) for engine in engines}
+    left = {engine.name: len(parts[engine]) for engine in engines}
     yield from (rows[name] for name, count in left.items() if count == 0)
     with Workers(jobs, limit) as workers:
-        for (name, part), engine in work.items():
-            workers.submit((name, part), measured, engine, part)
+        for engine in engines:
+            for part in parts[engine]:
+                workers.submit((engine.name, part), measured, engine, part)
         for number, done in enumerate(workers.finished(), 1):
-            name, part = done.key  # type: ignore[misc]
+            key: Any = done.key
+            name, part = key
             rows[name] = _with(rows[name], part, done.value, done.seconds)
-            progress(number, len(work), f"{name} {part}")
+            progress(number, sum(map(len, parts.values())), f"{name} {part}")
             left[name] -= 1
             if left[name] == 0:
                 yield rows[name]
+
+
+def in_short(engine: Engine) -> Row:
+    """Return what the probes say of an engine, in seconds; after a first part without a result no other is asked."""
+    row = _empty(engine)
+    with Workers(1, IN_SHORT) as workers:
+        for part in PROBES:
+            if part in parts_of(engine) and not row.gaps:
+                workers.submit(part, measured, engine, part)
+                for done in workers.finished():
+                    row = _with(row, part, done.value, done.seconds)
+    return row
 
 
 def measured(engine: Engine, part: str) -> Any:
@@ -62,15 +78,6 @@ def measured(engine: Engine, part: str) -> Any:
         return parts_of(engine)[part](engine)
     except UnsupportedSystemError as error:
         return str(error)
-
-
-def at_once(engine: Engine) -> Row:
-    """Return the row of an engine, measured in this process."""
-    row = _empty(engine)
-    for part in parts_of(engine):
-        before = time.perf_counter()
-        row = _with(row, part, measured(engine, part), time.perf_counter() - before)
-    return row
 
 
 def _empty(engine: Engine) -> Row:

@@ -82,7 +82,9 @@ class Engine:
         1e-6 for single precision. See ``compare.engines.precision``.
     step : float, optional
         For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
-        tolerance of 1e-9. It goes with the square root of the tolerance.
+        tolerance of 1e-9, see ``step_at``.
+    order : float
+        By which errors fall with a fixed step.
     kin : str
         Name of the engine whose code it shares, so that neither is independent evidence about the other.
     contact_only : bool
@@ -109,6 +111,7 @@ class Engine:
     phases: bool = True
     precision: float = 0.0
     step: float | None = None
+    order: float = 1.0
     kin: str = ""
     contact_only: bool = False
     version: str = ""
@@ -129,6 +132,9 @@ class Engine:
             object.__setattr__(self, "step", finite_number("step", self.step))
             if self.step <= 0.0:
                 raise ValueError(f"step = {self.step:g} s: it must be > 0")
+        object.__setattr__(self, "order", finite_number("order", self.order))
+        if self.order <= 0.0:
+            raise ValueError(f"order = {self.order:g}: it must be > 0")
 
     def simulate(
         self,
@@ -154,7 +160,7 @@ class Engine:
             raise UnsupportedSystemError(self.lacking([system]))
         if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
             raise UnsupportedSystemError(f"{self.name} does not simulate stick")
-        accuracy = {"tolerance": tolerance} if self.step is None else {"step": self._step(tolerance)}
+        accuracy = {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
 
         def asked(times: ArrayLike) -> Trajectory:
             if self.precision == 0.0:
@@ -169,16 +175,21 @@ class Engine:
             return found
         coarseness = tolerance / USUAL_TOLERANCE
         if self.step is not None:
-            coarseness = COARSE_STEP * self._step(tolerance) / self.step
+            coarseness = COARSE_STEP * self.step_at(tolerance) / self.step
         return StatesOnly(found, lambda more: asked(more).states, coarseness, self.precision)
 
-    def _step(self, tolerance: float) -> float:
-        """Return the step in s, which goes with the square root of ``tolerance``.
+    @property
+    def root(self) -> float:
+        """The root of the tolerance with which a fixed step goes: its order, so that errors go with the tolerance.
 
-        Where errors are estimated, see ``compare.claims.error_estimates.COARSENING``, an error of first order then
-        falls to a third.
+        It is 2 for orders below, whose steps would become too many: where errors are estimated, at an eighth of the
+        tolerance, an error of first order then falls to a third.
         """
-        return (self.step or 0.0) * math.sqrt(tolerance / USUAL_TOLERANCE)
+        return max(self.order, 2.0)
+
+    def step_at(self, tolerance: float) -> float:
+        """Return the fixed step in s at ``tolerance``."""
+        return (self.step or 0.0) * math.pow(tolerance / USUAL_TOLERANCE, 1.0 / self.root)
 
     def simulates(self, system: System) -> bool:
         """Return whether the engine promises to simulate ``system``."""

@@ -19,7 +19,7 @@ from compare.engines.names import one_of
 ENTRY_POINTS = "friction_discs.engines"
 """The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""
 
-DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "version")
+DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "order", "version")
 """Attributes of a function that say what it is for, named like the parameters of ``Engine``."""
 
 _REGISTRY: dict[str, Engine] = {}

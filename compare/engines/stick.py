@@ -49,7 +49,11 @@ ABOVE_NOISE = 32.0
 """The same over an engine's precision, where that is more."""
 
 ABOVE_CREEP = 8.0
-"""Least slip from which is extrapolated, over that in a stick phase."""
+"""Least slip from which is extrapolated, over that in a stick phase.
+
+It is no less than the geometric mean of the creep and of ``REST`` either: where friction is smoothed over ε and ever
+harder to hold, as ε·f/√(1 − f²), the creep comes to a multiple of ε long before release, at the same time for each ε.
+"""
 
 QUIET, QUIETER = 0.1, 0.5
 """Share of the time of a slow span that is stick for sure: at first, when there may be slow slip in it, and later."""
@@ -215,7 +219,8 @@ class _Samples:
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
-        level = max(span.level / CLOSER, ABOVE_CREEP * creep, self.least * self.largest)
+        above = max(ABOVE_CREEP * creep, math.sqrt(creep * REST * self.largest))
+        level = max(span.level / CLOSER, above, self.least * self.largest)
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:

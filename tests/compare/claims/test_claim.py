@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from fake_studies import claim
 
-from compare.claims.claim import ErrorBudget, Verdict
+from compare.claims.claim import ErrorBudget, Grade, Verdict
 from compare.report.worst import worst
 
 
@@ -26,6 +26,35 @@ from compare.report.worst import worst
 def test_verdict_of_a_number(difference, numerical, model, resolution, verdict):
     made = claim("c", "good", 0.0, difference, numerical, model=model, resolution=resolution)
     assert made.verdict is verdict
+
+
+@pytest.mark.parametrize(
+    ("error", "grade", "verdict"),
+    [
+        (1e-8, Grade.EXACT, Verdict.AGREES),
+        (3e-5, Grade.FINE, Verdict.AGREES),
+        (9e-3, Grade.COARSE, Verdict.AGREES),
+        (0.5, None, Verdict.INCONCLUSIVE),
+    ],
+)
+def test_an_error_beyond_the_resolution_is_judged_by_the_size_of_what_is_predicted(error, grade, verdict):
+    made = claim("c", "good", 2.0, 2.0, 2.0 * error, resolution=1e-9)
+    assert (made.grade, made.verdict) == (grade, verdict)
+
+
+def test_a_size_is_of_the_numbers_of_one_unit():
+    predicted, error = np.array([[1e3, 1e-3], [0.0, 0.0]]), np.array([1.0, 1.0])
+    mixed = claim("c", "good", predicted, predicted, error, axes=((), ("x in m", "spin in rad/s")))
+    alike = claim("c", "good", predicted, predicted, error, axes=((), ("x in m", "y in m")))
+    assert (mixed.grade, alike.grade) == (None, Grade.COARSE)
+
+
+def test_what_has_no_size_has_no_grade():
+    zero = claim("c", "good", 0.0, 0.0, 1e-12)
+    assert (zero.grade, zero.verdict) == (None, Verdict.AGREES)
+    assert claim("c", "good", 0.0, 0.0, 1e-12, size=1.0).grade is Grade.EXACT
+    assert claim("c", "good", 2.0, 2.0, 1e-12, kind="order").grade is None
+    assert claim("c", "good", 2.0, 2.0, 0.0, answers=True).grade is None
 
 
 def test_one_element_of_an_array_decides_for_all():

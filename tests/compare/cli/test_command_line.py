@@ -129,7 +129,7 @@ def test_a_report_without_differences_ends_with_status_0(tmp_path, monkeypatch, 
             1,
             "0 agree on independent evidence, besides 1 of algebra; 0 differ, 0 inconclusive, 1 failed",
         ),
-        ("inconclusive", "straight", 0, "0 agree on independent evidence; 0 differ, 1 inconclusive"),
+        ("inconclusive", "straight", 3, "0 agree on independent evidence; 0 differ, 1 inconclusive"),
     ],
 )
 def test_status_of_a_report(study, engine, status, totals, tmp_path, capsys):

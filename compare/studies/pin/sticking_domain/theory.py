@@ -49,6 +49,8 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
     if np.any(missing):
         return math.nan, math.inf if np.all(np.isinf(relative_error[missing])) else 0.0
     middle = found(values)
+    if not np.all(np.isfinite(relative_error)):
+        return middle, math.inf
     shifts = [
         abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)
     ]

@@ -35,12 +35,15 @@ def draw_motions(data: ByEngine) -> Figure:
 
 def _draw_leaving(panel: Axes, data: ByEngine) -> None:
     last = 0.0
+    first = next((engine for engine in engines_in(data) if "leaving_time" in data[engine]), "")
     for engine in engines_in(data):
         found = data[engine]
+        if "leaving_time" not in found:  # what leaves the circle ends in stick, which not all simulate
+            continue
         times = found["leaving_time"]
         label = engine
         for speed, radius in zip(found["start"], found["leaving"], strict=True):
-            if engine == engines_in(data)[0] and speed < K:
+            if engine == first and speed < K:
                 panel.annotate(
                     rf"$\omega = {speed / K:g}\,k$",
                     (times[-1], radius[-1] / radius[0]),

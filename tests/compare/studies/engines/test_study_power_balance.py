@@ -138,7 +138,7 @@ class TestPowerBalance(StudyTests):
         [
             (("pin",), set(DISCS), "a disc on a continuous ring or a disc on single points"),
             (("pin", "points"), set(DISCS) - {SIX, SIX_TO_REST}, "a disc on a continuous ring"),
-            (("ring", "points"), set(PINS), "a pin"),
+            (("ring", "points"), set(PINS), "a pin or a block on a plane at rest"),
         ],
     )
     def test_an_engine_is_measured_on_the_systems_that_it_promises(self, kinds, missing, lacking):

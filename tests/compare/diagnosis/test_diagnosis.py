@@ -1,0 +1,133 @@
+"""The matrix names the law that an engine has, and nothing that it has not."""
+
+import functools
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from stepping import box, cone, engine, pyramid
+
+from compare.diagnosis import run
+from compare.diagnosis.files import write_picture, write_rows
+from compare.diagnosis.findings import MOTIONS, Motion, creep, friction, lag, motion
+from compare.diagnosis.ladder import RUNGS, tolerances
+from compare.diagnosis.recorded import recorded_rows
+from compare.diagnosis.row import Row
+from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
+
+RIGHT = engine("right")
+
+NAMED = {
+    "box": (engine("box", law=box), "Friction is a box: each axis has its own, its force"),
+    "nearest axis": (
+        engine("nearest", law=functools.partial(pyramid, sides=4)),
+        "Friction is a pyramid of 4 sides: it acts along the nearest axis, its force",
+    ),
+    "eight sides": (
+        engine("eight", law=functools.partial(pyramid, sides=8, tilt=math.pi / 8)),
+        "Friction is a pyramid of 8 sides with a side across the x axis, inside of the cone, its force",
+    ),
+    "0.1 % too much": (
+        engine("more", law=functools.partial(cone, factor=1.001)),
+        "Friction is Coulomb's cone, but μ is 0.10 % too large",
+    ),
+    "one degree off": (
+        engine("turned", law=functools.partial(cone, turn=math.radians(1.0))),
+        "Friction is Coulomb's cone, but its force is turned by 1.0° from where it should act",
+    ),
+}
+
+
+def sentences(engine):
+    row = Row(
+        engine.name, step=engine.step or math.nan, law=friction(engine), creep=creep(engine), lag=lag(engine)
+    )
+    return row, " ".join(row.sentences)
+
+
+@pytest.mark.parametrize("wrong", NAMED)
+def test_a_wrong_law_is_named(wrong):
+    made, said = NAMED[wrong]
+    row, found = sentences(made)
+    assert found.startswith(said)
+    assert row.wrong
+
+
+@pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
+def test_coulombs_law_is_named_and_nothing_besides(made):
+    row, found = sentences(made)
+    assert found.startswith("Friction is Coulomb's cone, its force right to ±")
+    assert found.endswith("A block that friction can hold rests.")
+    assert not row.wrong
+
+
+def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
+    fixed, said = sentences(engine("fixed", smooth=1e-2))
+    # What is smoothed acts on the slip before the step, which is larger by what the step takes.
+    assert "smoothed as min(v/ε, 1), and ε = 0.00" in said
+    assert said.endswith("m/s is the same at every step.")
+    assert fixed.wrong
+
+
+def test_a_lag_of_a_step_is_told_and_is_no_wrong_law():
+    row, said = sentences(engine("previous", lagging=True))
+    assert "It acts along the slip 1.0 steps earlier." in said or "0.9" in said.split("slip ")[1]
+    assert not row.wrong
+
+
+def test_the_rungs_are_as_many_for_every_engine():
+    stepped, adaptive = tolerances(RIGHT), tolerances(reference)
+    assert len(stepped) == len(adaptive) == RUNGS
+    assert stepped[-1] == adaptive[-1] == USUAL_TOLERANCE
+    assert RIGHT.step_at(stepped[0]) / RIGHT.step_at(stepped[-1]) == pytest.approx(2.0 ** (RUNGS - 1))
+    assert adaptive[0] / adaptive[1] == pytest.approx(COARSENING)
+    fourth = replace(RIGHT, order=4.0)
+    assert fourth.step_at(tolerances(fourth)[0]) == pytest.approx(8.0 * fourth.step)
+
+
+def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that_holds():
+    found = motion(RIGHT, "release")
+    assert found.converges
+    assert found.order == pytest.approx(1.0, abs=0.4)
+    assert found.error <= found.estimate
+    assert not motion(engine("box", law=box), "release").converges
+
+
+def test_an_engine_that_does_not_stick_is_not_asked_for_stick():
+    assert run.measured(plain, "creep") == "plain does not simulate stick"
+    row = run._with(Row("plain"), "creep", "plain does not simulate stick", 0.1)
+    assert row.not_simulated == ("creep",)
+    assert not row.wrong
+
+
+def raises(system, start, times, *, tolerance):
+    raise RuntimeError("out of order")
+
+
+def test_a_part_without_a_result_is_named_and_the_others_are_there():
+    broken = Engine("broken", raises, ("block",))
+    (row,) = run.diagnosed((broken,))
+    assert set(row.gaps) == {"law", "creep"}
+    assert row.sentences[0].startswith("No result of law, creep: out of order")
+    assert set(run.in_short(broken).gaps) == {"law"}
+
+
+def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
+    rows = recorded_rows()
+    by_name = {row.engine: row for row in rows}
+    assert by_name["Bullet, box"].wrong
+    assert not by_name["Drake, TAMSI"].wrong
+    assert set(by_name["Drake, TAMSI"].motions) <= set(MOTIONS)
+    mine = Row("mine", motions={"slip": Motion((1e-2, 5e-3, 2e-3, 1e-3), 3e-3, 1.0, 0.025, 0.1)})
+    write_rows([*rows, mine], tmp_path)
+    content = json.loads((tmp_path / "matrix.json").read_text(encoding="utf-8"))
+    assert content[-1]["motions"]["slip"]["errors"] == [1e-2, 5e-3, 2e-3, 1e-3]
+    assert content[-1]["sentences"] == ["Its errors fall as the tolerance to the power 1.0."]
+    write_picture([*rows, mine], tmp_path)
+    assert (tmp_path / "matrix.png").stat().st_size > 10_000
+
+
+def test_motions_are_followed_to_the_same_times_as_recorded():
+    assert np.all(MOTIONS["ring"].times == MOTIONS["disc"].times)
