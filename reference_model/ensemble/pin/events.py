@@ -55,6 +55,7 @@ from reference_model.ensemble.pin.slip import (
     begin_slip,
     creeping_ends,
     creeps_by_turns,
+    creeps_slaved,
     creeps_steadily,
     sticking_radius,
     time_to_rest,
@@ -329,7 +330,12 @@ def released(
 
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Say at the very end what can be said."""
+    """Say at the very end what can be said: also of a pin whose slip is not yet slow enough for a closed form."""
+    z = place_at(lanes.trial, lane)
+    if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
+        radius = sticking_radius(law)
+        memory.end = STUCK
+        keep(memory, radius, radius, 0.0)
     if memory.end == UNDECIDED and in_well(lanes, memory, lane, law):
         radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
         memory.end = SELF_CENTRED
