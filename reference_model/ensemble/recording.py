@@ -1,8 +1,9 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at some time is that of a short trajectory of its own, from the last checkpoint before it. Those of all
-times run side by side in lanes, and end where they should as every trajectory does. So the motion does not depend on
-the times that are asked for, and its error is the same at all of them.
+The state at some time is that of a short trajectory of its own, from the last checkpoint before it, that of the step
+in which it lies: it goes on with the pace of the whole, so that it takes no more than that step, cut short. Those of
+all times run side by side in lanes, and end where they should as every trajectory does. So the motion does not depend
+on the times that are asked for, and its error is the same at all of them.
 """
 
 from __future__ import annotations
@@ -12,17 +13,25 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import NONE, ON_THE_WAY, SLIPS, Checkpoints, room_for
+from reference_model.ensemble.checkpoints import (
+    NONE,
+    ON_THE_WAY,
+    SLIPS,
+    Checkpoints,
+    from_the_start,
+    room_for,
+)
 from reference_model.ensemble.end_states import HANDED_OVER, Results
 from reference_model.motion.stepper import Kind
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
-Runs = Callable[[FloatArray, FloatArray, Checkpoints], Results]
-"""Takes starts (n, 4 or 6), durations in s (n,) and room for checkpoints of a single one; runs them all."""
+Runs = Callable[[FloatArray, FloatArray, FloatArray, Checkpoints], Results]
+"""Takes starts (n, 4 or 6), paces (n, 5) as of checkpoints, durations in s (n,) and room for checkpoints of a single
+one; runs them all."""
 
-ROOM_A_UNIT, ROOM_TO_SPARE = 2.0, 64
-"""Checkpoints that there is room for at first, in a unit of time and besides."""
+ROOM_TO_SPARE = 64
+"""Checkpoints that there is room for at first besides those of all times: where phases begin."""
 
 ROUNDED = 1e-12
 """Share of a duration, or of the unit of time if that is longer, that is rounding of times."""
@@ -70,10 +79,11 @@ class Recording:
         """
         # A copy, which may be written to: the kernel is compiled for such arrays, and not once more for others.
         start, left = state.copy()[np.newaxis], np.array([self.duration - since])
-        room = int(ROOM_A_UNIT * left[0] / self.unit) + ROOM_TO_SPARE
+        asked = self.times[self.times >= since] - since
+        room = len(asked) + ROOM_TO_SPARE
         while True:
-            checkpoints = room_for(room, len(state))
-            end = one(start, left, checkpoints)
+            checkpoints = room_for(room, len(state), asked)
+            end = one(start, from_the_start(), left, checkpoints)
             taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
                 break
@@ -107,7 +117,8 @@ class Recording:
             return
         before = checkpoints[np.searchsorted(checkpoints["time"], self.times[asked], side="right") - 1]
         durations = self.times[asked] - before["time"]
-        ends = many(np.ascontiguousarray(before["state"]), durations, checkpoints[:0])
+        starts, paces = np.ascontiguousarray(before["state"]), np.ascontiguousarray(before["pace"])
+        ends = many(starts, paces, durations, checkpoints[:0])
         self._require_end(ends, durations, until)
         self.states[asked] = ends.states
         self.evaluations += STAGES * int(np.sum(ends.steps))

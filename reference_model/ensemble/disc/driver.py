@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import Checkpoints, room_for
+from reference_model.ensemble.checkpoints import Checkpoints, from_the_start, room_for
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import PARAMETERS, DiscTask, run_points, run_rings
@@ -47,8 +47,9 @@ def simulate_discs(
     aims = _aims(disc, tolerance, early_end, no_regions() if varied else known_regions(disc))
     results = Results.empty(n, disc.state_size)
     _run_through(
-        disc, DiscTask(table, starts, np.full(1, duration)), aims, results, varied, tolerance, threads
-    )
+        disc, DiscTask(table, starts, from_the_start(), np.full(1, duration)), aims, results, varied,
+        tolerance, threads,
+    )  # fmt: skip
     return results.ensemble(varied.get("friction_force", disc.friction_force))
 
 
@@ -57,14 +58,18 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
     table = parameter_table(disc, PARAMETERS)
     aims = _aims(disc, tolerance, False, no_regions())
 
-    def one(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
+    def one(
+        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
+    ) -> Results:
         results = Results.empty(1, disc.state_size)
-        _run(DiscTask(table, starts, durations), aims._replace(checkpoints=checkpoints), results)
+        _run(DiscTask(table, starts, paces, durations), aims._replace(checkpoints=checkpoints), results)
         return results
 
-    def many(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
+    def many(
+        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
+    ) -> Results:
         results = Results.empty(len(starts), disc.state_size)
-        _run_through(disc, DiscTask(table, starts, durations), aims, results, {}, tolerance)
+        _run_through(disc, DiscTask(table, starts, paces, durations), aims, results, {}, tolerance)
         return results
 
     t = 0.0
@@ -113,7 +118,7 @@ def _run_through(
             again = Results.empty(len(handed), disc.state_size)
             left = durations[handed] - results.times[handed]
             table = task.parameters[handed] if varied else task.parameters
-            _run(DiscTask(table, results.states[handed], left), aims, again, threads)
+            _run(DiscTask(table, results.states[handed], from_the_start(), left), aims, again, threads)
             again.times[:] += results.times[handed]
             again.steps[:] += results.steps[handed]
             results.ends[handed], results.times[handed] = again.ends, again.times

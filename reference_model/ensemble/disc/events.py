@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from reference_model.ensemble.checkpoints import ON_THE_WAY
 from reference_model.ensemble.core.convergence import ACCURACY
 from reference_model.ensemble.core.dense_output import (
     outward,
@@ -56,8 +55,9 @@ from reference_model.ensemble.disc.memory import (
     DiscAims,
     DiscMemory,
     compared,
+    next_asked,
+    pass_asked,
     recorded,
-    take_checkpoint,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
@@ -183,8 +183,8 @@ def looked(
     """Look at the motion, as once in every free period and at the end; return whether the trajectory ends here."""
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
     if recorded(aims):
-        take_checkpoint(lanes, memory, lane, ON_THE_WAY, aims)
-        lanes.due[lane] = t + memory.tick
+        pass_asked(lanes, lanes.now, memory, lane, t, aims)
+        lanes.due[lane] = next_asked(memory, aims)
         return False
     state, k = state_at(lanes.trial, lane), rates_at(lanes.trial, lane)
     velocity = (1.0 / k.time) * complex(k.x, k.y)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import EVERY, SLIPS
+from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
 from reference_model.ensemble.core.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.jit import outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
@@ -18,7 +18,14 @@ from reference_model.ensemble.core.records import LANES, clear, layout, put
 from reference_model.ensemble.core.runge_kutta import Tuple
 from reference_model.ensemble.disc.events import Slow, attend_with
 from reference_model.ensemble.disc.lanes import RADII, TURNS, DiscLanes, advance_with, idle
-from reference_model.ensemble.disc.memory import DiscAims, DiscMemory, put_state, recorded, take_checkpoint
+from reference_model.ensemble.disc.memory import (
+    DiscAims,
+    DiscMemory,
+    next_asked,
+    put_state,
+    recorded,
+    take_checkpoint,
+)
 from reference_model.ensemble.disc.rest import (
     points_rest,
     points_slip,
@@ -52,10 +59,15 @@ WATCHED_STEP = 1e-3
 
 
 class DiscTask(NamedTuple):
-    """Parameters (1 or n, 10), in the order of PARAMETERS; starts (1 or n, 6); durations (1 or n,)."""
+    """What is to be done.
+
+    ``parameters`` are (1 or n, 10), in the order of PARAMETERS; ``starts`` (1 or n, 6), their ``paces`` (1 or n, 5)
+    if they are checkpoints, ``durations`` in s (1 or n,).
+    """
 
     parameters: FloatArray
     starts: FloatArray
+    paces: FloatArray
     durations: FloatArray
 
 
@@ -78,6 +90,10 @@ def load_with(
     k2, c, g, kappa = stiffness / mass, damping / mass, force / mass, math.sqrt(inertia / mass)
     decay = max(c, shaft / inertia)
     length, rate = units(math.sqrt(k2), decay, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
+    pace = row_of(task.paces, number)
+    goes_on = pace[RATE] > 0.0
+    if goes_on:
+        length, rate = pace[LENGTH], pace[RATE]
     speed = length * rate
     friction = g / (speed * rate)
     law = DiscLaw(
@@ -98,10 +114,10 @@ def load_with(
     duration = float(row_of(task.durations, number)) * rate
     memory.number, memory.length, memory.rate = number, length, rate
     memory.tick = 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
-    if recorded(aims):
-        memory.tick = EVERY
     put(lanes.law, lane, law)
     lanes.tolerance[lane], lanes.duration[lane], lanes.due[lane] = aims.tolerance, duration, memory.tick
+    if recorded(aims):
+        lanes.due[lane] = next_asked(memory, aims)
     lanes.watch[lane] = RADII if law.offset == 0.0 else TURNS
     lanes.usual[lane] = lanes.flag[lane] = lanes.steps[lane] = lanes.short[lane] = 0.0
 
@@ -112,10 +128,12 @@ def load_with(
     if abs(spin - omega) <= ROUNDING * abs(omega):
         r = 0.0
     put(lanes.trial.state, lane, (x / length, y / length, u.real, u.imag, r, angle, 0.0, 0.0))
-    take_checkpoint(lanes, memory, lane, SLIPS, aims)
+    take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
     if u == 0j and r == 0.0 and friction > 0.0:
         return bool(rest(lanes, memory, lane, law, aims))
     slip(lanes, lane, law)
+    if goes_on:
+        lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     return bool(duration <= 0.0)
 
 
@@ -123,7 +141,7 @@ def load_with(
 def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> None:
     """Write down the result of a lane in SI units."""
     number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
-    put_state(results.states[number], lanes, memory, lane)
+    put_state(results.states[number], lanes, lanes.trial, memory, lane)
     results.times[number] = lanes.trial.state.time[lane] / rate
     results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])
     least = largest = slip = math.nan

@@ -7,13 +7,13 @@ from typing import Annotated, Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import Checkpoints
+from reference_model.ensemble.checkpoints import LENGTH, ON_THE_WAY, RATE, SHORT, SPAN, STEP, Checkpoints
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.records import Record
 from reference_model.ensemble.core.runge_kutta import Tuple
 from reference_model.ensemble.core.window import Measures, Window
-from reference_model.ensemble.disc.lanes import DiscLanes, state_at
+from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
 from reference_model.systems import FloatArray
 
 OF_TURN, OF_PEAK = 1, 2
@@ -67,7 +67,8 @@ class DiscMemory(Record):
     """Of a lane: the number of its trajectory, units, end state so far and its measures, the period of looks.
 
     The motion as it was once in a period, where x was largest and where the radius was; the window in which it may
-    show to be the end state. How long an implicit step may be, and how many checkpoints have been taken.
+    show to be the end state. How long an implicit step may be, how many checkpoints have been taken, and how many of
+    the times asked for are passed.
     """
 
     number: int
@@ -82,6 +83,7 @@ class DiscMemory(Record):
     window: Window
     span: float
     checkpoints: int
+    passed: int
 
 
 class DiscAims(NamedTuple):
@@ -118,22 +120,50 @@ def recorded(aims: DiscAims) -> bool:
 
 
 @scalar
-def take_checkpoint(lanes: DiscLanes, memory: DiscMemory, lane: int, kind: float, aims: DiscAims) -> None:
-    """Take a checkpoint of the trial, while there is room."""
-    if memory.checkpoints < aims.checkpoints.size:
-        checkpoint = aims.checkpoints[memory.checkpoints]
-        memory.checkpoints += 1
-        checkpoint.kind, checkpoint.time = kind, lanes.trial.state.time[lane] / memory.rate
-        put_state(checkpoint.state, lanes, memory, lane)
+def next_asked(memory: DiscMemory, aims: DiscAims) -> float:
+    """Return the next time that is asked for, in units; inf if there is none."""
+    if memory.passed < aims.checkpoints.size:
+        asked: float = aims.checkpoints[memory.passed].asked * memory.rate
+        return asked
+    return math.inf
 
 
 @scalar
-def put_state(state: FloatArray, lanes: DiscLanes, memory: DiscMemory, lane: int) -> None:
-    """Put x, y, angle, vx, vy and spin of the trial into ``state`` (6,), in SI units."""
+def pass_asked(
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, aims: DiscAims
+) -> None:
+    """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
+    before = memory.passed
+    while memory.passed < aims.checkpoints.size and next_asked(memory, aims) <= until:
+        memory.passed += 1
+    if memory.passed == before:
+        return
+    if memory.checkpoints < aims.checkpoints.size:
+        pace = aims.checkpoints[memory.checkpoints].pace
+        pace[LENGTH], pace[RATE], pace[STEP] = memory.length, memory.rate, moment.step[lane]
+        pace[SHORT], pace[SPAN] = lanes.short[lane], memory.span
+    take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, aims)
+
+
+@scalar
+def take_checkpoint(
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, aims: DiscAims
+) -> None:
+    """Take a checkpoint of a ``moment`` of a lane, while there is room."""
+    if memory.checkpoints < aims.checkpoints.size:
+        checkpoint = aims.checkpoints[memory.checkpoints]
+        memory.checkpoints += 1
+        checkpoint.kind, checkpoint.time = kind, moment.state.time[lane] / memory.rate
+        put_state(checkpoint.state, lanes, moment, memory, lane)
+
+
+@scalar
+def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int) -> None:
+    """Put x, y, angle, vx, vy and spin of a ``moment`` into ``state`` (6,), in SI units."""
     length, rate = memory.length, memory.rate
-    trial = state_at(lanes.trial, lane)
+    there = state_at(moment, lane)
     omega, curling = lanes.law.disc_speed[lane], lanes.law.curling[lane]
-    state[0], state[1], state[2] = trial.x * length, trial.y * length, trial.angle
-    state[3] = (trial.ux - omega * trial.y) * length * rate
-    state[4] = (trial.uy + omega * trial.x) * length * rate
-    state[5] = (omega + curling * trial.r) * rate
+    state[0], state[1], state[2] = there.x * length, there.y * length, there.angle
+    state[3] = (there.ux - omega * there.y) * length * rate
+    state[4] = (there.uy + omega * there.x) * length * rate
+    state[5] = (omega + curling * there.r) * rate

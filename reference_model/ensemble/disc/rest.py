@@ -27,7 +27,15 @@ from reference_model.ensemble.disc.lanes import (
     slip_left,
     state_at,
 )
-from reference_model.ensemble.disc.memory import OF_PEAK, DiscAims, DiscMemory, compared, take_checkpoint
+from reference_model.ensemble.disc.memory import (
+    OF_PEAK,
+    DiscAims,
+    DiscMemory,
+    compared,
+    pass_asked,
+    recorded,
+    take_checkpoint,
+)
 from reference_model.ensemble.disc.slip import held_friction, points_rates, ring_rates, stuck_for
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
@@ -73,6 +81,8 @@ def _creeps_out(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, a
         delay = lanes.duration[lane] - t
         turn = law.disc_speed * delay
         z *= complex(math.cos(turn), math.sin(turn))
+        if recorded(aims):
+            pass_asked(lanes, lanes.trial, memory, lane, t + delay, aims)
         put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
     return True
 
@@ -133,7 +143,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
         if aims.early:
             return True
     if held > 0.0:
-        take_checkpoint(lanes, memory, lane, STICKS, aims)
+        take_checkpoint(lanes, lanes.trial, memory, lane, STICKS, aims)
     delay = min(held, end - t)
     turn = law.disc_speed * delay
     z *= complex(math.cos(turn), math.sin(turn))
@@ -142,7 +152,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     if t >= end - AT_END:
         return True
     if held > 0.0:
-        take_checkpoint(lanes, memory, lane, SLIPS, aims)
+        take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
         met = compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z))
         if met and found(lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, aims):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import Checkpoints, room_for
+from reference_model.ensemble.checkpoints import Checkpoints, from_the_start, room_for
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Ensemble, Results
@@ -34,7 +34,10 @@ def simulate_pins(
     if not varied:
         known[:] = known_ends(pin)
     local = tolerance_of_steps(tolerance)
-    task, results = PinTask(table, starts, np.full(1, duration)), Results.empty(n, pin.state_size)
+    task, results = (
+        PinTask(table, starts, from_the_start(), np.full(1, duration)),
+        Results.empty(n, pin.state_size),
+    )
     nowhere = room_for(0, pin.state_size)
 
     def run(first: int, last: int) -> None:
@@ -49,9 +52,11 @@ def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: R
     local = tolerance_of_steps(tolerance)
     table, known = parameter_table(pin, PARAMETERS), nothing_known()
 
-    def run(starts: FloatArray, durations: FloatArray, checkpoints: Checkpoints) -> Results:
+    def run(
+        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
+    ) -> Results:
         results = Results.empty(len(starts), pin.state_size)
-        task = PinTask(table, starts, durations)
+        task = PinTask(table, starts, paces, durations)
         run_pins(task, local, False, False, known, checkpoints, results, 0, len(starts))
         return results
 

@@ -8,7 +8,8 @@ Stuck for ever
     radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
     what is left, creeps on for ever and never beyond that radius: it counts as stuck there
     (``slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
-    is damped enough not to pass by (``slip.creeps_steadily``).
+    is damped enough not to pass by (``slip.creeps_steadily``); the same is said of it when its time is up earlier, if
+    its slip is along the pull by then (``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside of a neighbourhood of the equilibrium (3) from which everything goes there: a level of a

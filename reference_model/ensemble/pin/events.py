@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from reference_model.ensemble.checkpoints import ON_THE_WAY, SLIPS, STICKS
+from reference_model.ensemble.checkpoints import SLIPS, STICKS
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.dense_output import (
     DenseOutput,
@@ -46,12 +46,16 @@ from reference_model.ensemble.pin.memory import (
     PinMemory,
     close_window,
     keep,
+    next_asked,
+    pass_asked,
+    recorded,
     take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (
     begin_slip,
     creeping_ends,
     creeps_by_turns,
+    creeps_slaved,
     creeps_steadily,
     sticking_radius,
     time_to_rest,
@@ -83,6 +87,8 @@ def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
     if flag & LOST:
         memory.end = UNDECIDED
         return True
+    if flag & IS_DUE and recorded(aims):
+        pass_asked(lanes, lanes.now, memory, lane, later, law, aims)
     if flag & IS_DUE and later >= memory.duration - LANDING:
         if not landed(lanes, lane, memory.duration):
             return False
@@ -117,10 +123,8 @@ def watch_well(lanes: PinLanes, memory: PinMemory, lane: int, later: float, law:
     """Look whether the motion is captured by the equilibrium, and say when to look again."""
     if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
         lanes.watch[lane] = TURNS
-    lanes.due[lane] = min(later + memory.tick, memory.duration - LANDING)
-    take_checkpoint(
-        memory, ON_THE_WAY, later, place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, aims
-    )
+    due = next_asked(memory, aims) if recorded(aims) else later + memory.tick
+    lanes.due[lane] = min(due, memory.duration - LANDING)
     if memory.end != UNDECIDED or not in_well(lanes, memory, lane, law):
         return False
     lanes.watch[lane] = UNWATCHED
@@ -221,6 +225,8 @@ def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims:
         left = 0.0
     if not t + left < memory.duration:
         return False
+    if recorded(aims):
+        pass_asked(lanes, lanes.trial, memory, lane, memory.duration if creeps else t + left, law, aims)
     middle = z + 0.5 * left * (0.75 * w + 1j * law.disc_speed * z)
     z += left * (0.5 * w + 1j * law.disc_speed * middle)
     lanes.trial.state.way[lane] += 0.5 * s * left
@@ -324,7 +330,12 @@ def released(
 
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Say at the very end what can be said."""
+    """Say at the very end what can be said: also of a pin whose slip is not yet slow enough for a closed form."""
+    z = place_at(lanes.trial, lane)
+    if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
+        radius = sticking_radius(law)
+        memory.end = STUCK
+        keep(memory, radius, radius, 0.0)
     if memory.end == UNDECIDED and in_well(lanes, memory, lane, law):
         radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
         memory.end = SELF_CENTRED

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import EVERY, SLIPS, Checkpoints
+from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP, Checkpoints
 from reference_model.ensemble.core.jit import inlined, outermost, scalar
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
@@ -38,6 +38,7 @@ from reference_model.ensemble.pin.memory import (
     Aims,
     PinMemory,
     keep,
+    next_asked,
     put_state,
     recorded,
     take_checkpoint,
@@ -67,11 +68,13 @@ PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "o
 class PinTask(NamedTuple):
     """What is to be done.
 
-    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), ``durations`` in s (1 or n,).
+    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), their ``paces``
+    (1 or n, 5) if they are checkpoints, ``durations`` in s (1 or n,).
     """
 
     parameters: FloatArray
     starts: FloatArray
+    paces: FloatArray
     durations: FloatArray
 
 
@@ -83,6 +86,10 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
     duration = float(row_of(task.durations, number))
     k2, c, g = stiffness / mass, damping / mass, force / mass
     length, rate = units(math.sqrt(k2), c, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
+    pace = row_of(task.paces, number)
+    goes_on = pace[RATE] > 0.0
+    if goes_on:
+        length, rate = pace[LENGTH], pace[RATE]
     speed = length * rate
 
     clear(memory)
@@ -106,7 +113,9 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
     expect_ends(memory, law, aims)
     begin_watching = recorded(aims) or aims.early or aims.once or memory.duration <= LAST_TICKS * memory.tick
     lanes.watch[lane] = TURNS if begin_watching and friction > 0.0 else UNWATCHED
-    if begin_watching:
+    if recorded(aims):
+        lanes.due[lane] = min(next_asked(memory, aims), memory.duration - LANDING)
+    elif begin_watching:
         lanes.due[lane] = min(memory.tick, memory.duration - LANDING)
     else:
         lanes.due[lane] = memory.duration - LAST_TICKS * memory.tick
@@ -122,6 +131,8 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
     put_slipping(lanes, lane, z, w, law)
     if abs(w) < SLOWNESS * friction < SLOWNESS * abs(pull(z, w, law)):
         lanes.short[lane] = MANY
+    if goes_on:
+        lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     if memory.level == math.inf:
         memory.end = SELF_CENTRED
         keep(memory, 0.0, 0.0, 0.0)
@@ -139,8 +150,6 @@ def expect_ends(memory: PinMemory, law: PinLaw, aims: Aims) -> None:
         memory.level = known.level / memory.length**2
         fill(memory.form, known.form)
     memory.tick = TICK_TURNS * 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
-    if recorded(aims):
-        memory.tick = EVERY
 
 
 @scalar

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.checkpoints import Checkpoints
+from reference_model.ensemble.checkpoints import LENGTH, ON_THE_WAY, RATE, SHORT, SPAN, STEP, Checkpoints
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import Record, fill, layout
 from reference_model.ensemble.core.window import NO_WINDOW, Measures, Window, measured, see_radius
 from reference_model.ensemble.pin.end_states import Form
+from reference_model.ensemble.pin.lanes import Moment, PinLanes, place_at, slip_at
 from reference_model.systems import FloatArray
 
 OF_TURN, OF_RELEASE = 1, 2
@@ -79,7 +81,7 @@ class PinMemory(Record):
 
     The self-centred equilibrium with the level of the form below which all goes there, and when to look next;
     crossings and releases so far, and the window in which one may show to be the end state. How long an implicit step
-    may be, and how many checkpoints have been taken.
+    may be, how many checkpoints have been taken, and how many of the times asked for are passed.
     """
 
     number: int
@@ -97,6 +99,7 @@ class PinMemory(Record):
     window: Window
     span: float
     checkpoints: int
+    passed: int
 
 
 class Aims(NamedTuple):
@@ -150,6 +153,33 @@ def take_checkpoint(
         memory.checkpoints += 1
         checkpoint.kind, checkpoint.time = kind, t / memory.rate
         put_state(checkpoint.state, memory, z, w, law)
+
+
+@scalar
+def next_asked(memory: PinMemory, aims: Aims) -> float:
+    """Return the next time that is asked for, in units; inf if there is none."""
+    if memory.passed < aims.checkpoints.size:
+        asked: float = aims.checkpoints[memory.passed].asked * memory.rate
+        return asked
+    return math.inf
+
+
+@scalar
+def pass_asked(
+    lanes: PinLanes, moment: Moment, memory: PinMemory, lane: int, until: float, law: PinLaw, aims: Aims
+) -> None:
+    """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
+    before = memory.passed
+    while memory.passed < aims.checkpoints.size and next_asked(memory, aims) <= until:
+        memory.passed += 1
+    if memory.passed == before:
+        return
+    if memory.checkpoints < aims.checkpoints.size:
+        pace = aims.checkpoints[memory.checkpoints].pace
+        pace[LENGTH], pace[RATE], pace[STEP] = memory.length, memory.rate, moment.step[lane]
+        pace[SHORT], pace[SPAN] = lanes.short[lane], memory.span
+    t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
+    take_checkpoint(memory, ON_THE_WAY, t, z, w, law, aims)
 
 
 @scalar

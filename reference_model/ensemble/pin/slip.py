@@ -35,6 +35,9 @@ stiff steps."""
 CREEP = 0.1
 """Excess of the pull, as a fraction of by how much it changes in a turn or of g, up to which slip creeps."""
 
+SLAVED = 0.02
+"""Share of the rate at which slip is drawn to its direction up to which what turns it is slow."""
+
 PLACES = 8
 """Places at least at which the series is looked at for whether slip ends again."""
 
@@ -120,6 +123,20 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
     excess = abs(pull(z, 0j, law)) - law.friction
     overdamped = inward > 0.0 and law.damping**2 >= 4.0 * inward
     return overdamped and turns_steadily(law) and 0.5 * law.damping * abs(w) <= excess <= CREEP * law.friction
+
+
+@scalar
+def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
+    """Tell of slip that need not be slow whether it is along the pull closely enough to do as it will do when slow.
+
+    Friction draws the direction of slip to that of the pull at the rate g/s. What turns either is slower by SLAVED or
+    more, and so are the terms that s' = e − c·s and e' = −K·s of :func:`creeps_steadily` leave out; these leave s > 0
+    for ever if e >= μ·s with μ = (c − √(c² − 4K))/2, and e >= c·s/2 is more than that.
+    """
+    a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
+    across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0
+    slow = s * turning <= SLAVED * law.friction and abs(a) - law.friction <= SLAVED * law.friction
+    return slow and across <= SLAVED and (a.conjugate() * w).real > 0.0 and creeps_steadily(z, w, law)
 
 
 @scalar

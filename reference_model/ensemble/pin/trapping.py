@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
-from reference_model.ensemble.checkpoints import room_for
+from reference_model.ensemble.checkpoints import from_the_start, room_for
 from reference_model.ensemble.end_states import EndState, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
@@ -139,7 +139,7 @@ def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
-    task = PinTask(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
+    task = PinTask(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
     checkpoints = room_for(0, pin.state_size)
     run_pins(task, TOLERANCE, early, once, nothing_known(), checkpoints, results, 0, len(starts))
     return results

@@ -77,7 +77,7 @@ def begin_slip(
     direction : array of shape (slip,)
         Unit vector along which slip begins.
     leave : callable
-        Tells whether the motion is to be described in another way.
+        Tells whether the motion is to be described in another way, as when one of several points comes to rest.
 
     Raises
     ------
@@ -113,10 +113,12 @@ def begin_slip(
         slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
         return np.hstack((others + after * carried, slip))
 
-    start, step, expected = begun(np.zeros(1))[0], FIRST_STEP, begun
+    start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
     while t < run.end:
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
+        if piece is None and t > since:
+            break  # no beginning any more: friction bends within a step, as where one of several points hardly slips
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:
@@ -128,7 +130,7 @@ def begin_slip(
         stop = min(t + step, run.end)
         run.record(stop, _Sample(motion, piece, t))
         start, t = piece.at(np.array([stop - t]))[0], stop
-        if piece.falling or step * piece.stiffness < STIFF:
+        if piece.falling or step * piece.stiffness < STIFF or leave(start.tolist()):
             break
         step *= min(4.0, piece.change_of_step(run.thresholds.series))
         expected = piece.beyond

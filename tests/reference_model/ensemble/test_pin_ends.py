@@ -225,6 +225,17 @@ def test_slip_that_leads_inward_fast_rests_where_the_reference_does(offset, shar
     assert found.largest_radius[0] < 0.999 * sticking_radius(pin)
 
 
+def test_a_pin_that_still_creeps_towards_rest_when_time_is_up_is_told_by_where_it_will_be():
+    pin = replace(FIG5, damping=30.0, friction_force=0.05, disc_speed=0.25, offset=0.0)
+    creeping, early = (simulate_ensemble(pin, [0.3, 0.0, 0.0, 0.0], duration=time) for time in (250.0, 150.0))
+    assert counts(creeping) == {"STUCK": 1}
+    assert creeping.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
+    late = simulate(pin, [0.3, 0.0, 0.0, 0.0], [0.0, 250.0, 1000.0])
+    assert late.radius[1] > 1.005 * sticking_radius(pin)  # still far from there
+    assert late.radius[2] == pytest.approx(sticking_radius(pin), rel=1e-9)
+    assert counts(early) == {"UNDECIDED": 1}  # slip turns to the direction of the pull too slowly as yet
+
+
 def test_a_pin_that_creeps_by_turns_does_so_in_the_reference():
     pin = replace(FIG5, damping=0.128, friction_force=0.2424, disc_speed=-0.26, offset=-0.2275)
     start = turning_with(pin, 1.001 * sticking_radius(pin))

@@ -497,3 +497,21 @@ def test_point_far_out_on_a_light_disc_begins_to_slip_where_its_own_inertia_turn
     slips = np.abs(centre[:, np.newaxis] + 1j * (later[:, 5] - disc.disc_speed)[:, np.newaxis] * arms)
     slowest = slips.min(axis=1)
     assert slowest[1:] / slowest[:-1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_slip_that_has_begun_is_left_to_other_descriptions_where_one_of_eleven_points_comes_to_rest():
+    """Collocation went on with steps of 1e-7 T, 1,287 in all."""
+    disc = DiscOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.03933669598513251, friction_force=42.79815743660217,
+        offset=31.936409731463634, disc_speed=0.024464031679646767, polar_inertia=45.527552506407126,
+        contact_radius=0.14069777828540544, contact_points=11, shaft_damping=67.17097125597903,
+        shaft_speed=0.10625455896077723,
+    )  # fmt: skip
+    x, y, omega = 23.85388993229278, 9.823573429092436, disc.disc_speed
+    start, times = [x, y, -1.2667978787186764, -omega * y, omega * x, omega], [26.9, 40.0, 48.0]
+    found = simulate(disc, start, times)
+    assert [phase.kind for phase in found.phases] == ["stick", "slip", "pivot"]
+    assert found.solution.steps < 150
+    np.testing.assert_allclose(
+        found.states, simulate(disc, start, times, tolerance=1e-11).states, rtol=0.0, atol=1e-11
+    )
