@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -48,12 +48,11 @@ What is off by extrapolation then changes with the tolerance, and is in the erro
 ABOVE_NOISE = 32.0
 """The same over an engine's precision, where that is more."""
 
-ABOVE_CREEP = 8.0
-"""Least slip from which is extrapolated, over that in a stick phase.
+NOISE = 0.1
+"""Change of slip from sample to sample, over the slip, from which on it is rounding and no creep."""
 
-It is no less than the geometric mean of the creep and of ``REST`` either: where friction is smoothed over ε and ever
-harder to hold, as ε·f/√(1 − f²), the creep comes to a multiple of ε long before release, at the same time for each ε.
-"""
+ABOVE_CREEP = 8.0
+"""Least slip from which is extrapolated, over that in a stick phase."""
 
 QUIET, QUIETER = 0.1, 0.5
 """Share of the time of a slow span that is stick for sure: at first, when there may be slow slip in it, and later."""
@@ -134,7 +133,10 @@ class _Samples:
         self.look(_joined(map(self._edges, spans)))
         self.look(_joined(map(self._flanks, spans)))
         found = [(self._begin(span), self._end(span), span) for span in spans]
-        sticks = [(start, stop) for start, stop, span in found if self._is_stick(start, stop, span)]
+        held = [(start, span) for start, stop, span in found if self._is_stick(start, stop, span)]
+        released = [replace(span, level=self._release_level(span)) for _, span in held]
+        self.look(_joined(map(self._flanks, released)))
+        sticks = [(start, self._end(span)) for (start, _), span in zip(held, released, strict=True)]
         begun: list[tuple[Literal["slip", "pivot", "stick"], float]] = []
         if not sticks or sticks[0][0] > begin:
             begun.append(("slip", begin))
@@ -219,8 +221,7 @@ class _Samples:
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
-        above = max(ABOVE_CREEP * creep, math.sqrt(creep * REST * self.largest))
-        level = max(span.level / CLOSER, above, self.least * self.largest)
+        level = max(span.level / CLOSER, ABOVE_CREEP * creep, self.least * self.largest)
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
@@ -261,6 +262,19 @@ class _Samples:
             return float(self.times[-1])
         time, nearest = self._extrapolated(np.arange(last + 1, len(self.times)), 0.5, span.level)
         return max(min(time, nearest), span.first)
+
+    def _release_level(self, span: _Span) -> float:
+        """Return the slip in m/s from which release is extrapolated.
+
+        It is the geometric mean of the creep and of ``REST``, if that is more. Where friction is smoothed over ε and
+        creep grows before release, as ε·f/√(1 − f²), it comes to a multiple of ε at the same time for each ε.
+        """
+        first, last = self._places(span)
+        slip = self.slip[first : last + 1]
+        creep = float(np.median(slip))
+        if len(slip) < 2 or np.median(np.abs(np.diff(slip))) > NOISE * creep:
+            return span.level
+        return max(span.level, math.sqrt(creep * REST * self.largest))
 
     def _extrapolated(self, outwards: NDArray[np.intp], power: float, level: float) -> tuple[float, float]:
         """Return when slip**power is nothing, by a parabola through a flank, and the time of the nearest sample."""

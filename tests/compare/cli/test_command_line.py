@@ -98,12 +98,15 @@ def test_errata_prints_both_forms_and_both_errors(capsys):
 def test_a_report_that_differs_ends_with_status_1(reported):
     process, folder = reported
     assert process.returncode == 1
-    assert process.stderr == ""  # no progress bar but on a terminal
+    assert "\r" not in process.stderr  # no progress bar but on a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
     gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
     assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
     first = "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed"
-    assert process.stdout.endswith(f"{first} ({folder / 'index.html'})\n")
+    totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
+    assert totals == f" ({folder / 'index.html'})"
+    assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
+    assert diagnoses[1].startswith("failing: No result of law: the step size became too small")
 
 
 def test_a_report_without_differences_ends_with_status_0(tmp_path, monkeypatch, capsys):
@@ -283,6 +286,9 @@ BAD = [
     (("report", "--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
     (("report", "--jobs", "0"), "jobs = 0: it must lie between 1 and 1000"),
     (("report", "--study-limit", "0"), "study-limit = 0 s: it must be > 0"),
+    (("report", "--min-conclusive", "-1"), "min-conclusive = -1: it must lie between 0 and 1000000"),
+    (("matrix", "--limit", "0"), "limit = 0 s: it must be > 0"),
+    (("matrix", "--engine", "exudin"), "unknown engine 'exudin': did you mean 'exudyn'?"),
     (("report", "--study-limit", "soon"), "study-limit = 'soon': it must be a number"),
     (("report", "--jobs", "two"), "jobs = 'two': it must be a whole number"),
     ((*PIN, "--engine", "referense"), "unknown engine 'referense': did you mean 'reference'?"),

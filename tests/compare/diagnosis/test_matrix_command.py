@@ -1,0 +1,47 @@
+"""The matrix from the command line."""
+
+import json
+import math
+
+import pytest
+
+from compare.cli import app as cli
+from compare.diagnosis import findings
+
+BLOCKS = """
+import functools, math
+import reference_model
+from stepping import box, stepped
+
+def simulate(*arguments, tolerance=1e-9):
+    return reference_model.simulate(*arguments, tolerance=tolerance)
+simulate.kinds, simulate.version = ("block",), "3"
+
+boxed = functools.partial(stepped, law=box)
+boxed.kinds, boxed.step = ("block",), 1e-2
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "status", "said"),
+    [("simulate", 0, "Friction is Coulomb's cone, its force right to"), ("boxed", 1, "Friction is a box")],
+)
+def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path, monkeypatch, capsys):
+    (tmp_path / f"of_{name}.py").write_text(BLOCKS)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    output = tmp_path / "found"
+    assert cli.status(["matrix", "--engine", f"of_{name}:{name}", "--output", str(output)]) == status
+    printed = capsys.readouterr().out
+    assert f"  {said}" in printed
+    (row,) = json.loads((output / "matrix.json").read_text(encoding="utf-8"))
+    assert row["version"] == ("3" if name == "simulate" else "")
+    assert row["law"]["shape"] == ("cone" if name == "simulate" else "box: each axis has its own")
+    assert row["wrong"] == bool(status)
+
+
+def test_the_names_of_probes_are_those_of_parts():
+    from compare.engines import reference
+
+    assert list(findings.parts_of(reference))[: len(findings.PROBES)] == list(findings.PROBES)
+    assert math.isnan(findings.falling([1.0], 2.0))
