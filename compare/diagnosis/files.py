@@ -9,7 +9,7 @@ from pathlib import Path
 from compare.claims.as_json import as_json
 from compare.diagnosis.picture import drawn
 from compare.diagnosis.row import Row
-from compare.figures import saved
+from compare.figures import paper_style, saved
 from compare.text_files import replacing, write_text
 
 
@@ -23,6 +23,8 @@ def write_picture(rows: Sequence[Row], folder: Path) -> None:
     """Write matrix.svg and matrix.png, if any motion was simulated."""
     if not any(row.motions for row in rows):
         return
-    for ending, content in zip(("svg", "png"), saved(drawn(rows)), strict=True):
+    with paper_style():
+        figure = drawn(rows)
+    for ending, content in zip(("svg", "png"), saved(figure), strict=True):
         with replacing(folder / f"matrix.{ending}", "wb") as stream:
             stream.write(content)
