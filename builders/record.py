@@ -3,6 +3,7 @@
     pip install --editable '.[engines]'
     python builders/record.py                 # all engines: five minutes of one core
     python builders/record.py mujoco bullet   # or some of them
+    python builders/record.py --laws          # what tells the law alone; times and errors stay as they are recorded
 
 Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
 of ``compare.claims.error_estimates.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is
@@ -26,7 +27,10 @@ from typing import Any
 import numpy as np
 
 import compare.engines
+from compare.claims.as_json import as_json
 from compare.claims.error_estimates import COARSENING
+from compare.diagnosis.findings import PROBES, parts_of
+from compare.engines import Engine
 from compare.foreign.cases import CASES, Case
 from compare.foreign.records import COLUMNS, DIGITS, FOLDER
 from reference_model import SimulationError, Trajectory
@@ -111,7 +115,8 @@ def record(name: str) -> dict[str, Any]:
     for setting, simulate in settings_of(name).items():
         print(f"{name}: {setting}", flush=True)
         runs = {key: ladder(simulate, case) for key, case in CASES.items()}
-        settings.append({"name": setting, "says": getattr(simulate, "says", ""), "runs": runs})
+        says = getattr(simulate, "says", "")
+        settings.append({"name": setting, "says": says, "probes": probes(name, simulate), "runs": runs})
     return {
         "engine": FOREIGN.get(name, name),
         "version": version(PACKAGES[name]),
@@ -120,6 +125,21 @@ def record(name: str) -> dict[str, Any]:
         "columns": COLUMNS,
         "settings": settings,
     }
+
+
+def probes(name: str, simulate: Simulate) -> dict[str, Any]:
+    """Return what tells the law of friction of a setting, as JSON."""
+    engine = Engine(name, simulate, phases=False, nonlinear=False)
+    return {probe: as_json(parts_of(engine)[probe](engine)) for probe in PROBES}
+
+
+def record_laws(name: str) -> dict[str, Any]:
+    """Return what is recorded of an engine with what tells its laws measured anew."""
+    found: dict[str, Any] = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    simulating = settings_of(name)
+    for setting in found["settings"]:
+        setting["probes"] = probes(name, simulating[setting["name"]])
+    return found
 
 
 def written(found: dict[str, Any]) -> str:
@@ -133,12 +153,16 @@ def main() -> None:
     """Record the engines that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("engines", nargs="*", metavar="ENGINE", help=", ".join(PACKAGES))
-    names = parser.parse_args().engines or list(PACKAGES)
+    parser.add_argument(
+        "--laws", action="store_true", help="measure anew what tells the law, and nothing else"
+    )
+    given = parser.parse_args()
+    names = given.engines or list(PACKAGES)
     if unknown := set(names) - set(PACKAGES):
         parser.error(f"no engine {', '.join(sorted(unknown))}: known are {', '.join(PACKAGES)}")
     for name in names:
         try:
-            found = record(name)
+            found = record_laws(name) if given.laws else record(name)
         except ImportError as error:
             wheels = f"; wheels of {PACKAGES[name]} are for {WHEELS[name]}" if name in WHEELS else ""
             print(f"{name} is left out, it is not installed ({error}){wheels}", file=sys.stderr)

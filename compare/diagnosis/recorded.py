@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from compare.diagnosis.findings import Motion, falling
+from compare.claims.as_json import from_json
+from compare.diagnosis.findings import Creep, Lag, Motion, falling
 from compare.diagnosis.ladder import RUNGS
+from compare.diagnosis.laws import Friction
 from compare.diagnosis.row import Row
 from compare.foreign.cases import CASES
 from compare.foreign.records import COLUMNS, Recording, recordings
@@ -15,6 +18,9 @@ TOLERANCE, ERROR, CHANGE, SECONDS = (
     COLUMNS.index(name) for name in ("tolerance", "error", "change", "seconds")
 )
 
+KINDS: dict[str, Any] = {"law": Friction, "creep": Creep, "lag": Lag}
+"""What is recorded of each of ``PROBES``."""
+
 
 def recorded_rows() -> tuple[Row, ...]:
     """Return a row for each recorded setting of an engine that is not ours."""
@@ -23,7 +29,11 @@ def recorded_rows() -> tuple[Row, ...]:
 
 def _row(recording: Recording) -> Row:
     motions = {name: _motion(runs, name) for name, runs in recording.runs.items()}
-    return Row(recording.name, f"{recording.version}, recorded on {recording.recorded}", motions=motions)
+    probes = {
+        name: from_json(KINDS[name], content) for name, content in recording.probes.items() if name in KINDS
+    }
+    version = f"{recording.version}, recorded on {recording.recorded}"
+    return Row(recording.name, version, motions=motions, **probes)
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:

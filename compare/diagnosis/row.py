@@ -20,7 +20,7 @@ RESTS = 1e-9
 """Speed in m/s, over that of what slides, below which a block is at rest."""
 
 LEAST_LAG = 1e-6
-"""In s, that is told."""
+"""In s, that is told, if the force is known as well: slip turns by about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)
 """Lags in steps that are called a step's."""
@@ -66,7 +66,11 @@ class Row:
         said = [
             *([_of_law(self.law)] if self.law is not None else []),
             *([_of_creep(self.creep, self._refined)] if self.creep is not None else []),
-            *([_of_lag(self.lag, self.step)] if self.lag is not None and self._is_coulombs else []),
+            *(
+                [_of_lag(self.lag, self.step, self._least_lag)]
+                if self.lag is not None and self._is_coulombs
+                else []
+            ),
             _of_motions(self.motions, self._refined),
             *(
                 f"No result of {', '.join(names)}: {reason}."
@@ -93,12 +97,17 @@ class Row:
         return self.law is not None and self.law.sure and not _faults_of_law(self.law)
 
     @property
+    def _least_lag(self) -> float:
+        """The lag in s that is told."""
+        return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
+
+    @property
     def wrong(self) -> bool:
         """Whether something was found that no smaller step cures."""
         return (
             (self.law is not None and bool(_faults_of_law(self.law)))
             or (self.creep is not None and _creeps_for_good(self.creep))
-            or (self.lag is not None and self._is_coulombs and _lags_for_good(self.lag))
+            or (self.lag is not None and self._is_coulombs and _lags_for_good(self.lag, self._least_lag))
             or any(not motion.converges for motion in self.motions.values())
         )
 
@@ -156,19 +165,19 @@ def _creeps_for_good(creep: Creep) -> bool:
     return abs(creep.speed) >= RESTS * SPEED and not creep.order > FALLS
 
 
-def _of_lag(lag: Lag, step: float) -> str:
-    if abs(lag.seconds) < LEAST_LAG:
+def _of_lag(lag: Lag, step: float, least: float) -> str:
+    if abs(lag.seconds) < least:
         return ""
     when = "earlier" if lag.seconds > 0.0 else "later"
-    if _lags_for_good(lag):
+    if _lags_for_good(lag, least):
         return f"It acts along the slip {error_text(abs(lag.seconds))} s {when}, at every step."
     if lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
         return f"It acts along the slip {error_text(abs(lag.seconds) / step)} steps {when}."
     return ""
 
 
-def _lags_for_good(lag: Lag) -> bool:
-    return abs(lag.seconds) > max(DISTINCT * lag.error, LEAST_LAG)
+def _lags_for_good(lag: Lag, least: float) -> bool:
+    return abs(lag.seconds) > max(DISTINCT * lag.error, least)
 
 
 def _of_motions(motions: dict[str, Motion], refined: str) -> str:

@@ -26,10 +26,11 @@ from compare.engines.engine import (
     Simulate,
     UnsupportedSystemError,
 )
-from compare.engines.fmu import Fmu
-from compare.engines.motion_files import MotionFiles
 from compare.engines.names import one_of
-from compare.engines.program import Program
+from compare.engines.outside.fmu import Fmu
+from compare.engines.outside.motion_files import MotionFiles
+from compare.engines.outside.program import Program
+from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import (
     engines,
     imported,
@@ -41,7 +42,6 @@ from compare.engines.registry import (
 )
 from compare.engines.stick import StatesOnly
 from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
-from compare.engines.unseen import Unseen
 
 __all__ = [
     "COARSENING",

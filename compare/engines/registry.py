@@ -62,7 +62,7 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
 
     One that is named is measured in all that it promises, see ``Engine.contact_only``.
     A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
-    does "exec:COMMAND", see ``compare.engines.program``, nor one of the entry points "friction_discs.engines" of an
+    does "exec:COMMAND", see ``compare.engines.outside``, nor one of the entry points "friction_discs.engines" of an
     installed package.
     Raises ``ValueError`` for a name that is unknown or can't be imported.
     """

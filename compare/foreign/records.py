@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,6 +41,9 @@ class Recording:
     runs : mapping
         Of each case, by the names of ``compare.foreign.cases.CASES``: arrays of shape (n, len(COLUMNS)), from the
         largest tolerance to the smallest.
+    probes : mapping
+        What tells the law of friction, as JSON of the parts ``compare.diagnosis.findings.PROBES``; empty where it is
+        not recorded.
 
     """
 
@@ -50,6 +54,7 @@ class Recording:
     setting: str
     says: str
     runs: Mapping[str, FloatArray]
+    probes: Mapping[str, Any]
 
     @property
     def name(self) -> str:
@@ -74,5 +79,6 @@ def recordings() -> tuple[Recording, ...]:
         about = {key: file[key] for key in ("engine", "version", "recorded", "platform")}
         for setting in file["settings"]:
             runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
-            found.append(Recording(**about, setting=setting["name"], says=setting["says"], runs=runs))
+            own = {"setting": setting["name"], "says": setting["says"], "probes": setting.get("probes", {})}
+            found.append(Recording(**about, **own, runs=runs))
     return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))

@@ -17,15 +17,9 @@ from processes import wait_until
 
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.cli import app as cli
-from compare.engines import (
-    BadTrajectoryError,
-    UnsupportedSystemError,
-    conversation,
-    engines,
-    json_lines,
-    known_name,
-)
-from compare.engines.program import name_of
+from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
+from compare.engines.outside import conversation, json_lines
+from compare.engines.outside.program import name_of
 from compare.run.code_files import UnknownCodeError
 from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES
@@ -348,7 +342,7 @@ def test_a_program_is_always_measured_anew():
 
 
 def test_the_lines_in_the_document_are_those_that_are_exchanged():
-    document = (Path(__file__).parents[3] / "docs" / "judge-your-engine.md").read_text("utf-8")
+    document = (Path(__file__).parents[4] / "docs" / "judge-your-engine.md").read_text("utf-8")
     section = document.partition("## Any language")[2].partition("\n## ")[0]
     greeting, question, answer, *_ = re.findall(r"```\n( *\{.*?)```", section, re.DOTALL)
     assert json_lines.greeting(greeting.encode()).who == "exec_pin 1"

@@ -9,8 +9,8 @@ from compare.claims.paper_parameters import FIG5, FIG11
 from compare.cli import app as cli
 from compare.cli.trajectory_files import write_csv
 from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
-from compare.engines.json_lines import question
-from compare.engines.motion_files import BadFileError, name_of
+from compare.engines.outside.json_lines import question
+from compare.engines.outside.motion_files import BadFileError, name_of
 from compare.run.code_files import UnknownCodeError
 from compare.run.fingerprint import fingerprint
 from compare.run.plan import write_plan

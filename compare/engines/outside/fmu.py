@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
+from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
-from compare.engines.unseen import Unseen
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
 from reference_model.trajectory import Trajectory
 

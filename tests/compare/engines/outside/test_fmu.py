@@ -16,8 +16,9 @@ pytest.importorskip("fmpy.fmi3")
 from compare.claims.claim import Verdict  # noqa: E402
 from compare.claims.paper_parameters import FIG5, FIG11  # noqa: E402
 from compare.cli import app as cli  # noqa: E402
-from compare.engines import UnsupportedSystemError, engines, fmu  # noqa: E402
-from compare.engines.fmu import FmuError  # noqa: E402
+from compare.engines import UnsupportedSystemError, engines  # noqa: E402
+from compare.engines.outside import fmu  # noqa: E402
+from compare.engines.outside.fmu import FmuError  # noqa: E402
 from compare.studies.engines.trajectories import STUDY  # noqa: E402
 from reference_model.systems import COLUMNS  # noqa: E402
 

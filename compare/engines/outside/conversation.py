@@ -22,7 +22,7 @@ from typing import IO
 
 from numpy.typing import ArrayLike
 
-from compare.engines.json_lines import (
+from compare.engines.outside.json_lines import (
     BadLineError,
     Greeting,
     RefusedError,
@@ -31,7 +31,7 @@ from compare.engines.json_lines import (
     most_bytes,
     question,
 )
-from compare.engines.program import own_name
+from compare.engines.outside.program import own_name
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 

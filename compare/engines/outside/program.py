@@ -14,8 +14,8 @@ from typing import Any, ClassVar
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine
+from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
-from compare.engines.unseen import Unseen
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
@@ -28,7 +28,7 @@ INTERPRETERS = re.compile(
 
 def _conversation() -> Any:
     """Return the module that starts programs, loaded only when one is asked for."""
-    return importlib.import_module("compare.engines.conversation")
+    return importlib.import_module("compare.engines.outside.conversation")
 
 
 @dataclass(frozen=True)

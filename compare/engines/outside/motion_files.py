@@ -1,7 +1,7 @@
 """``files:DIR``: motions that somebody computed beforehand as an engine, from a folder that ``plan`` has laid out.
 
 ``plan.json`` says which motions there are. Each is a file as ``0f3a.json`` with a question, of the form in which
-programs are asked (``compare.engines.json_lines``), and waits for ``0f3a.csv`` with the answer: a line for each time,
+programs are asked (``json_lines`` beside this), and waits for ``0f3a.csv`` with the answer: a line for each time,
 with the time and the state, below a line of names if there is one. The names come from the questions: no answer is
 taken for that to another one when there is another plan.
 """
@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import KINDS, Engine, UnsupportedSystemError
-from compare.engines.json_lines import question
+from compare.engines.outside.json_lines import question
+from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
-from compare.engines.unseen import Unseen
 from reference_model.systems import COLUMNS, FloatArray, System
 from reference_model.trajectory import Trajectory
 
