@@ -118,6 +118,10 @@ def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
     rows = recorded_rows()
     by_name = {row.engine: row for row in rows}
     assert by_name["Bullet, box"].wrong
+    assert by_name["Bullet, box"].sentences[0].startswith("Friction is a box: each axis has its own")
+    nearest = "Friction is a pyramid of 4 sides: it acts along the nearest axis"
+    assert by_name["MuJoCo, pyramidal cone"].sentences[0].startswith(nearest)
+    assert by_name["MuJoCo, elliptic cone"].sentences[0].startswith("Friction is Coulomb's cone")
     assert not by_name["Drake, TAMSI"].wrong
     assert set(by_name["Drake, TAMSI"].motions) <= set(MOTIONS)
     mine = Row("mine", motions={"slip": Motion((1e-2, 5e-3, 2e-3, 1e-3), 3e-3, 1.0, 0.025, 0.1)})
