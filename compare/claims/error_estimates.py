@@ -107,7 +107,8 @@ def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True)
     change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
     numbers = np.where(np.isfinite(change), change, 0.0)
     largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
-    return np.asarray(np.maximum(SAFETY * change, largest) + ROUNDING * np.max(np.abs(found), initial=0.0))
+    rounding = ROUNDING * np.max(np.abs(found), where=np.isfinite(found), initial=0.0)
+    return np.asarray(np.maximum(SAFETY * change, largest) + rounding)
 
 
 def observed_exponent(
