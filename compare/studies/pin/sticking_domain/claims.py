@@ -257,7 +257,8 @@ def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
 def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
     """Compare where the measured radii are largest with ω*."""
     radii, error = (each[:3] for each in largest_radii(engine, searched))
-    found, error_of_vertex = vertex(np.array(searched[:3]) ** 2, 1.0 / radii**2, error / radii)
+    relative = np.where(np.isfinite(radii), error / radii, error)
+    found, error_of_vertex = vertex(np.array(searched[:3]) ** 2, 1.0 / radii**2, relative)
     return Measured(predicted=RESONANCE, value=found, error=error_of_vertex)
 
 
