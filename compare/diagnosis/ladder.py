@@ -30,10 +30,7 @@ def tolerances(engine: Engine) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Ladder:
-    """Answers to one question, an array of numbers at each rung, shape (RUNGS, ...).
-
-    The last rung that has only numbers stands for all.
-    """
+    """Answers to one question, an array of numbers at each rung, shape (RUNGS, ...)."""
 
     values: FloatArray
 

@@ -193,7 +193,9 @@ def _of_motions(motions: dict[str, Motion], refined: str) -> str:
     open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
     if open_:
         said.append(f"too coarse to tell: {', '.join(open_)}")
-    if others:
+    if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
+        said.append(f"nothing changes with the {refined}, so that no error can be told from another law")
+    elif others:
         off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
         said.append(f"what it tends to is another motion than the exact one, off by: {off}")
     text = "; ".join(said)

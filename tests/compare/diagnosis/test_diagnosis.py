@@ -95,6 +95,14 @@ def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that
     assert not motion(engine("box", law=box), "release").converges
 
 
+def test_an_engine_that_takes_no_notice_of_the_tolerance_is_told_so():
+    deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
+    row = Row("deaf", motions={"slip": deaf})
+    told = "Nothing changes with the tolerance, so that no error can be told from another law."
+    assert row.sentences == (told,)
+    assert row.wrong
+
+
 def test_an_engine_that_does_not_stick_is_not_asked_for_stick():
     assert run.measured(plain, "creep") == "plain does not simulate stick"
     row = run._with(Row("plain"), "creep", "plain does not simulate stick", 0.1)
