@@ -86,7 +86,8 @@ def simulate(
         is of first order in the regularisation.
     regularisation : float, optional
         ε in m/s below which friction is viscous; 100·tolerance of the motion's own speed if not given. It should stay
-        well above the tolerance. ``solution.regularisation`` of the result says it in m/s.
+        well above the tolerance. ``solution.regularisation`` of the result says it in m/s. On a spring next to none
+        μN over √(mass·stiffness) is such a speed, however slow the motion: give ε then.
     solver : "explicit" or "implicit"
         "explicit" is DOPRI5, and generalised-α only while the contact, or one of several points, sticks: there the
         regularised law is stiff. Axes that turn with the master disc let it stick in some 40 steps a turn; to pivot
