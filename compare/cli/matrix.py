@@ -30,6 +30,7 @@ Recorded = Annotated[
 ]
 
 LIMIT = 60.0
+"""In s."""
 
 
 def matrix(

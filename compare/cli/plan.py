@@ -21,7 +21,7 @@ Kinds = Annotated[
     typer.Option(
         "--kind",
         metavar="KIND",
-        help="What your engine simulates: pin, points or ring; several times for several.",
+        help="What your engine simulates: block, pin, points or ring; several times for several.",
         show_default="pin",
     ),
 ]

@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -37,9 +38,6 @@ MOTIONS = CASES | {
     )
 }
 """What every engine is asked, if it promises it."""
-
-FITS = 0.2
-"""Largest relative misfit of a smoothing that is named."""
 
 
 @dataclass(frozen=True)
@@ -129,12 +127,8 @@ def creep(engine: Engine) -> Creep:
     """Return how blocks creep that are pulled with less than friction can hold."""
     ladder = Ladder.of(engine, functools.partial(probes.creep, engine))
     half = ladder.values[:, probes.PULLS.index(0.5)]
-    smoothing, epsilon = "", math.nan
-    if np.all(ladder.finest > 0.0):
-        found, size, misfit = smoothing_of(ladder.finest)
-        if misfit < FITS:
-            smoothing, epsilon = found.name, size
-    return Creep(float(half[-1]), falling(np.abs(half), step_ratio(engine)), smoothing, epsilon)
+    order = falling(np.abs(half), step_ratio(engine))
+    return Creep(float(half[-1]), order, *smoothing_of(ladder.finest))
 
 
 def lag(engine: Engine) -> Lag:
@@ -177,8 +171,8 @@ def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
     return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
 
 
-PROBES = ("law", "creep", "lag")
-"""The parts that tell the law."""
+PROBES: dict[str, type[Any]] = {"law": Friction, "creep": Creep, "lag": Lag}
+"""The parts that tell the law, and what each of them finds."""
 
 
 def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:

@@ -137,19 +137,23 @@ SMOOTHINGS = (
 )
 
 
-def smoothing_of(creep: FloatArray) -> tuple[Smoothing, float, float]:
-    """Return which smoothing makes a block creep so under ``PULLS``, its ε in m/s, and the relative misfit."""
+SMOOTHING_FITS = 0.2
+"""Largest relative misfit of a smoothing that is named."""
+
+
+def smoothing_of(creep: FloatArray) -> tuple[str, float]:
+    """Return which smoothing makes a block creep so under ``PULLS``, and its ε in m/s; "" and NaN if none does."""
+    if not np.all(creep > 0.0):
+        return "", math.nan
     pulls = np.array(PULLS)
 
-    def misfit(smoothing: Smoothing, logarithm: float) -> float:
+    def misfit(logarithm: float, smoothing: Smoothing) -> float:
         return float(np.max(np.abs(creep / (math.exp(logarithm) * smoothing.slip(pulls)) - 1.0)))
 
     found = []
     for smoothing in SMOOTHINGS:
         guess = math.log(float(np.mean(creep / smoothing.slip(pulls))))
-        best = minimize_scalar(
-            lambda logarithm, smoothing=smoothing: misfit(smoothing, logarithm),
-            bounds=(guess - 1.0, guess + 1.0),
-        )
-        found.append((smoothing, math.exp(float(best.x)), float(best.fun)))
-    return min(found, key=lambda one: one[2])
+        best = minimize_scalar(misfit, bounds=(guess - 1.0, guess + 1.0), args=(smoothing,))
+        found.append((float(best.fun), smoothing.name, math.exp(float(best.x))))
+    least, name, epsilon = min(found)
+    return (name, epsilon) if least < SMOOTHING_FITS else ("", math.nan)

@@ -6,6 +6,7 @@ law would change.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,7 @@ def drawn(rows: Sequence[Row]) -> Figure:
     columns = min(4, len(names))
     figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
     for panel, name in zip(panels, names, strict=False):
-        for row, marker in zip(rows, MARKERS * len(rows), strict=False):
+        for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
             if name in row.motions:
                 errors = np.array(row.motions[name].errors)
                 rungs = np.arange(RUNGS - len(errors), RUNGS) + 1

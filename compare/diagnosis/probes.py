@@ -11,6 +11,7 @@ import cmath
 from dataclasses import replace
 
 import numpy as np
+from scipy.integrate import simpson
 
 from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
@@ -89,15 +90,7 @@ def lag(engine: Engine, tolerance: float) -> float:
     slip = v - 1j * TURN.disc_speed * z
     direction = slip / np.abs(slip)
     turning = (np.gradient(np.unwrap(np.angle(slip)), times, edge_order=2)) * 1j * direction
-    expected, shifted = (TURN.friction_force * _simpson(times, each) for each in (direction, turning))
+    expected, shifted = (TURN.friction_force * simpson(each, x=times) for each in (direction, turning))
     # m·Δv = −∫C·z − ∫μN·(direction − lag·turning)
-    missing = TURN.mass * (v[-1] - v[0]) + WEAK * _simpson(times, z) + expected
+    missing = TURN.mass * (v[-1] - v[0]) + WEAK * simpson(z, x=times) + expected
     return float((missing * np.conj(shifted)).real / abs(shifted) ** 2)
-
-
-def _simpson(times: FloatArray, values: np.ndarray) -> complex:
-    """Return the integral over ``times``, an even number of equal intervals."""
-    h = float(times[1] - times[0])
-    weights = np.full(len(times), 2.0)
-    weights[1::2], weights[[0, -1]] = 4.0, 1.0
-    return complex(h / 3.0 * (weights @ values))

@@ -63,21 +63,17 @@ class Row:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What the engine is, in a few sentences, the law first."""
-        said = [
-            *([_of_law(self.law)] if self.law is not None else []),
-            *([_of_creep(self.creep, self._refined)] if self.creep is not None else []),
-            *(
-                [_of_lag(self.lag, self.step, self._least_lag)]
-                if self.lag is not None and self._is_coulombs
-                else []
-            ),
-            _of_motions(self.motions, self._refined),
-            *(
-                f"No result of {', '.join(names)}: {reason}."
-                for reason, names in self._gaps_by_reason.items()
-            ),
-        ]
-        return tuple(one for one in said if one)
+        said = []
+        if self.law is not None:
+            said.append(_of_law(self.law))
+        if self.creep is not None:
+            said.append(_of_creep(self.creep, self._refined))
+        if self.lag is not None and self._is_coulombs:
+            said.append(_of_lag(self.lag, self.step, self._least_lag))
+        said.append(_of_motions(self.motions, self._refined))
+        for reason, names in self._gaps_by_reason.items():
+            said.append(f"No result of {', '.join(names)}: {reason}.")
+        return tuple(filter(None, said))
 
     @property
     def _gaps_by_reason(self) -> dict[str, list[str]]:
@@ -94,7 +90,7 @@ class Row:
     @property
     def _is_coulombs(self) -> bool:
         """Whether it acts against the slip with μN: against that of an earlier time, then, if it lags."""
-        return self.law is not None and self.law.sure and not _faults_of_law(self.law)
+        return self.law is not None and self.law.sure and not _is_other(self.law)
 
     @property
     def _least_lag(self) -> float:
@@ -105,7 +101,7 @@ class Row:
     def wrong(self) -> bool:
         """Whether something was found that no smaller step cures."""
         return (
-            (self.law is not None and bool(_faults_of_law(self.law)))
+            (self.law is not None and _is_other(self.law))
             or (self.creep is not None and _creeps_for_good(self.creep))
             or (self.lag is not None and self._is_coulombs and _lags_for_good(self.lag, self._least_lag))
             or any(not motion.converges for motion in self.motions.values())
@@ -122,16 +118,21 @@ def _of_law(law: Friction) -> str:
         return (
             f"Which law of friction it is stays open: forces are known to ±{error_text(law.error)} μN only."
         )
-    deviations = [text for text in _faults_of_law(law) if text != law.shape]
+    deviations = _deviations(law)
     name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
     if deviations:
         return f"{name}, but {' and '.join(deviations)}."
     return f"{name}, its force right to ±{error_text(law.error)} μN."
 
 
-def _faults_of_law(law: Friction) -> list[str]:
-    """Return in words what is not Coulomb's."""
-    found = [] if law.shape == CONE or not law.sure else [law.shape]
+def _is_other(law: Friction) -> bool:
+    """Return whether a law is surely not Coulomb's."""
+    return (law.sure and law.shape != CONE) or bool(_deviations(law))
+
+
+def _deviations(law: Friction) -> list[str]:
+    """Return in words in what a force is off its own law."""
+    found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION)
     if abs(law.strength - 1.0) > least:
         size = "large" if law.strength > 1.0 else "small"

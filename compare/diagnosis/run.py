@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from compare.diagnosis.findings import PROBES, Creep, Lag, Motion, parts_of
-from compare.diagnosis.laws import Friction
+from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError
 from compare.run.workers import Failure, Workers
 
-LIMIT = 60.0
-"""Time in s after which a part of an engine is given up."""
-
 IN_SHORT = 20.0
-"""The same of a diagnosis in short, in s."""
+"""Time in s after which a part of a diagnosis in short is given up."""
 
 
 def diagnosed(
     engines: tuple[Engine, ...],
     *,
+    limit: float,
     jobs: int = 1,
-    limit: float = LIMIT,
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
 ) -> Iterator[Row]:
     """Yield the row of each engine, in the order in which they are complete.
@@ -34,10 +29,10 @@ def diagnosed(
     ----------
     engines : tuple of Engine
         Which are to be diagnosed; one that simulates nothing of what is asked has an empty row.
-    jobs : int
-        Number of processes.
     limit : float
         In s, after which a part is given up; the row says so.
+    jobs : int
+        Number of processes.
     progress : callable
         Called with the number of finished and of all parts, and the name of the last one.
 
@@ -62,13 +57,13 @@ def diagnosed(
 
 def in_short(engine: Engine) -> Row:
     """Return what the probes say of an engine, in seconds; after a first part without a result no other is asked."""
-    row = _empty(engine)
+    row, parts = _empty(engine), parts_of(engine)
     with Workers(1, IN_SHORT) as workers:
         for part in PROBES:
-            if part in parts_of(engine) and not row.gaps:
+            if part in parts and not row.gaps:
                 workers.submit(part, measured, engine, part)
-                for done in workers.finished():
-                    row = _with(row, part, done.value, done.seconds)
+                (done,) = workers.finished()
+                row = _with(row, part, done.value, done.seconds)
     return row
 
 
@@ -81,7 +76,7 @@ def measured(engine: Engine, part: str) -> Any:
 
 
 def _empty(engine: Engine) -> Row:
-    return Row(engine.name, engine.version, engine.step or np.nan)
+    return Row(engine.name, engine.version, engine.step or math.nan)
 
 
 def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
@@ -93,5 +88,4 @@ def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
         return replace(row, not_simulated=(*row.not_simulated, part))
     if isinstance(found, Motion):
         return replace(row, motions=row.motions | {part: found})
-    kinds = {Friction: "law", Creep: "creep", Lag: "lag"}
-    return replace(row, **{kinds[type(found)]: found})
+    return replace(row, **{part: found})  # of PROBES, which are the row's own fields

@@ -22,6 +22,9 @@ tolerance is larger by ``compare.claims.error_estimates.COARSENING``, and none a
 the processor, wall those on the clock.
 """
 
+TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
+"""Places of ``COLUMNS`` in a recorded run."""
+
 DIGITS = 4
 """Of the numbers in the files."""
 
@@ -82,3 +85,12 @@ def recordings() -> tuple[Recording, ...]:
             own = {"setting": setting["name"], "says": setting["says"], "probes": setting.get("probes", {})}
             found.append(Recording(**about, **own, runs=runs))
     return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))
+
+
+def estimate(runs: FloatArray) -> float:
+    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
+
+    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
+    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
+    """
+    return float(np.nansum(runs[-2:, CHANGE]))

@@ -102,9 +102,7 @@ class ShootingProblem:
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
         """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
-        step = math.sqrt(
-            max(self.tolerance, self.precision)
-        )  # balances the curvature of the map against its noise
+        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature of the map and its noise
         columns = []
         for i in sought:
             shifted = unknowns.copy()

@@ -116,7 +116,7 @@ def files_engine(text: str) -> Engine:
 
 def _index(folder: str) -> dict[str, Any]:
     try:
-        content = json.loads(Path(folder, INDEX).read_text(encoding="utf-8"))
+        content: dict[str, Any] = json.loads(Path(folder, INDEX).read_text(encoding="utf-8"))
         if content["format"] != FORMAT or not set(content["kinds"]) <= set(KINDS):
             raise ValueError
         frozenset(content["motions"])
@@ -125,7 +125,7 @@ def _index(folder: str) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError):
         reason = "it is no plan of this version"
     else:
-        return content  # type: ignore[no-any-return]
+        return content
     raise ValueError(f"{Path(folder).name}/{INDEX} can't be read: {reason}")
 
 

@@ -116,7 +116,7 @@ def raises(system, start, times, *, tolerance):
 
 def test_a_part_without_a_result_is_named_and_the_others_are_there():
     broken = Engine("broken", raises, ("block",))
-    (row,) = run.diagnosed((broken,))
+    (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == {"law", "creep"}
     assert row.sentences[0].startswith("No result of law, creep: out of order")
     assert set(run.in_short(broken).gaps) == {"law"}

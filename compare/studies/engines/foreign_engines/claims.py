@@ -11,8 +11,8 @@ from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.measured import Measured
 from compare.claims.study import Data, Study
 from compare.foreign.cases import CASES
-from compare.foreign.records import DIGITS
-from compare.studies.engines.foreign_engines.ladders import ERROR, STEPS, halvings
+from compare.foreign.records import DIGITS, ERROR, SECONDS, STEPS
+from compare.studies.engines.foreign_engines.ladders import halvings
 from compare.studies.engines.foreign_engines.laws import (
     Law,
     box,
@@ -27,7 +27,6 @@ from compare.studies.engines.foreign_engines.parameters import (
     BY_AXIS,
     FIRST_ORDER,
     PYRAMIDS,
-    SECONDS,
     STICKING,
     TANGENTS,
 )

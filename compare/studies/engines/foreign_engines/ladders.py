@@ -6,11 +6,9 @@ import functools
 
 import numpy as np
 
-from compare.foreign.records import COLUMNS, Recording, recordings
+from compare.foreign.records import STEPS, Recording, recordings
 from compare.studies.engines.foreign_engines.parameters import HALVED
 from reference_model.systems import FloatArray
-
-TOLERANCE, STEPS, ERROR, CHANGE = (COLUMNS.index(name) for name in ("tolerance", "steps", "error", "change"))
 
 
 @functools.cache
@@ -27,12 +25,3 @@ def halvings(runs: FloatArray) -> FloatArray:
     if strange.size and strange[-1] == len(ratios) - 1:
         return halvings(runs[:-1])
     return runs[strange[-1] + 1 :] if strange.size else runs
-
-
-def estimate(runs: FloatArray) -> float:
-    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
-
-    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
-    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
-    """
-    return float(np.nansum(runs[-2:, CHANGE]))

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from compare.foreign.records import COLUMNS
-
-SECONDS = COLUMNS.index("seconds")
-
 FIRST_ORDER = (
     "MuJoCo, elliptic cone",
     "Bullet, cone",

@@ -7,8 +7,8 @@ from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import parameters_of
 from compare.claims.study import Recorded
 from compare.foreign.cases import CASES
-from compare.foreign.records import Recording
-from compare.studies.engines.foreign_engines.ladders import ERROR, STEPS, TOLERANCE, estimate, recorded
+from compare.foreign.records import ERROR, STEPS, TOLERANCE, Recording, estimate
+from compare.studies.engines.foreign_engines.ladders import recorded
 
 
 def recorded_settings() -> tuple[Recorded, ...]:

@@ -9,8 +9,9 @@ import numpy as np
 from compare.claims.error_estimates import COARSENING
 from compare.claims.study import Table
 from compare.foreign.cases import CASES
-from compare.studies.engines.foreign_engines.ladders import ERROR, STEPS, estimate, recorded
-from compare.studies.engines.foreign_engines.parameters import SECONDS, WANTED
+from compare.foreign.records import ERROR, SECONDS, STEPS, estimate
+from compare.studies.engines.foreign_engines.ladders import recorded
+from compare.studies.engines.foreign_engines.parameters import WANTED
 from reference_model.systems import FloatArray
 
 

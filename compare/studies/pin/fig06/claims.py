@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING, refined
+from compare.claims.error_estimates import TRUTH, WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
 from compare.engines import Engine
@@ -211,12 +211,10 @@ def cycle_attracts(engine: Engine) -> Measured:
     # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
     wide = _decay_in_a_turn(engine, orbit, TOLERANCE, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
-    if math.isfinite(found.value) and math.isnan(error):  # one of the others has no number
-        error = math.inf
     return Measured(
         predicted=abs(orbit.multipliers[1]),
         value=found.value,
-        error=error,
+        error=known(found.value, error),
         system=orbit.system,
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -103,6 +104,20 @@ def largest_by_component(found: Measurement) -> FloatArray:
     return np.asarray(np.max(found.error, axis=tuple(range(found.error.ndim - 1))))
 
 
+def along(
+    found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
+) -> Measured:
+    """Return states ``found`` beside ``way``, s and v at ``times`` (n, 2), along headings; ``more`` as Measured has."""
+    return Measured(
+        predicted=on_a_line(way, headings),
+        value=found.value,
+        error=largest_by_component(found),
+        at={"heading in degrees": headings, "t in s": times},
+        components=IN_SPACE,
+        **more,
+    )
+
+
 @STUDY.claim(
     "A thrown block is slowed down by μN/m, straight ahead, whatever its heading",
     unit="m, m/s",
@@ -113,13 +128,7 @@ def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Follow throws up to nine tenths of the time in which they stop."""
     times = STOPPING_TIME * WHILE_SLIDING
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
-    return Measured(
-        predicted=on_a_line(thrown(times[1:]), headings),
-        value=found.value,
-        error=largest_by_component(found),
-        at={"heading in degrees": headings, "t in s": times[1:]},
-        components=IN_SPACE,
-    )
+    return along(found, thrown(times[1:]), headings, times[1:])
 
 
 @STUDY.claim(
@@ -131,14 +140,8 @@ def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Look at throws when they rest."""
     times = STOPPING_TIME * np.array([0.0, AT_REST])
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
-    return Measured(
-        predicted=on_a_line(np.array([[STOPPING_DISTANCE, 0.0]]), headings),
-        value=found.value,
-        error=largest_by_component(found),
-        at={"heading in degrees": headings, "t in s": times[1:]},
-        components=IN_SPACE,
-        data={"stops": found.value[:, 0, :2]},
-    )
+    rest, stops = np.array([[STOPPING_DISTANCE, 0.0]]), found.value[:, 0, :2]
+    return along(found, rest, headings, times[1:], data={"stops": stops})
 
 
 @STUDY.claim(
@@ -181,14 +184,7 @@ def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     times = np.array([0.0, 0.5, 1.25]) * math.pi / SPRING.natural_frequency
     found = moved(engine, SPRING, headings, (-stretch + 0j, 0j), times)
     way = half_swings(SPRING, stretch, times[1:])
-    return Measured(
-        predicted=on_a_line(-way, headings),
-        value=found.value,
-        error=largest_by_component(found),
-        at={"heading in degrees": headings, "t in s": times[1:]},
-        components=IN_SPACE,
-        system=SPRING,
-    )
+    return along(found, -way, headings, times[1:], system=SPRING)
 
 
 @STUDY.claim(
@@ -249,14 +245,8 @@ def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measur
     stretch = PULL * FRICTION / AFAR.stiffness
     found = moved(engine, AFAR, headings, (-stretch + 0j, SPEED + 0j), PULLED)
     way = pulled(AFAR, SPEED, stretch, PULLED[1:])
-    return Measured(
-        predicted=on_a_line(way, headings),
-        value=found.value + np.array([stretch, 0.0, 0.0, 0.0]),
-        error=largest_by_component(found),
-        at={"heading in degrees": headings, "t in s": PULLED[1:]},
-        components=IN_SPACE,
-        system=AFAR,
-    )
+    from_start = Measurement(found.value + np.array([stretch, 0.0, 0.0, 0.0]), found.error)
+    return along(from_start, way, headings, PULLED[1:], system=AFAR)
 
 
 @STUDY.claim(

@@ -42,6 +42,15 @@ Follow = Callable[[Throw, FloatArray, float], FloatArray]
 """From a throw, times and tolerance to the states at the times."""
 
 
+def in_engine(engine: Engine, points: int | None = None) -> Follow:
+    """Return what follows throws of a disc on ``points``, or on a ring, with ``engine``."""
+
+    def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
+        return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
+
+    return follow
+
+
 def compared(
     follow: Follow,
     throws: Sequence[Throw],
@@ -89,11 +98,7 @@ def seen(states: FloatArray) -> FloatArray:
 )
 def on_ring(engine: Engine) -> Measured:
     """Compare throws of a ring with uniform deceleration."""
-
-    def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-        return engine.simulate(throw.disc(), throw.state, times, tolerance=tolerance).states
-
-    return compared(follow, RING, TO_REST, "ring")
+    return compared(in_engine(engine), RING, TO_REST, "ring")
 
 
 @STUDY.claim(
@@ -107,11 +112,7 @@ def on_ring(engine: Engine) -> Measured:
 )
 def on_points(engine: Engine, points: int) -> Measured:
     """Compare throws of a disc on points with uniform deceleration."""
-
-    def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-        return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
-
-    return compared(follow, POINTS[points], TO_REST, f"{points} points", points=points)
+    return compared(in_engine(engine, points), POINTS[points], TO_REST, f"{points} points", points=points)
 
 
 @STUDY.claim(

@@ -13,15 +13,15 @@ from compare.claims.paper_parameters import FIG11
 from compare.engines import UnsupportedSystemError, engines
 from compare.figures import paper_style
 from compare.foreign.cases import CASES
-from compare.foreign.records import COLUMNS, recordings
+from compare.foreign.records import CHANGE, COLUMNS, ERROR, SECONDS, STEPS, estimate, recordings
 from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES
 from compare.studies.engines.foreign_engines import claims as foreign_engines
 from compare.studies.engines.foreign_engines import ladders, recorded
 from compare.studies.engines.foreign_engines.claims import STUDY, draw
-from compare.studies.engines.foreign_engines.ladders import CHANGE, ERROR, STEPS, estimate, halvings
-from compare.studies.engines.foreign_engines.parameters import BY_AXIS, FIRST_ORDER, SECONDS
+from compare.studies.engines.foreign_engines.ladders import halvings
+from compare.studies.engines.foreign_engines.parameters import BY_AXIS, FIRST_ORDER
 from compare.studies.engines.foreign_engines.recorded import recorded_claims, recorded_settings
 from compare.studies.engines.foreign_engines.tables import time_to
 from reference_model import simulate

@@ -139,8 +139,8 @@ def approach(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
         return np.array(found)
 
     found = refined(constants, TOLERANCE)
-    known = np.isfinite(found.error)  # what comes and goes with the tolerance makes nothing else open
-    largest = np.where(known, np.max(found.error[known], initial=0.0), found.error)
+    there = np.isfinite(found.error)  # what comes and goes with the tolerance makes nothing else open
+    largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
     predicted = np.array([expected_approach(throw) for throw in throws])
     # An error of δ changes L by as much, relative to δ.
     left = predicted[:, np.newaxis] / np.array(NEARNESSES)
