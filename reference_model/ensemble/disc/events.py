@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import ACCURACY
 from reference_model.ensemble.core.dense_output import (
     outward,
@@ -55,9 +56,7 @@ from reference_model.ensemble.disc.memory import (
     DiscAims,
     DiscMemory,
     compared,
-    next_asked,
     pass_asked,
-    recorded,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 

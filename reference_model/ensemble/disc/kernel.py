@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
+from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.jit import outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
@@ -21,9 +22,7 @@ from reference_model.ensemble.disc.lanes import RADII, TURNS, DiscLanes, advance
 from reference_model.ensemble.disc.memory import (
     DiscAims,
     DiscMemory,
-    next_asked,
     put_state,
-    recorded,
     take_checkpoint,
 )
 from reference_model.ensemble.disc.rest import (

@@ -7,9 +7,10 @@ from typing import Annotated, Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import LENGTH, ON_THE_WAY, RATE, SHORT, SPAN, STEP, Checkpoints
+from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
+from reference_model.ensemble.core.asked import passes_asked
 from reference_model.ensemble.core.convergence import converged
-from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.records import Record
 from reference_model.ensemble.core.runge_kutta import Tuple
 from reference_model.ensemble.core.window import Measures, Window
@@ -113,36 +114,13 @@ def compared(series: Series, values: Tuple, scale: float) -> bool:
     return series.count >= 5 and converged(distance, before, first, scale)
 
 
-@inlined
-def recorded(aims: DiscAims) -> bool:
-    """Tell whether checkpoints are asked for."""
-    return aims.checkpoints.size > 0
-
-
-@scalar
-def next_asked(memory: DiscMemory, aims: DiscAims) -> float:
-    """Return the next time that is asked for, in units; inf if there is none."""
-    if memory.passed < aims.checkpoints.size:
-        asked: float = aims.checkpoints[memory.passed].asked * memory.rate
-        return asked
-    return math.inf
-
-
 @scalar
 def pass_asked(
     lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, aims: DiscAims
 ) -> None:
     """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
-    before = memory.passed
-    while memory.passed < aims.checkpoints.size and next_asked(memory, aims) <= until:
-        memory.passed += 1
-    if memory.passed == before:
-        return
-    if memory.checkpoints < aims.checkpoints.size:
-        pace = aims.checkpoints[memory.checkpoints].pace
-        pace[LENGTH], pace[RATE], pace[STEP] = memory.length, memory.rate, moment.step[lane]
-        pace[SHORT], pace[SPAN] = lanes.short[lane], memory.span
-    take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, aims)
+    if passes_asked(lanes, moment, memory, lane, until, aims):
+        take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, aims)
 
 
 @scalar

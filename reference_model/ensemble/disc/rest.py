@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
+from reference_model.ensemble.core.asked import recorded
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import fill, put
@@ -33,7 +34,6 @@ from reference_model.ensemble.disc.memory import (
     DiscMemory,
     compared,
     pass_asked,
-    recorded,
     take_checkpoint,
 )
 from reference_model.ensemble.disc.slip import held_friction, points_rates, ring_rates, stuck_for

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
+from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.dense_output import (
     DenseOutput,
@@ -46,9 +47,7 @@ from reference_model.ensemble.pin.memory import (
     PinMemory,
     close_window,
     keep,
-    next_asked,
     pass_asked,
-    recorded,
     take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP, Checkpoints
+from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.jit import inlined, outermost, scalar
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
@@ -38,9 +39,7 @@ from reference_model.ensemble.pin.memory import (
     Aims,
     PinMemory,
     keep,
-    next_asked,
     put_state,
-    recorded,
     take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import MOST_TERMS

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.checkpoints import LENGTH, ON_THE_WAY, RATE, SHORT, SPAN, STEP, Checkpoints
+from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
+from reference_model.ensemble.core.asked import passes_asked
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import Record, fill, layout
@@ -137,12 +137,6 @@ def close_window(memory: PinMemory, end: int, t: float, way: float, radius: floa
     memory.end, memory.window.kind = end, NO_WINDOW
 
 
-@inlined
-def recorded(aims: Aims) -> bool:
-    """Tell whether checkpoints are asked for."""
-    return aims.checkpoints.size > 0
-
-
 @scalar
 def take_checkpoint(
     memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, aims: Aims
@@ -156,30 +150,13 @@ def take_checkpoint(
 
 
 @scalar
-def next_asked(memory: PinMemory, aims: Aims) -> float:
-    """Return the next time that is asked for, in units; inf if there is none."""
-    if memory.passed < aims.checkpoints.size:
-        asked: float = aims.checkpoints[memory.passed].asked * memory.rate
-        return asked
-    return math.inf
-
-
-@scalar
 def pass_asked(
     lanes: PinLanes, moment: Moment, memory: PinMemory, lane: int, until: float, law: PinLaw, aims: Aims
 ) -> None:
     """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
-    before = memory.passed
-    while memory.passed < aims.checkpoints.size and next_asked(memory, aims) <= until:
-        memory.passed += 1
-    if memory.passed == before:
-        return
-    if memory.checkpoints < aims.checkpoints.size:
-        pace = aims.checkpoints[memory.checkpoints].pace
-        pace[LENGTH], pace[RATE], pace[STEP] = memory.length, memory.rate, moment.step[lane]
-        pace[SHORT], pace[SPAN] = lanes.short[lane], memory.span
-    t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
-    take_checkpoint(memory, ON_THE_WAY, t, z, w, law, aims)
+    if passes_asked(lanes, moment, memory, lane, until, aims):
+        t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
+        take_checkpoint(memory, ON_THE_WAY, t, z, w, law, aims)
 
 
 @scalar

@@ -107,7 +107,7 @@ def largest_by_component(found: Measurement) -> FloatArray:
 def along(
     found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
 ) -> Measured:
-    """Return states ``found`` beside ``way``, s and v at ``times`` (n, 2), along headings; ``more`` as Measured has."""
+    """Return states ``found`` beside ``way``, s and v at ``times`` (n, 2), along headings; ``more`` of Measured."""
     return Measured(
         predicted=on_a_line(way, headings),
         value=found.value,
