@@ -17,7 +17,7 @@ import psutil
 from distributed import LocalCluster
 
 from compare.claims.paper_parameters import FIG5
-from compare.cli.options import cores
+from compare.cli.door.options import cores
 from compare.sweep.compute.executors import Cluster, Executor, InProcess
 from compare.sweep.compute.run import run
 from compare.sweep.define.axes import Axis

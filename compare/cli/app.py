@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Annotated
 try:
     import typer
 
-    from compare.cli.command import (
+    from compare.cli.compiling import compile_kernels
+    from compare.cli.door.command import (
         BAD_INPUT,
         FINE,
         INTERRUPTED,
@@ -27,12 +28,11 @@ try:
         printing,
         say,
     )
-    from compare.cli.compiling import compile_kernels
-    from compare.cli.judge import judge
     from compare.cli.listing import errata, list_studies
-    from compare.cli.matrix import matrix
-    from compare.cli.plan import plan
-    from compare.cli.report import report
+    from compare.cli.measure.judge import judge
+    from compare.cli.measure.matrix import matrix
+    from compare.cli.measure.plan import plan
+    from compare.cli.measure.report import report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
 except KeyboardInterrupt:  # which may come before there is anything that could take it

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compare.cli.progress import measurements
+from compare.cli.door.progress import measurements
 
 
 def compile_kernels() -> None:

@@ -24,9 +24,9 @@ from pathlib import Path
 from typing import Any
 
 from compare.claims.as_json import claim_from_json
+from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.quotes import Nature, parts, quote
-from compare.text_files import write_text
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, finite, positive, taking, whole
-from compare.text_files import check_writable, replacing
+from compare.cli.door.command import BadInputError, Command, EngineFailedError, printing, refused
+from compare.cli.door.options import Settings, Tolerance, changed, finite, positive, taking, whole
+from compare.output.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
     from reference_model.systems import System

@@ -9,8 +9,8 @@ from pathlib import Path
 from compare.claims.as_json import as_json
 from compare.diagnosis.picture import drawn
 from compare.diagnosis.row import Row
-from compare.figures import paper_style, saved
-from compare.text_files import replacing, write_text
+from compare.output.figures import paper_style, saved
+from compare.output.text_files import replacing, write_text
 
 
 def write_rows(rows: Sequence[Row], folder: Path) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from compare.diagnosis.findings import MOTIONS
 from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.row import Row
-from compare.figures import new_figure
+from compare.output.figures import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

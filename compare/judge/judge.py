@@ -21,10 +21,10 @@ from compare.judge.detection import DETECTION, detected
 from compare.judge.outcome import Catch, Judged, Judgement, Outcome
 from compare.judge.page import judge_page
 from compare.judge.repetitions import REPEATED, REPETITIONS
+from compare.output.text_files import write_text
 from compare.run.runner import Run, run
 from compare.run.stamp import platform_stamp
 from compare.run.workers import Failure
-from compare.text_files import write_text
 
 if TYPE_CHECKING:
     from compare.judge.faults import Fault

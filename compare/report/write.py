@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from compare.output.text_files import replacing, write_text
 from compare.report.junit import junit
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
 from compare.report.results_json import results
 from compare.run.runner import Drawing, Run
 from compare.run.stamp import platform_stamp
-from compare.text_files import replacing, write_text
 
 
 def write_report(run: Run, output: Path) -> Matrix:

@@ -12,7 +12,7 @@ import numpy as np
 
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
-from compare.text_files import replacing, write_text
+from compare.output.text_files import replacing, write_text
 
 
 @dataclass(frozen=True)

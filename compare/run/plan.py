@@ -20,7 +20,7 @@ from compare.claims.study import Study
 from compare.engines import Engine, reference
 from compare.engines.outside.json_lines import question
 from compare.engines.outside.motion_files import FORMAT, INDEX, name_of
-from compare.text_files import replacing, write_text
+from compare.output.text_files import replacing, write_text
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 

@@ -11,7 +11,7 @@ from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, UnsupportedSystemError
-from compare.figures import paper_style, saved
+from compare.output.figures import paper_style, saved
 from compare.run.code_files import UnknownCodeError
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint

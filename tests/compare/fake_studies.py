@@ -17,7 +17,7 @@ from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
-from compare.figures import axis, curve, engines_in, new_figure, points
+from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.report.animation import gif
 from reference_model.trajectory import Phase, Solution, Trajectory
 

@@ -9,7 +9,7 @@ import pytest
 
 from compare.cli import app as cli
 from compare.cli.trajectory_files import WRITERS
-from compare.text_files import check_writable, replacing
+from compare.output.text_files import check_writable, replacing
 
 OLD = "old\n"
 

@@ -1,6 +1,6 @@
 """``friction-discs sweep``: many trajectories."""
 
-from compare.cli.command import Command
+from compare.cli.door.command import Command
 from compare.cli.sweep.commands import sweep
 from compare.cli.sweep.shock import sweep_shock
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from compare.cli.command import Command, refused
-from compare.cli.options import changed, taking
+from compare.cli.door.command import Command, refused
+from compare.cli.door.options import changed, taking
 from compare.cli.sweep.options import (
     COARSE,
     STARTS,

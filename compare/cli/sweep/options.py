@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from compare.cli.command import refused
-from compare.cli.options import Settings, Tolerance, changed, chosen_from, count, positive, whole
+from compare.cli.door.command import refused
+from compare.cli.door.options import Settings, Tolerance, changed, chosen_from, count, positive, whole
 from compare.cli.sweep.run import CHUNK, run_sweep
 
 if TYPE_CHECKING:

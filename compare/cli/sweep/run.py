@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from compare.cli.command import (
+from compare.cli.door.command import (
     BAD_INPUT,
     FINE,
     INTERRUPTED,
@@ -17,8 +17,8 @@ from compare.cli.command import (
     refused,
     say,
 )
-from compare.cli.options import check_folder
-from compare.cli.progress import trajectories
+from compare.cli.door.options import check_folder
+from compare.cli.door.progress import trajectories
 
 if TYPE_CHECKING:
     from compare.sweep.compute.executors import Executor

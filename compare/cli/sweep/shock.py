@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, printing, refused
-from compare.cli.options import Settings, Tolerance, changed
+from compare.cli.door.command import FINE, SOMETHING_DIFFERS, BadInputError, printing, refused
+from compare.cli.door.options import Settings, Tolerance, changed
 
 AGREEMENT = 1e-6
 """Largest relative difference of both ways to find it."""

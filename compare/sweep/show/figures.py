@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from compare.figures import (
+from compare.output.figures import (
     BLACK,
     BLUE,
     GREEN,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import (
+from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,

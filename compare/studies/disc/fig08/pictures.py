@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.parameters import RING
 from compare.studies.disc.fig08.theory import place_and_spin
 from compare.studies.toolkit.self_centred import last_load, with_load

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
+from compare.output.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
 from compare.studies.disc.fig09.theory import radius_of_pin, spin_of_large_whirl
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import (
+from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,

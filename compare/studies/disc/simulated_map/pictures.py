@@ -8,7 +8,7 @@ import numpy as np
 
 from compare.claims.paper_parameters import FIG11
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.disc.simulated_map.parameters import DAMPING, SHAFT_DAMPING
 from reference_model.systems import FloatArray
 

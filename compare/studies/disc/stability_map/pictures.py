@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.paper_parameters import FIG11
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import (
+from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,

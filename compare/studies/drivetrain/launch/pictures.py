@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLACK, BLUE, GREEN, GREY, ORANGE, axis, curve, new_figure, points
+from compare.output.figures import BLACK, BLUE, GREEN, GREY, ORANGE, axis, curve, new_figure, points
 from compare.studies.toolkit.drivetrain_bench import RPM
 
 if TYPE_CHECKING:

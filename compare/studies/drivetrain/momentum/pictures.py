@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, BLUE, GREEN, ORANGE, axis, new_figure
+from compare.output.figures import BLACK, BLUE, GREEN, ORANGE, axis, new_figure
 from compare.studies.drivetrain.momentum.parameters import BODIES, SOLVERS
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, axis, curve, new_figure, points
+from compare.output.figures import BLACK, axis, curve, new_figure, points
 from compare.studies.drivetrain.reduced.parameters import CASES, UNTIL
 
 

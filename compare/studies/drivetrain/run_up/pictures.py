@@ -9,7 +9,17 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLACK, BLUE, GREY, ORANGE, axis, curve, engine_style, engines_in, new_figure
+from compare.output.figures import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    axis,
+    curve,
+    engine_style,
+    engines_in,
+    new_figure,
+)
 from compare.report.animation import gif
 from compare.studies.drivetrain.run_up.spectrum import order_spectrum
 from compare.studies.toolkit.drivetrain_bench import RPM, centre, natural_frequency, passenger_car

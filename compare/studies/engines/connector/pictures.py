@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import axis, curve, engines_in, new_figure
+from compare.output.figures import axis, curve, engines_in, new_figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure
+from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure
 from compare.studies.engines.engine_convergence.solvers import SOLVERS
 
 if TYPE_CHECKING:

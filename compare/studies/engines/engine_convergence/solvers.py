@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from compare.figures import BLUE, GREEN, ORANGE, PURPLE
+from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, curve, engines_in, new_figure, points
+from compare.output.figures import BLACK, curve, engines_in, new_figure, points
 from compare.studies.engines.error_estimates.parameters import LEAST_COVERAGE, MOST_OVER_ESTIMATE
 from compare.studies.engines.error_estimates.problems import PROBLEMS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLACK, GREY, PURPLE, SKY, engine_style, new_figure
+from compare.output.figures import BLACK, GREY, PURPLE, SKY, engine_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from compare.studies.engines.power_balance.parameters import RESOLUTION
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from compare.claims.error_estimates import TRUTH
 from compare.claims.study import ByEngine, Figures
-from compare.figures import axis, curve, engines_in, new_figure
+from compare.output.figures import axis, curve, engines_in, new_figure
 from compare.studies.engines.trajectories.parameters import MOTIONS
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
+from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
 from compare.studies.pin.basins.parameters import PLANE
 from reference_model.ensemble import EndState
 

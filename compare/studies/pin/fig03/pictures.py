@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig03.parameters import LOADS, PIN, with_load
 from compare.studies.pin.fig03.theory import positions
 from reference_model.formulas.pin import equilibrium_position

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig04.parameters import CLAIM_SPEEDS, OFFSETS, pin_at
 from reference_model.formulas.pin import first_order_whirl_shift, whirl_shift
 from reference_model.systems import PinOnDisc

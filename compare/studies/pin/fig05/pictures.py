@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.paper_parameters import FIG5
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
+from compare.output.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.fig06.parameters import WHIRL_LOADS
 
 if TYPE_CHECKING:

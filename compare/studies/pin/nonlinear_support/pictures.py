@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import axis, curve, engines_in, new_figure, points
+from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.pin.nonlinear_support.parameters import PINS
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}

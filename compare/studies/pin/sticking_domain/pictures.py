@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.sticking_domain.parameters import OUTSIDE, RESONANCE
 from compare.studies.pin.sticking_domain.theory import predicted_turns
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.plane.block.parameters import HEADINGS, SPEED, direction
 from compare.studies.plane.block.theory import STOPPING_DISTANCE
 

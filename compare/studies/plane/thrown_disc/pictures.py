@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.figures import axis, curve, engines_in, new_figure, points
+from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.plane.thrown_disc.parameters import FULL, RING, TO_REST, WHILE_SLIDING
 
 TAKEN = {

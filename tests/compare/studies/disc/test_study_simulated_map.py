@@ -5,7 +5,7 @@ import pytest
 from study_harness import StudyTests
 
 from compare.claims.claim import Verdict
-from compare.figures import paper_style, saved
+from compare.output.figures import paper_style, saved
 from compare.studies.disc.simulated_map.claims import STUDY
 from compare.studies.disc.simulated_map.parameters import DAMPING, SHAFT_DAMPING
 from compare.studies.disc.simulated_map.theory import simulated

@@ -11,9 +11,9 @@ import compare.foreign.records
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG11
 from compare.engines import UnsupportedSystemError, engines
-from compare.figures import paper_style
 from compare.foreign.cases import CASES
 from compare.foreign.records import CHANGE, COLUMNS, ERROR, SECONDS, STEPS, estimate, recordings
+from compare.output.figures import paper_style
 from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES

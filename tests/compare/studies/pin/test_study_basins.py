@@ -9,7 +9,7 @@ from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5
-from compare.figures import paper_style, saved
+from compare.output.figures import paper_style, saved
 from compare.studies.pin.basins import claims, theory
 from compare.studies.pin.basins.claims import STUDY
 from compare.studies.pin.basins.theory import enclosed, smooth

@@ -18,7 +18,7 @@ BESIDE = {
     "compare.sweep.show.figures",
     "compare.sweep.store.stamp",
     "compare.sweep.show.summary",
-    "compare.text_files",
+    "compare.output.text_files",
 }
 """Names, where the work is done, what is said and drawn of it, and this stamp itself: they change no number."""
 
@@ -56,7 +56,7 @@ def test_a_sweep_of_other_equations_or_another_plan_is_another_one(path, copied)
     "path",
     [
         "compare/studies/pin/basins/claims.py",
-        "compare/figures.py",
+        "compare/output/figures.py",
         "compare/sweep/show/figures.py",
         "compare/cli/sweep/run.py",
         "exudyn_models/paper/simulate.py",

@@ -2,7 +2,7 @@ r"""How every figure looks: sizes, type, and a fixed colour, line and marker for
 
 A study's ``draw`` needs nothing else::
 
-    from compare.figures import curve, new_figure, points
+    from compare.output.figures import curve, new_figure, points
 
     def draw(data):
         figure, (left, right) = new_figure(ncols=2)         # always a flat tuple, row by row

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
-from compare.cli.options import Folder, Jobs, Resume, check_folder, cores, studies_of
-from compare.cli.progress import measurements
+from compare.cli.door.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.door.options import Folder, Jobs, Resume, check_folder, cores, studies_of
+from compare.cli.door.progress import measurements
 
 if TYPE_CHECKING:
     from compare.judge.faults import Fault

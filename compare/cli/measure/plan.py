@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, printing, refused, say
-from compare.cli.options import Folder, Jobs, check_folder, cores, studies_of
-from compare.cli.progress import measurements
-from compare.cli.report import Level
+from compare.cli.door.command import FINE, SOMETHING_DIFFERS, BadInputError, printing, refused, say
+from compare.cli.door.options import Folder, Jobs, check_folder, cores, studies_of
+from compare.cli.door.progress import measurements
+from compare.cli.measure.report import Level
 
 Names = Annotated[
     list[str] | None,

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
-from compare.cli.options import Folder, Jobs, check_folder, cores, positive
-from compare.cli.progress import measurements
-from compare.cli.report import Engines
+from compare.cli.door.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.door.options import Folder, Jobs, check_folder, cores, positive
+from compare.cli.door.progress import measurements
+from compare.cli.measure.report import Engines
 
 if TYPE_CHECKING:
     from compare.diagnosis.row import Row

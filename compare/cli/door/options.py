@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec, TypeVa
 
 import typer
 
-from compare.cli.command import refused
+from compare.cli.door.command import refused
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -8,8 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.command import FINE, INTERRUPTED, NOTHING_SHOWN, SOMETHING_DIFFERS, printing, refused, say
-from compare.cli.options import (
+from compare.cli.door.command import (
+    FINE,
+    INTERRUPTED,
+    NOTHING_SHOWN,
+    SOMETHING_DIFFERS,
+    printing,
+    refused,
+    say,
+)
+from compare.cli.door.options import (
     Folder,
     Jobs,
     Resume,
@@ -20,7 +28,7 @@ from compare.cli.options import (
     studies_of,
     whole,
 )
-from compare.cli.progress import measurements
+from compare.cli.door.progress import measurements
 
 if TYPE_CHECKING:
     from compare.engines import Engine

@@ -1,0 +1,1 @@
+"""What every command needs at its door: options, refusals in a sentence, progress."""

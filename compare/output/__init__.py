@@ -1,0 +1,1 @@
+"""What is written for people: how figures look, and files that are whole at every moment."""
