@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.paper.creep import RELAXATIONS, WHOLE, RegularisedContact
-from exudyn_models.paper.dense_output import creep_at, creep_until
+from exudyn_models.paper.dense_output import creep_between, creep_until
 from exudyn_models.paper.models.build import build
 from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.scales import time_scale
@@ -253,11 +253,11 @@ class _Turns:
 
     def _end_of_creep(self, run: Steps, part: Part) -> float | None:
         """Return the time at which in ``run`` something else than ``part`` creeps first, None if nothing does."""
-        seen = self.contact.in_master_axes
+        seen, states_at = self.contact.in_master_axes, creep_between(run)
 
         def first_other(times: FloatArray) -> int | None:
             """Return the number of the first of ``times`` at which something else creeps."""
-            states = enumerate(creep_at(run, times).tolist())
+            states = enumerate(states_at(times).tolist())
             return next((i for i, state in states if self.friction.creeping(seen, state) != part), None)
 
         places = _suspects(seen, run) if part == WHOLE else run.times[-1:]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
@@ -9,14 +11,19 @@ from exudyn_models.solver.solver_run import Steps
 from reference_model.systems import FloatArray
 
 
-def creep_at(steps: Steps, times: FloatArray) -> FloatArray:
-    """Return the states of a body that creeps at ``times`` (s), shape (len(times), 2d).
+def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
+    """Return the function of times (s) that gives the states of a body that creeps there, shape (len(times), 2d).
 
     Its velocities are cubics between those of the steps, with their accelerations: in a short step the creep is so
     little that the rounding of positions must not touch them.
     """
-    positions, _ = np.split(states_at(steps, times), 2, axis=1)
-    return np.hstack((positions, _velocities(steps)(times)))
+    velocities = _velocities(steps)
+
+    def states(times: FloatArray) -> FloatArray:
+        positions, _ = np.split(states_at(steps, times), 2, axis=1)
+        return np.hstack((positions, velocities(times)))
+
+    return states
 
 
 def creep_until(steps: Steps, time: float) -> Steps:
@@ -24,7 +31,7 @@ def creep_until(steps: Steps, time: float) -> Steps:
     before = int(np.searchsorted(steps.times, time))  # the steps that are kept as they are
     return Steps(
         np.append(steps.times[:before], time),
-        np.vstack((steps.states[:before], creep_at(steps, np.array([time])))),
+        np.vstack((steps.states[:before], creep_between(steps)(np.array([time])))),
         np.vstack((steps.accelerations[:before], _velocities(steps)(time, 1))),
         steps.evaluations,
     )

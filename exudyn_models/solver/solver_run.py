@@ -216,7 +216,8 @@ class _Look:
     """Looks at the state after every step of a run, and ends it where Exudyn would not or where ``watch`` does."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
-        self._data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
+        data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
+        self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._start, self._end, self._watch, self.count = start, end, watch, count
         self._previous = start
         #: In s: a step below the resolution of time leaves it where it is.
@@ -225,16 +226,16 @@ class _Look:
         self.stopped = False
 
     def __call__(self, mbs: Any, t: float) -> bool:
-        data, own = self._data, self._own
-        state = [*data.GetODE2Coordinates()[own].tolist(), *data.GetODE2Coordinates_t()[own].tolist()]
+        own, watch = self._own, self._watch  # every step comes here: each call counts
+        state = self._positions().tolist()[own] + self._velocities().tolist()[own]
         if not math.isfinite(sum(state)):
             self.failure = NOT_FINITE
-        elif self._start < t < self._end and t - self._previous <= self.smallest_step:
+        elif t - self._previous <= self.smallest_step and self._start < t < self._end:
             self.failure = f"the step fell to {(t - self._previous) * self.count.seconds:.1g} s"
         self._previous = t
         self.too_many = self.count.count(t)
-        watch = self._watch
-        self.stopped = bool(self.failure or self.too_many) or not (watch is None or watch(t, state))
+        if self.failure or self.too_many or (watch is not None and not watch(t, state)):
+            self.stopped = True
         return not self.stopped
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
 
 from reference_model.numerics.compiled_cache import known_by_content
 
@@ -47,7 +48,8 @@ class Kept(CPUDispatcher):
 
     def compile(self, sig: Any) -> Any:
         """Return the compiled function for arguments of these types."""
-        if self._is_kept(sig):
+        arguments, _ = normalize_signature(sig)
+        if arguments in self.overloads or self._is_kept(sig):  # looking at the disk takes a millisecond
             return super().compile(sig)
         folder = Path(self._files.cache_path)
         with _locked(folder / f"{self._files._cache_file._index_name}.lock"):
