@@ -90,19 +90,32 @@ def simulate_ensemble(
 
 def require_known(system: System) -> None:
     """Raise ``ValueError`` for a system that compiled code does not know, naming the parameter."""
+    unknown = _what_is_unknown(system)
+    if unknown:
+        raise ValueError(unknown)
+
+
+def is_known(system: System) -> bool:
+    """Tell whether compiled code knows a system."""
+    return not _what_is_unknown(system)
+
+
+def _what_is_unknown(system: System) -> str:
+    """Return a sentence on what compiled code does not know, "" if there is nothing."""
     for name in NOT_TAKEN:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":
-            raise ValueError(
+            return (
                 f"{name} = {value:g}: a compiled run takes linear supports only, since release and the neighbourhood "
                 "of an equilibrium are closed forms there; take reference_model.simulate"
             )
     points = getattr(system, "contact_points", None) or 0
     if points > MOST_POINTS:
-        raise ValueError(
+        return (
             f"contact_points = {points}: a compiled run takes up to {MOST_POINTS}; so many are close to the "
             "continuous ring, contact_points = None"
         )
+    return ""
 
 
 def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 from compare.claims.claim import Verdict
 from compare.engines import engines
 from compare.judge.faults import RIGHT
+from compare.judge.faults.reference import simulate
 
 SEES, BLIND, OPEN = Verdict.DIFFERS, Verdict.AGREES, Verdict.INCONCLUSIVE
 LEFT_OUT = None
@@ -18,13 +19,14 @@ LEFT_OUT = None
 def engine_named(name):
     """Return a registered engine, or the plain one that shares nothing ("intact").
 
-    The reference remembers what it has simulated, for as long as the tests run: claims that ask for the same motion,
-    and engines under other names that promise less, get it once. ``test_engines`` has that equal runs are equal.
+    The reference is compiled where it can be; every report measures the plain one. It remembers what it has
+    simulated, for as long as the tests run: claims that ask for the same motion, and engines under other names that
+    promise less, get it once. ``test_engines`` has that equal runs are equal.
     """
     if name == "intact":
         return RIGHT[1]
     (engine,) = engines([name])
-    return replace(engine, function=remembering(engine.function)) if name == "reference" else engine
+    return replace(engine, function=remembering(simulate)) if name == "reference" else engine
 
 
 def remembering(function):
@@ -42,19 +44,19 @@ def remembering(function):
 
 
 @functools.cache
-def findings_of(study, name, sound_few, only=()):
-    """Measure a part of ``study`` with a sound engine, or its theory, once for all tests."""
+def findings_of(study, engine, sound_few, only=()):
+    """Measure a part of ``study`` with a sound engine, or its theory if there is none, once for all tests."""
     few = {function: dict(options) for function, options in sound_few}
-    return study.measure_theory(few) if name == "theory" else study.measure(engine_named(name), few, only)
+    return study.measure(engine, few, only) if engine else study.measure_theory(few)
 
 
 class StudyTests:
     """Checks of one study.
 
-    ``study`` is it; ``few`` are the arguments, by the functions of its claims and for "curves", with which less than
-    all is measured; ``sound`` are engines of which every claim must agree, and ``not_claimed`` the functions that
-    claim nothing of one of them. Of an engine that takes long ``parts`` names what alone is asked: functions, or
-    "function/case".
+    ``study`` is it; ``engine_named`` finds its sound engines; ``few`` are the arguments, by the functions of its
+    claims and for "curves", with which less than all is measured; ``sound`` are engines of which every claim must
+    agree, and ``not_claimed`` the functions that claim nothing of one of them. Of an engine that takes long
+    ``parts`` names what alone is asked: functions, or "function/case".
 
     ``faults`` are broken engines, ``columns`` functions of claims, or "function/case" for one of a family, and
     ``table`` says for each fault which of them see it: SEES, BLIND, OPEN, LEFT_OUT, a part of the message of an
@@ -63,6 +65,7 @@ class StudyTests:
     """
 
     study = None
+    engine_named = staticmethod(engine_named)
     few = {}
     sound = ("reference", "intact")
     not_claimed = {}
@@ -90,7 +93,8 @@ class StudyTests:
     def found(cls, name):
         """Return the findings about a sound engine, or "theory"."""
         few = tuple((function, tuple(options.items())) for function, options in cls.few.items())
-        return findings_of(cls.study, name, few, cls.parts.get(name, ()))
+        engine = None if name == "theory" else cls.engine_named(name)
+        return findings_of(cls.study, engine, few, cls.parts.get(name, ()))
 
     @classmethod
     def claims_of_fault(cls, fault, claim):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.judge.faults.equations import carried
-from reference_model import simulate
+from compare.judge.faults.reference import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas.pin import release_time
 from reference_model.support import Support

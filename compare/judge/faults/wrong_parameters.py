@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from reference_model import simulate
+from compare.judge.faults.reference import simulate
 from reference_model.systems import DiscOnDisc, System
 from reference_model.trajectory import Trajectory
 

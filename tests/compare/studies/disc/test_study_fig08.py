@@ -10,11 +10,11 @@ from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.disc.fig08 import theory
 from compare.studies.disc.fig08.claims import STUDY
 from compare.studies.disc.fig08.parameters import RING
 from compare.studies.toolkit.self_centred import last_load, with_load
-from reference_model import simulate
 from reference_model.contact.contact_law import Ring, Shares
 from reference_model.formulas.disc import places_by_26
 

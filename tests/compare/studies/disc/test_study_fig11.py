@@ -11,11 +11,12 @@ from study_harness import LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.disc.fig11 import pictures, theory
 from compare.studies.disc.fig11.claims import STUDY, whirl
 from compare.studies.disc.fig11.parameters import EXPANSION, TIMES, UNTIL
 from compare.studies.toolkit.fig11_motion import DISCS, RING
-from reference_model import Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
+from reference_model import Trajectory, self_centred_equilibria, whirl_orbit, whirls
 
 NO_PASS = (SEES, OPEN)
 """A motion beside the whirl is not small, which may leave its growth inconclusive."""

@@ -9,11 +9,11 @@ from scipy.integrate import solve_ivp
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.engines import EVERY_KIND, Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.disc.free_ring.claims import STUDY
 from compare.studies.disc.free_ring.parameters import LOPSIDED, OTHERS, RINGS
 from compare.studies.disc.free_ring.theory import approach_constant, deviation
 from compare.studies.toolkit.free_bodies import Slowing
-from reference_model import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.contact.elliptic import mean_directions
 from reference_model.trajectory import Phase, Solution, Trajectory

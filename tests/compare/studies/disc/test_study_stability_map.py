@@ -8,13 +8,13 @@ from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
+from compare.judge.faults.reference import simulate
 from compare.report.numbers import with_digits
 from compare.report.quotes import filled
 from compare.studies.disc.stability_map import theory
 from compare.studies.disc.stability_map.claims import STUDY, borders, regions
 from compare.studies.disc.stability_map.parameters import DISC
 from compare.studies.toolkit.fig11_planes import LAWS, PLANES, curves_in
-from reference_model import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.steady.bifurcation_curves import crossings
 

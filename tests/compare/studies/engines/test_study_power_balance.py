@@ -9,13 +9,13 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.engines.power_balance import claims as study
 from compare.studies.engines.power_balance.parameters import (
     all_motions,
     motions_of_the_disc,
     motions_of_the_pin,
 )
-from reference_model import simulate
 
 PINS, DISCS = tuple(motions_of_the_pin()), tuple(motions_of_the_disc())
 TO_EQUILIBRIUM, TO_WHIRL, SETTLES, STICKS, RESTING, BACKWARDS = PINS

@@ -14,10 +14,10 @@ from study_harness import BLIND, SEES, StudyTests, engine_named
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.engines import Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.pin.fig05 import parameters, theory
 from compare.studies.pin.fig05.claims import STUDY
 from compare.studies.pin.fig05.pictures import animate
-from reference_model import simulate
 
 
 def never_released(system, initial_state, times, *, tolerance=1e-9):

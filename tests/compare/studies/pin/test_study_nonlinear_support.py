@@ -9,9 +9,9 @@ from studies_under_test import altered
 from study_harness import BLIND, SEES, StudyTests
 
 from compare.claims.paper_parameters import CENTRED
+from compare.judge.faults.reference import simulate
 from compare.studies.pin.nonlinear_support import parameters, theory
 from compare.studies.pin.nonlinear_support.claims import STUDY
-from reference_model import simulate
 
 NO_ORBIT = "no whirl near the guess"
 """What the search says that finds none; the runner shows the engine as one that failed, with this sentence."""

@@ -10,9 +10,9 @@ from studies_under_test import GROSS, altered, fault
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.engines import Engine
+from compare.judge.faults.reference import simulate
 from compare.studies.plane.block import parameters, theory
 from compare.studies.plane.block.claims import STUDY
-from reference_model import simulate
 from reference_model.trajectory import Trajectory
 
 DEGREE = np.exp(1j * math.radians(1.0))
