@@ -18,7 +18,7 @@ def simulate(
     *,
     tolerance: float = 1e-9,
     contact: Contact | None = None,
-    compiled: bool = False,
+    compiled: bool | None = False,
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
@@ -42,10 +42,10 @@ def simulate(
         itself parts by that growth.
     contact : Contact or None
         The law of friction of a disc if it is not that of its parameters.
-    compiled : bool
+    compiled : bool or None
         Whether the compiled kernel of :mod:`ensemble` is to do it, where speed matters. It is another implementation
         of the same physics, for linear supports and the laws of the parameters; the first run of a kind of contact
-        on a machine waits for the compiler.
+        on a machine waits for the compiler. None: wherever it can.
 
     Returns
     -------
@@ -59,6 +59,10 @@ def simulate(
         If the integrator gives up.
 
     """
+    if compiled is None:
+        from reference_model.ensemble.simulate import is_known
+
+        compiled = contact is None and is_known(system)
     if compiled:
         # Here, since the plain one is to start without the compiler.
         from reference_model.ensemble.single_run import simulate_compiled

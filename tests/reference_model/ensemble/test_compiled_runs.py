@@ -296,3 +296,13 @@ def test_the_law_of_the_parameters_may_be_named():
 def test_the_plain_reference_starts_without_the_compiler():
     code = "import sys, reference_model; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_run_is_compiled_where_it_can_be_if_none_says_how():
+    start, times = [0.1, 0.0, 0.0, 0.1], [0.0, 1.0]
+    known, unknown = FIG5, replace(FIG5, hardening=1.0)
+    methods = {
+        pin: simulate(pin, start, times, compiled=None).solution.method.startswith("compiled")
+        for pin in (known, unknown)
+    }
+    assert methods == {known: True, unknown: False}
