@@ -211,12 +211,21 @@ class Claim:
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
-        if kind not in KINDS:
-            raise ValueError(f"claim {sentence!r}: kind = {kind!r}: it must be one of {', '.join(KINDS)}")
+        self._check()
+
+    def _check(self) -> None:
+        """Raise ``ValueError`` for what does not fit together."""
+        sentence, numerical = self.sentence, self.budget.numerical
+        if self.kind not in KINDS:
+            raise ValueError(
+                f"claim {sentence!r}: kind = {self.kind!r}: it must be one of {', '.join(KINDS)}"
+            )
         if self.basis not in BASES:
-            raise ValueError(f"claim {sentence!r}: basis = {basis!r}: it must be one of {', '.join(BASES)}")
-        if self.basis == "algebra" and engine != THEORY:
-            raise ValueError(f"claim {sentence!r} is about {engine}: algebra is of the theory alone")
+            raise ValueError(
+                f"claim {sentence!r}: basis = {self.basis!r}: it must be one of {', '.join(BASES)}"
+            )
+        if self.basis == "algebra" and self.engine != THEORY:
+            raise ValueError(f"claim {sentence!r} is about {self.engine}: algebra is of the theory alone")
         if self.predicted.shape != self.measured.shape:
             raise ValueError(
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
@@ -227,9 +236,9 @@ class Claim:
         for name, place in self.named.items():
             if place is not None and not 0 <= place < self.predicted.size:
                 raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
-        if np.broadcast_shapes(budget.numerical.shape, self.predicted.shape) != self.predicted.shape:
+        if np.broadcast_shapes(numerical.shape, self.predicted.shape) != self.predicted.shape:
             raise ValueError(
-                f"claim {sentence!r}: numerical error has shape {budget.numerical.shape}, "
+                f"claim {sentence!r}: numerical error has shape {numerical.shape}, "
                 f"predicted {self.predicted.shape}"
             )
 

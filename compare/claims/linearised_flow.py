@@ -103,14 +103,18 @@ def measured_eigenvalues(
         lambda tolerance: real_and_imaginary(matched(eigenvalues(tolerance, DIFFERENCE), measured)),
         FLOW_TOLERANCE,
     )
-    # A small deviation from a state of rest may be within the tolerance all the time, so that it changes nothing.
-    smallest = float(np.min(np.abs(np.exp(measured * duration))))
-    unseen = (
-        FLOW_TOLERANCE
-        * float(np.max(np.abs(state)))
-        / (float(np.min(DIFFERENCE * size)) * smallest * duration)
-    )
+    smallest = float(np.min(DIFFERENCE * size))
+    unseen = _unseen(measured, duration, float(np.max(np.abs(state))) / smallest)
     return measured, float(np.max(bent) + np.max(np.hypot(*error.T)) + unseen)
+
+
+def _unseen(eigenvalues: ComplexArray, duration: float, size: float) -> float:
+    """Return the error in 1/s of a motion that is ``size`` deviations large, where these change nothing.
+
+    A small deviation from a state of rest may be within the tolerance all the time.
+    """
+    smallest = float(np.min(np.abs(np.exp(eigenvalues * duration))))
+    return FLOW_TOLERANCE * size / (smallest * duration)
 
 
 def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:

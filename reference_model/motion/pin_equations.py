@@ -7,6 +7,7 @@ velocity is w = ż − iωz, and the right-hand side of eq. 1 is −μN·w/|w|.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,6 +88,28 @@ def simulate_polar_form(
 
     """
     require_linear_support(pin)
+    x, y, vx, vy = initial_state
+    rho = math.hypot(x, y)
+    start = (rho, math.atan2(y, x), (x * vx + y * vy) / rho, (x * vy - y * vx) / rho**2)
+    solution = solve_ivp(
+        _polar_rates(pin),
+        (times[0], times[-1]),
+        start,
+        method="DOP853",
+        t_eval=times,
+        rtol=tolerance,
+        atol=tolerance * rho,
+    )
+    if not solution.success:
+        raise RuntimeError(f"eq. 10 in polar form: {solution.message}")
+    rho, psi, rho_dot, psi_dot = solution.y
+    z = rho * np.exp(1j * psi)
+    v = (rho_dot + 1j * rho * psi_dot) * np.exp(1j * psi)
+    return np.column_stack((z.real, z.imag, v.real, v.imag))
+
+
+def _polar_rates(pin: PinOnDisc) -> Callable[[float, FloatArray], tuple[float, float, float, float]]:
+    """Return the rates of ρ, ψ and of their rates by eq. 10."""
     m, stiffness, beta = pin.mass, pin.stiffness, pin.damping
 
     def eq10(_: float, state: FloatArray) -> tuple[float, float, float, float]:
@@ -109,21 +132,4 @@ def simulate_polar_form(
         )
         return rho_dot, psi_dot, radial / m, tangential / (m * rho)
 
-    x, y, vx, vy = initial_state
-    rho = math.hypot(x, y)
-    start = (rho, math.atan2(y, x), (x * vx + y * vy) / rho, (x * vy - y * vx) / rho**2)
-    solution = solve_ivp(
-        eq10,
-        (times[0], times[-1]),
-        start,
-        method="DOP853",
-        t_eval=times,
-        rtol=tolerance,
-        atol=tolerance * rho,
-    )
-    if not solution.success:
-        raise RuntimeError(f"eq. 10 in polar form: {solution.message}")
-    rho, psi, rho_dot, psi_dot = solution.y
-    z = rho * np.exp(1j * psi)
-    v = (rho_dot + 1j * rho * psi_dot) * np.exp(1j * psi)
-    return np.column_stack((z.real, z.imag, v.real, v.imag))
+    return eq10

@@ -152,12 +152,7 @@ class _Run:
         left = False
         solver, size, alike = started(start, y - base), 0.0, 0
         while solver.status == "running" and not left:
-            message = solver.step()
-            self.steps += 1
-            if self.steps > MOST_STEPS:
-                raise SimulationError(f"more than {MOST_STEPS:,} steps up to t = {solver.t:g} s")
-            if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
-                raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
+            self.step(solver)
             t, y = float(solver.t), at(solver.t, solver.y)
             left = inside(y) < 0.0
             alike = alike + 1 if math.isclose(solver.step_size, size, rel_tol=1e-6) else 0
@@ -166,15 +161,28 @@ class _Run:
                 dense = solver.dense_output()
                 if left:
                     t, y = self.crossing(lambda t: at(t, dense(t)), solver.t_old, t, inside)  # noqa: B023
-                stop = int(np.searchsorted(self.times, t, side="right"))
-                for i in range(self.recorded, stop):
-                    self.unknowns[i] = at(self.times[i], dense(self.times[i]))
-                self.recorded = max(self.recorded, stop)
+                self.record(t, lambda t: at(t, dense(t)))  # noqa: B023
             if alike == MOST_ALIKE and size < 0.99 * longest and solver.status == "running":
                 self.evaluations += solver.nfev
                 solver, alike = started(t, solver.y), 0
         self.evaluations += solver.nfev
         return t, y
+
+    def step(self, solver: LSODA) -> None:
+        """Take a step; raise ``SimulationError`` where there is none."""
+        message = solver.step()
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise SimulationError(f"more than {MOST_STEPS:,} steps up to t = {solver.t:g} s")
+        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+            raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
+
+    def record(self, until: float, at: Callable[[float], FloatArray]) -> None:
+        """Keep what the unknowns ``at`` the times asked for are, up to a time."""
+        stop = int(np.searchsorted(self.times, until, side="right"))
+        for i in range(self.recorded, stop):
+            self.unknowns[i] = at(self.times[i])
+        self.recorded = max(self.recorded, stop)
 
     @staticmethod
     def crossing(
