@@ -10,9 +10,8 @@ from dataclasses import replace
 from scipy.optimize import minimize_scalar
 
 from reference_model.orbits.modulated import modulated_cycle
-from reference_model.orbits.shooting import Orbit, Simulate
+from reference_model.orbits.shooting import REFERENCE, Orbit, Simulate
 from reference_model.orbits.whirl import whirl_orbit
-from reference_model.simulation import simulate as reference_simulate
 from reference_model.systems import System
 
 BRANCH_STEP = 0.08
@@ -86,7 +85,7 @@ def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
 def last_whirl(
     system: System,
     *,
-    simulate: Simulate = reference_simulate,
+    simulate: Simulate = REFERENCE,
     guess: Orbit | None = None,
     tolerance: float = 1e-12,
     precision: float = 0.0,

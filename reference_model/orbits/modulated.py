@@ -6,6 +6,7 @@ import numpy as np
 
 from reference_model.orbits.shooting import (
     PERIOD,
+    REFERENCE,
     SPIN,
     TURN,
     VX,
@@ -22,7 +23,6 @@ from reference_model.orbits.shooting import (
     size_of,
     without_angle,
 )
-from reference_model.simulation import simulate as reference_simulate
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
@@ -37,7 +37,7 @@ def modulated_cycle(
     system: System,
     guess: Trajectory | Orbit,
     *,
-    simulate: Simulate = reference_simulate,
+    simulate: Simulate = REFERENCE,
     at_crossing: float | None = None,
     tolerance: float = 1e-12,
     samples: int = 1024,

@@ -26,8 +26,7 @@ from scipy.optimize import newton
 
 from reference_model.contact.contact_law import require_whole
 from reference_model.motion.pin_equations import SlipMotion
-from reference_model.orbits.shooting import Orbit, ShootingProblem
-from reference_model.simulation import simulate
+from reference_model.orbits.shooting import REFERENCE, Orbit, ShootingProblem
 from reference_model.support import require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system
 from reference_model.trajectory import Trajectory
@@ -134,7 +133,7 @@ class ReleaseMap:
         """
         for turns in LOOKS:
             times = [0.0, turns * self.turn]
-            trajectory = simulate(self.pin, state, times, tolerance=self.tolerance)
+            trajectory = REFERENCE(self.pin, state, times, tolerance=self.tolerance)
             release = next(filter(wanted, self.along(trajectory)), None)
             if release is not None:
                 break
@@ -285,8 +284,8 @@ def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
     assert release is not None  # the angle is a fixed point
     period = release.time
     state = releases.state(angle)
-    start = simulate(pin, state, [0.0, 0.5 * (period - release.stick_time)], tolerance=tolerance).at_end
-    trajectory = simulate(pin, start, np.linspace(0.0, period, samples + 1), tolerance=tolerance)
+    start = REFERENCE(pin, state, [0.0, 0.5 * (period - release.stick_time)], tolerance=tolerance).at_end
+    trajectory = REFERENCE(pin, start, np.linspace(0.0, period, samples + 1), tolerance=tolerance)
     miss = trajectory.at_end - start
     return StickSlipOrbit(
         system=pin,
@@ -294,7 +293,7 @@ def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
         period=period,
         residual=float(np.max(np.abs(miss)) / np.max(np.abs(start))),
         trajectory=trajectory,
-        problem=ShootingProblem(simulate, pin, tolerance),
+        problem=ShootingProblem(REFERENCE, pin, tolerance),
         release=state,
         release_angle=angle,
         stick_time=release.stick_time,

@@ -15,11 +15,12 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from reference_model.contact.contact_law import isotropic_contact_of, require_whole
+from reference_model.simulation import simulate
 from reference_model.steady.steady_states import Whirl
 from reference_model.systems import (
     ANGLE,
@@ -33,6 +34,9 @@ from reference_model.systems import (
 from reference_model.trajectory import Trajectory
 
 Simulate = Callable[..., Trajectory]
+
+REFERENCE: Simulate = partial(simulate, compiled=None)
+"""The engine of whoever names none: an orbit takes up to some hundred simulations."""
 
 X, Y, VX, VY, SPIN = range(5)
 """Places in the part of the state that an orbit is about; a pin has no spin."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from reference_model.orbits.shooting import (
     PERIOD,
+    REFERENCE,
     VX,
     Orbit,
     ShootingProblem,
@@ -16,7 +17,6 @@ from reference_model.orbits.shooting import (
     require_start,
     shoot,
 )
-from reference_model.simulation import simulate as reference_simulate
 from reference_model.steady.steady_states import Whirl, whirls, why_no_whirl
 from reference_model.systems import System
 
@@ -24,7 +24,7 @@ from reference_model.systems import System
 def whirl_orbit(
     system: System,
     *,
-    simulate: Simulate = reference_simulate,
+    simulate: Simulate = REFERENCE,
     guess: Orbit | Whirl | None = None,
     at_crossing: float | None = None,
     tolerance: float = 1e-12,
@@ -42,8 +42,8 @@ def whirl_orbit(
     system : PinOnDisc or DiscOnDisc
         The parameters, with a whirl without offset: |ω| > k on a linear support.
     simulate : callable
-        The engine; of the reference unless told otherwise. ``functools.partial(simulate, contact=...)`` is that
-        of a disc under another law.
+        The engine; the reference, compiled where it can be, unless told otherwise.
+        ``functools.partial(simulate, contact=...)`` is that of a disc under another law.
     guess : Orbit or Whirl, optional
         Where to start, such as the orbit for a nearby load; unless told otherwise, the largest circle that there
         is without offset. With a large offset the whirl of a disc no longer crosses the x axis: then it takes that
