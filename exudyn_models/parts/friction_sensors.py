@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_models.forces.any_pair import friction_on_nodes
 from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Kinds,
@@ -40,13 +40,13 @@ class RingFriction:
     item : ObjectIndex
         Of the connector.
     nodes : tuple of NodeIndex
-        Of master and disc.
+        Of the master, but the ground, and of the disc.
 
     """
 
     mbs: Any
     item: Any
-    nodes: tuple[Any, Any]
+    nodes: tuple[Any, ...]
     _kinds: Kinds = field(repr=False)
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
@@ -54,7 +54,7 @@ class RingFriction:
     def change(
         self,
         *,
-        friction_coefficient: NumberOrFunction | None = None,
+        friction_coefficient: Coefficient | None = None,
         normal_load: NumberOrFunction | None = None,
     ) -> None:
         """Replace coefficient or load from now on, as ``add_ring_friction`` takes them; None keeps what there is.
@@ -135,13 +135,9 @@ class RingFriction:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
         coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
         contact = self._factors.contact or self._factors.contact_at(t)
-        forces, radius, slip_speed = friction_on_nodes(self._kinds, coordinates, velocities, contact)
+        forces, *motion = friction_on_nodes(self._kinds, coordinates, velocities, contact)
         power = -float(forces @ velocities)
-        return (
-            power * self._factors.friction_force(t, radius, slip_speed)
-            if self._factors.depends_on_motion
-            else power
-        )
+        return power * self._factors.friction_force(t, *motion) if self._factors.depends_on_motion else power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -167,7 +163,8 @@ class RingFriction:
         """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
         data = mbs.systemData
         starts = [mbs.GetNodeODE2Index(node) for node in self.nodes]
-        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, self._kinds, strict=True)]
+        kinds = self._kinds[-len(starts) :]
+        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, kinds, strict=True)]
         q, q_t = (
             np.concatenate([values[place] for place in places])  # half the cost of the nodes' own outputs
             for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
@@ -179,5 +176,7 @@ class RingFriction:
         arguments = (*slip.tolist(), angle, self._factors.contact_at(t))
         friction = np.array(friction_of_slip(*arguments))
         if self._factors.depends_on_motion:
-            friction *= self._factors.friction_force(t, radius, slip_potential_of_contact(*arguments))
+            friction *= self._factors.friction_force(
+                t, radius, slip_potential_of_contact(*arguments), float(slip[2])
+            )
         return friction
