@@ -56,6 +56,14 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     return (force_on_ground if grounded else force), jacobian
 
 
+def power_on_axis(factors: LoadAndCoefficient, t: float, spin: float) -> float:
+    """Return what friction turns into heat in W, at the time t (s) and S (rad/s)."""
+    contact = factors.geometry
+    speed = mean_radius(contact) * abs(spin)
+    friction = factors.friction_force(t, 0.0, speed, spin)
+    return friction * speed * min(1.0, speed / contact[3])
+
+
 def _moment(factors: LoadAndCoefficient) -> Moment:
     contact = factors.geometry
     radius = mean_radius(contact)
