@@ -6,6 +6,7 @@ import inspect
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
+from numbers import Real
 from typing import TypeAlias, cast
 
 import numpy as np
@@ -77,7 +78,12 @@ class LoadAndCoefficient:
         coefficient, its_arguments = _coefficient(friction_coefficient)
         load, loads_arguments = _factor("normal_load", normal_load, " N")
         self.friction_coefficient, self.normal_load = friction_coefficient, normal_load
-        self._coefficient, self._load = coefficient, load
+        factors = (friction_coefficient, coefficient), (normal_load, load)
+        self._functions = [factor for value, factor in factors if not isinstance(value, Real)]
+        self._constant = float(self._plates)
+        for value, factor in factors:
+            if isinstance(value, Real):
+                self._constant *= factor(math.nan, math.nan, math.nan, math.nan)
         self._reads = {*its_arguments, *loads_arguments}
         if self._static_ratio > 1.0:
             self._reads.add("slip_speed")
@@ -98,8 +104,9 @@ class LoadAndCoefficient:
 
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
         """Return the friction force μN in N, of all plates, at a time in s and a motion as ``ARGUMENTS`` tell it."""
-        force = self._coefficient(t, radius, slip_speed, relative_spin)
-        force *= self._plates * self._load(t, radius, slip_speed, relative_spin)
+        force = self._constant
+        for function in self._functions:
+            force *= function(t, radius, slip_speed, relative_spin)
         if self._static_ratio > 1.0:
             force *= peak_over_sliding(slip_speed / self.geometry[3], self._static_ratio)
         return force
