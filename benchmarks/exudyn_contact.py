@@ -25,7 +25,7 @@ import numpy as np
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
-from exudyn_models import add_ring_friction, build_pin_on_disc, simulate
+from exudyn_models import add_energy_balance, add_ring_friction, build_pin_on_disc, simulate
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
@@ -133,6 +133,15 @@ def free_spatial_bodies() -> tuple[Any, Any, Any]:
     return mbs, *nodes
 
 
+def two_rotors() -> tuple[Any, Any, Any]:
+    """Return a model of two rotors on one axis, and their nodes."""
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = [mbs.AddNode(items.Node1D(initialVelocities=[spin])) for spin in (1.5, 0.0)]
+    for node in nodes:
+        mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=1e3))
+    return mbs, *nodes
+
+
 CALL = "a user function that returns constants"
 FOUR = "ring, no acceleration at the end of a step"
 
@@ -160,6 +169,33 @@ PLANAR: dict[str, AddContact] = {
 SPATIAL: dict[str, AddContact] = {
     "two spatial bodies, no friction": lambda mbs, master, disc: None,
     "the same with a ring": ours(RING),
+}
+
+
+def stribeck(slip_speed: float) -> float:
+    """Return a coefficient that falls over the slip speed (m/s)."""
+    return 0.25 + 0.05 * math.exp(-slip_speed / 0.5)
+
+
+def balanced(mbs: Any, *nodes: Any) -> None:
+    """Add a ring with an energy balance."""
+    add_energy_balance(mbs, gains={}, losses={"friction": ours(RING)(mbs, *nodes).power})
+
+
+def load_of_time(time: float) -> float:
+    """Return a load in N."""
+    return FIG5.friction_force
+
+
+AXIAL: dict[str, AddContact] = {
+    "two rotors, no friction": lambda mbs, master, disc: None,
+    "the same with a ring under a constant load": ours(RING),
+    "under a load of time": ours(RING, load_of_time),
+    "Stribeck, load of time": ours(RING | {"friction_coefficient": stribeck}, load_of_time),
+    "table over slip": ours(RING | {"friction_coefficient": [[0.0, 0.3], [0.1, 0.28], [1.0, 0.25]]}),
+    "static over sliding friction": ours(RING | {"static_ratio": 1.1}),
+    "with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
+    "with an energy balance": balanced,
 }
 
 
@@ -216,8 +252,8 @@ def seconds(model: tuple[Any, Any, Any], add_contact: AddContact, accelerations:
 
 def cost_of_contacts() -> None:
     """Print the table of costs per step and per evaluation, and their ratios to no friction and to the mere call."""
-    models = ((pin_without_friction, PLANAR), (free_spatial_bodies, SPATIAL))
-    best = dict.fromkeys([*PLANAR, *SPATIAL], math.inf)
+    models = ((pin_without_friction, PLANAR), (free_spatial_bodies, SPATIAL), (two_rotors, AXIAL))
+    best = dict.fromkeys([*PLANAR, *SPATIAL, *AXIAL], math.inf)
     for _ in range(REPETITIONS):
         for build, contacts in models:
             for name, contact in contacts.items():

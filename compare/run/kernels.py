@@ -32,16 +32,17 @@ def kernels() -> Iterator[tuple[str, Callable[[], Any]]]:
 
 
 def _friction_on_pairs() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Yield the user functions for friction between two nodes; they differ by the number of coordinates only."""
+    """Yield the user functions for friction; they differ by the number of coordinates only."""
     from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
     from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-    from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR, SIZES, TAIT_BRYAN
+    from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, SIZES, TAIT_BRYAN
     from exudyn_models.forces.user_functions import force_and_jacobian
 
-    names = {ROTOR: "rotor", PLANAR: "planar body", TAIT_BRYAN: "body in space"}
+    names = {GROUND: "the ground", ROTOR: "rotor", PLANAR: "planar body", TAIT_BRYAN: "body in space"}
     ring = 0.1, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.1
     for master, disc in (
-        (ROTOR, ROTOR),
+        (GROUND, PLANAR),
+        (GROUND, TAIT_BRYAN),
         (ROTOR, PLANAR),
         (ROTOR, TAIT_BRYAN),
         (PLANAR, ROTOR),

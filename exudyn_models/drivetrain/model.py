@@ -160,7 +160,7 @@ def build_drivetrain(
     drivetrain : Drivetrain
         The parameters.
     normal_load : float or callable
-        Of each facing, as ``add_ring_friction`` takes it.
+        As ``add_ring_friction`` takes it: all facings carry it.
     regularisation : float
         ε in m/s, > 0.
     engine_speed, gearbox_speed : float
@@ -189,8 +189,9 @@ def build_drivetrain(
         engine,
         disc,
         **drivetrain.contact,
-        friction_coefficient=drivetrain.faces * drivetrain.friction_coefficient,
+        friction_coefficient=drivetrain.friction_coefficient,
         normal_load=normal_load,
+        plates=drivetrain.faces,
         regularisation=regularisation,
     )
     gains = {

@@ -26,15 +26,15 @@ to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is
 @compiled
 def friction_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
-) -> tuple[FloatArray, float, float]:
-    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, and P in m/s."""
+) -> tuple[FloatArray, float, float, float]:
+    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s."""
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
     radius = radius_of_disc(kinds, coordinates, axes)
-    return forces, radius, slip_potential_of_contact(ux, uy, spin, angle, contact)
+    return forces, radius, slip_potential_of_contact(ux, uy, spin, angle, contact), spin
 
 
 @compiled
@@ -46,7 +46,7 @@ def friction_derivatives_on_nodes(
     velocity_factor: float,
     contact: Contact,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of the generalised forces, shape (n, n), and of radius and slip speed, shape (2, n).
+    """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
     They are weighted sums of those by the coordinates and by the velocities.
     """
@@ -60,7 +60,7 @@ def friction_derivatives_on_nodes(
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
     size = len(coordinates)
-    by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((2, size))
+    by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((3, size))
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
@@ -76,6 +76,7 @@ def friction_derivatives_on_nodes(
             for k in range(size):
                 by_nodes[k, j] += force[i] * map_change[i, k] + force_change[i] * to_slip[i, k]
             motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
+        motion_by_nodes[2, j] = slip_change[2]
         motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
     return by_nodes, motion_by_nodes
 
@@ -87,7 +88,7 @@ def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q
     These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    forces, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
+    forces, _, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
     result: Floats = to_tuple(forces, len(q))
     return result
 

@@ -58,6 +58,14 @@ def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
     return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
 
 
+def mean_radius(contact: Contact) -> float:
+    """Return r in m, P over |S| of a disc that turns in place."""
+    outer, points, _, _, _, inner = contact
+    if points != CONTINUOUS:
+        return outer
+    return 2.0 / 3.0 * (outer * outer + outer * inner + inner * inner) / (outer + inner)
+
+
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
 

@@ -4,29 +4,35 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TypeAlias
+from numbers import Real
+from typing import TypeAlias, cast
 
 import numpy as np
 
+from exudyn_models.forces.friction_curves import curve_of_table, peak_over_sliding
 from exudyn_models.forces.friction_laws import Contact
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
 """A load or coefficient; a function takes any of ``ARGUMENTS``, by name."""
 
-Factor: TypeAlias = Callable[[float, float, float], float]
+Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
+"""A coefficient, also as a table for ``curve_of_table``."""
+
+Factor: TypeAlias = Callable[[float, float, float, float], float]
 """μ or N as a function of all of ``ARGUMENTS``."""
 
-ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s"}
+ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s", "relative_spin": "rad/s"}
 """What a coefficient or load may depend on, with its unit.
 
-``radius`` is the distance of the disc's node from the master's axis, ``slip_speed`` the mean slip speed P.
+``radius`` is the distance of the disc's node from the master's axis, ``slip_speed`` the mean slip speed P,
+``relative_spin`` S, that of the disc less that of the master.
 """
 
 DIFFERENCE = 1e-5
-"""Relative step of the central differences that give the slopes of μN over radius and slip speed."""
+"""Relative step of the central differences that give the slopes of μN over all of the motion."""
 
 
 class LoadAndCoefficient:
@@ -36,10 +42,14 @@ class LoadAndCoefficient:
     ----------
     contact : Contact
         Its μN counts nothing.
-    friction_coefficient : float or callable
-        μ >= 0, or as a function of any of ``ARGUMENTS``.
+    friction_coefficient : float, table or callable
+        μ >= 0, or as a table over P, or as a function of any of ``ARGUMENTS``.
     normal_load : float or callable
         N in N, >= 0, or as such a function.
+    static_ratio : float
+        Static over sliding friction, >= 1, see ``peak_over_sliding``.
+    plates : int
+        Contacts alike, >= 1, that all carry N.
 
     Raises
     ------
@@ -50,68 +60,120 @@ class LoadAndCoefficient:
     """
 
     def __init__(
-        self, contact: Contact, friction_coefficient: NumberOrFunction, normal_load: NumberOrFunction
+        self,
+        contact: Contact,
+        friction_coefficient: Coefficient,
+        normal_load: NumberOrFunction,
+        static_ratio: float = 1.0,
+        plates: int = 1,
     ) -> None:
-        self._contact = contact
+        #: The contact with 1 N in place of its μN.
+        self.geometry = _with(contact, 1.0)
         self.contact_radius = contact[0]
+        self._static_ratio, self._plates = _checked_static_ratio(static_ratio), _checked_plates(plates)
         self.change(friction_coefficient, normal_load)
 
-    def change(self, friction_coefficient: NumberOrFunction, normal_load: NumberOrFunction) -> None:
+    def change(self, friction_coefficient: Coefficient, normal_load: NumberOrFunction) -> None:
         """Replace both."""
-        coefficient, its_arguments = _factor("friction_coefficient", friction_coefficient, "")
+        coefficient, its_arguments = _coefficient(friction_coefficient)
         load, loads_arguments = _factor("normal_load", normal_load, " N")
         self.friction_coefficient, self.normal_load = friction_coefficient, normal_load
-        self._coefficient, self._load = coefficient, load
-        reads = {*its_arguments, *loads_arguments}
-        self._by_radius, self._by_slip_speed = "radius" in reads, "slip_speed" in reads
-        self.depends_on_motion = self._by_radius or self._by_slip_speed
+        factors = (friction_coefficient, coefficient), (normal_load, load)
+        self._functions = [factor for value, factor in factors if not isinstance(value, Real)]
+        self._constant = float(self._plates)
+        for value, factor in factors:
+            if isinstance(value, Real):
+                self._constant *= factor(math.nan, math.nan, math.nan, math.nan)
+        self._reads = {*its_arguments, *loads_arguments}
+        if self._static_ratio > 1.0:
+            self._reads.add("slip_speed")
+        self.depends_on_motion = not self._reads <= {"time"}
+        numbers = not (self._reads or callable(friction_coefficient) or callable(normal_load))
         #: The contact with its μN, or None where that is no number.
         self.contact = (
-            None
-            if callable(friction_coefficient) or callable(normal_load)
-            else self._with(self.friction_force(math.nan, math.nan, math.nan))
+            _with(self.geometry, self.friction_force(math.nan, math.nan, math.nan, math.nan))
+            if numbers
+            else None
         )
 
     def contact_at(self, t: float) -> Contact:
         """Return the contact with μN at the time t (s), or with 1 N in its place if that depends on the motion."""
-        return self._with(1.0 if self.depends_on_motion else self.friction_force(t, math.nan, math.nan))
+        if self.depends_on_motion:
+            return self.geometry
+        return _with(self.geometry, self.friction_force(t, math.nan, math.nan, math.nan))
 
-    def friction_force(self, t: float, radius: float, slip_speed: float) -> float:
-        """Return the friction force μN in N at a time in s, a radius in m and a mean slip speed in m/s."""
-        return self._coefficient(t, radius, slip_speed) * self._load(t, radius, slip_speed)
+    def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
+        """Return the friction force μN in N, of all plates, at a time in s and a motion as ``ARGUMENTS`` tell it."""
+        force = self._constant
+        for function in self._functions:
+            force *= function(t, radius, slip_speed, relative_spin)
+        if self._static_ratio > 1.0:
+            force *= peak_over_sliding(slip_speed / self.geometry[3], self._static_ratio)
+        return force
 
-    def friction_force_slopes(self, t: float, radius: float, slip_speed: float) -> FloatArray:
-        """Return the derivatives of μN by the radius in N/m and by the slip speed in N s/m, shape (2,)."""
-        result = np.zeros(2)
-        if self._by_radius and radius > 0.0:  # on the axis the radius itself has no derivative
-            result[0] = _slope(
-                lambda r: self.friction_force(t, r, slip_speed), radius, max(radius, self.contact_radius)
-            )
-        if self._by_slip_speed:
-            result[1] = _slope(
-                lambda v: self.friction_force(t, radius, v), slip_speed, max(slip_speed, self._contact[3])
-            )
+    def friction_force_slopes(
+        self, t: float, radius: float, slip_speed: float, relative_spin: float
+    ) -> FloatArray:
+        """Return the derivatives of μN by radius (N/m), slip speed (N s/m) and relative spin (N s), shape (3,)."""
+        rim, epsilon = self.contact_radius, self.geometry[3]
+        motion = {"radius": radius, "slip_speed": slip_speed, "relative_spin": relative_spin}
+        scales = (
+            max(radius, rim),
+            max(slip_speed, epsilon),
+            max(abs(relative_spin), epsilon / rim if rim else 1.0),
+        )
+        result = np.zeros(3)
+        for i, (name, scale) in enumerate(zip(motion, scales, strict=True)):
+            if name in self._reads and (name != "radius" or radius > 0.0):  # on the axis it has no derivative
+                low, high = motion[name] - DIFFERENCE * scale, motion[name] + DIFFERENCE * scale
+                if name != "relative_spin":
+                    low = max(0.0, low)
+                change = self.friction_force(t, **motion | {name: high})
+                change -= self.friction_force(t, **motion | {name: low})
+                result[i] = change / (high - low)
         return result
 
-    def _with(self, friction: float) -> Contact:
-        radius, points, _, epsilon, held, inner = self._contact
-        return radius, points, friction, epsilon, held, inner
+
+def _with(contact: Contact, friction: float) -> Contact:
+    radius, points, _, epsilon, held, inner = contact
+    return radius, points, friction, epsilon, held, inner
+
+
+def _coefficient(value: Coefficient) -> tuple[Factor, tuple[str, ...]]:
+    """Return a coefficient as a function of all ``ARGUMENTS``, and which of them it depends on."""
+    name = "friction_coefficient"
+    table = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    return _factor(name, curve_of_table(name, value) if table else cast(NumberOrFunction, value), "")
+
+
+def _checked_static_ratio(value: float) -> float:
+    ratio = finite_number("static_ratio", value)
+    if ratio < 1.0:
+        raise ValueError(f"static_ratio = {ratio:g}: it must be >= 1, static over sliding friction")
+    return ratio
+
+
+def _checked_plates(value: int) -> int:
+    number = finite_number("plates", value)
+    if number < 1.0 or number != int(number):
+        raise ValueError(f"plates = {number:g}: it must be a whole number >= 1")
+    return int(number)
 
 
 def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[Factor, tuple[str, ...]]:
     """Return a coefficient or load as a function of all ``ARGUMENTS``, and which of them it depends on."""
     if not callable(value):
         number = checked_not_negative(name, value, unit)
-        return lambda time, radius, slip_speed: number, ()
+        return lambda time, radius, slip_speed, relative_spin: number, ()
     function, arguments = value, _arguments(name, value)
-    call = _CALLS[arguments]
+    call = _CALLS.get(arguments) or partial(_call, arguments)
 
     # This runs at every evaluation: a good value passes quickly.
-    def factor(time: float, radius: float, slip_speed: float) -> float:
-        result = call(function, time, radius, slip_speed)
+    def factor(time: float, radius: float, slip_speed: float, relative_spin: float) -> float:
+        result = call(function, time, radius, slip_speed, relative_spin)
         if isinstance(result, (float, int)) and 0.0 <= result < math.inf:
             return float(result)  # a NumPy number would make all later arithmetic NumPy's, which is slower
-        known = zip(ARGUMENTS.items(), (time, radius, slip_speed), strict=True)
+        known = zip(ARGUMENTS.items(), (time, radius, slip_speed, relative_spin), strict=True)
         told = [
             f"{argument} = {given:.9g} {unit_of_it}"
             for (argument, unit_of_it), given in known
@@ -122,16 +184,26 @@ def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[Factor, tupl
     return factor, arguments
 
 
-_CALLS: dict[tuple[str, ...], Callable[[Callable[..., float], float, float, float], float]] = {
-    (): lambda f, t, r, v: f(),
-    ("time",): lambda f, t, r, v: f(time=t),
-    ("radius",): lambda f, t, r, v: f(radius=r),
-    ("slip_speed",): lambda f, t, r, v: f(slip_speed=v),
-    ("time", "radius"): lambda f, t, r, v: f(time=t, radius=r),
-    ("time", "slip_speed"): lambda f, t, r, v: f(time=t, slip_speed=v),
-    ("radius", "slip_speed"): lambda f, t, r, v: f(radius=r, slip_speed=v),
-    ("time", "radius", "slip_speed"): lambda f, t, r, v: f(time=t, radius=r, slip_speed=v),
+def _call(
+    arguments: tuple[str, ...], f: Callable[..., float], t: float, r: float, v: float, s: float
+) -> float:
+    """Call a function with any ``arguments``."""
+    known = {"time": t, "radius": r, "slip_speed": v, "relative_spin": s}
+    return f(**{name: known[name] for name in arguments})
+
+
+_CALLS: dict[tuple[str, ...], Callable[[Callable[..., float], float, float, float, float], float]] = {
+    (): lambda f, t, r, v, s: f(),
+    ("time",): lambda f, t, r, v, s: f(time=t),
+    ("radius",): lambda f, t, r, v, s: f(radius=r),
+    ("slip_speed",): lambda f, t, r, v, s: f(slip_speed=v),
+    ("time", "radius"): lambda f, t, r, v, s: f(time=t, radius=r),
+    ("time", "slip_speed"): lambda f, t, r, v, s: f(time=t, slip_speed=v),
+    ("radius", "slip_speed"): lambda f, t, r, v, s: f(radius=r, slip_speed=v),
+    ("time", "radius", "slip_speed"): lambda f, t, r, v, s: f(time=t, radius=r, slip_speed=v),
+    ("relative_spin",): lambda f, t, r, v, s: f(relative_spin=s),
 }
+"""What is quicker than ``_call``, for the arguments that are usual."""
 
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[str, ...]:
@@ -155,12 +227,6 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[str, ...]:
         elif parameter.default is parameter.empty:  # *arguments and **options have none
             raise ValueError(f"{name} takes `{parameter}`: a function must take {allowed}")
     return tuple(name for name in ARGUMENTS if name in taken)
-
-
-def _slope(function: Callable[[float], float], value: float, scale: float) -> float:
-    """Return the derivative of a function of numbers >= 0 by a difference over 1e-5 of ``scale`` to either side."""
-    low, high = max(0.0, value - DIFFERENCE * scale), value + DIFFERENCE * scale
-    return (function(high) - function(low)) / (high - low)
 
 
 def checked_not_negative(name: str, value: float, unit: str) -> float:

@@ -1,4 +1,4 @@
-"""Friction of a planar disc on a rotor or on a planar master: in closed form, at a third of the cost of other pairs.
+"""Friction of a planar disc on the ground, a rotor or a planar master, in closed form: a third of the others' cost.
 
 Their arguments are those of the functions for any pair, in ``any_pair``.
 """
@@ -12,8 +12,16 @@ import numpy as np
 
 from exudyn_models.forces.friction_laws import contact_of, ring_friction, ring_friction_derivatives
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR, Floats, Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
+
+
+@compiled
+def force_on_ground(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+    """Return the generalised forces on a planar disc."""
+    contact, _ = contact_of(parameters)
+    fx, fy, moment, _ = ring_friction(*_on_ground(parameters, q, q_t), contact)
+    return fx, fy, moment
 
 
 @compiled
@@ -30,6 +38,24 @@ def force_on_planar(parameters: Floats, mbs: Any, t: float, item: int, q: Floats
     contact, _ = contact_of(parameters)
     fx, fy, moment, master_moment = ring_friction(*_on_planar(parameters, q, q_t), contact)
     return -fx, -fy, master_moment, fx, fy, moment
+
+
+@compiled
+def jacobian_on_ground(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (3, 3)."""
+    contact, _ = contact_of(parameters)
+    derivatives = ring_friction_derivatives(*_on_ground(parameters, q, q_t), contact)
+    # The ground is a planar master without coordinates.
+    return _over_both_nodes(derivatives, position_factor, velocity_factor)[3:, 3:].copy()
 
 
 @compiled
@@ -68,6 +94,7 @@ def jacobian_on_planar(
 
 
 LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
+    (GROUND, PLANAR): (force_on_ground, jacobian_on_ground),
     (ROTOR, PLANAR): (force_on_rotor, jacobian_on_rotor),
     (PLANAR, PLANAR): (force_on_planar, jacobian_on_planar),
 }
@@ -75,6 +102,12 @@ LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
 
 Relative = tuple[float, float, float, float, float, float, float]
 """What the kernel takes of the motion: dx, dy, angle, dvx, dvy and both spins."""
+
+
+@compiled
+def _on_ground(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
+    _, (_, _, x, y, angle) = contact_of(parameters)
+    return x + q[0], y + q[1], angle + q[2], q_t[0], q_t[1], 0.0, q_t[2]
 
 
 @compiled

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from exudyn_models.forces.jit import compiled
 
-ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN = 0, 1, 2, 3
+ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND = 0, 1, 2, 3, 4
 
 KINDS = {
     "1D": ROTOR,
@@ -32,11 +32,11 @@ KINDS = {
 }
 """The kinds of nodes by the names that Exudyn gives them."""
 
-TRANSLATIONS = (0, 2, 3, 3)
+TRANSLATIONS = (0, 2, 3, 3, 0)
 """Coordinates of each kind that are a position; those of the rotation follow."""
 
-SIZES = (1, 3, 6, 6)
-"""Coordinates of each kind."""
+SIZES = (1, 3, 6, 6, 0)
+"""Coordinates of each kind; the ground has none."""
 
 IMAGINARY_STEP = 1e-30
 
@@ -54,7 +54,7 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
-    about the z-axis through the global origin, a planar body about one that is parallel to it.
+    about the z-axis through the global origin, where the ground rests, a planar body about one parallel to it.
     """
     master, disc = kinds
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
@@ -123,6 +123,9 @@ def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
         turning[1, 1], turning[2, 1] = cx, sx
         for i in range(3):
             turning[i, 2] = axes[i, 2]
+    elif kind == GROUND:
+        for i in range(3):
+            axes[i, i] = 1.0
     else:
         c, s = np.cos(q[first]), np.sin(q[first])
         axes[0, 0], axes[0, 1] = c, -s

@@ -16,7 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, point_regularisation
+from exudyn_models.forces.friction_laws import (
+    CONTINUOUS,
+    NONE_HELD,
+    Contact,
+    mean_radius,
+    point_regularisation,
+)
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
@@ -42,8 +48,8 @@ class StickDampers:
         """
         place = self.reference + coordinates
         to_slip, axes, (cosine, sine) = slip_jacobian(self.kinds, place)
-        friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0)
-        dampers = friction * slip_dampers(self.factors.contact_at(t), math.atan2(sine, cosine))
+        friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0, 0.0)
+        dampers = friction * slip_dampers(self.factors.geometry, math.atan2(sine, cosine))
         if not to_slip[:2].any():  # two rotors: all points slip alike
             dampers = dampers[:1]
         return np.asarray(to_slip.T @ dampers @ to_slip)
@@ -54,9 +60,9 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
 
     The disc's ``angle`` (rad) over the master is that of its first point.
     """
-    outer, points, _, epsilon, held, inner = contact
+    outer, points, _, epsilon, held, _ = contact
     if points == CONTINUOUS:
-        radius = 2.0 / 3.0 * (outer * outer + outer * inner + inner * inner) / (outer + inner)
+        radius = mean_radius(contact)
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
     angles = angle + 2.0 * math.pi * np.arange(points) / points
     maps = np.zeros((points, 2, 3))  # of (u, S) to the slip of each point

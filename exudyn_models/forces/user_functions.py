@@ -2,6 +2,7 @@
 
 Where μN is a number Exudyn calls compiled code as it would call Python; where it is a function of time there is a
 call of Python in between, and one that depends on the motion multiplies in Python what compiled code finds for 1 N.
+Rotors on one axis need no compiled code.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from exudyn_models.forces.any_pair import (
     friction_on_nodes,
     jacobian_on_any,
 )
+from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
 from exudyn_models.forces.friction_laws import CONTACT_SIZE
 from exudyn_models.forces.jit import taking_lists
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
@@ -37,7 +39,9 @@ def force_and_jacobian(
 
     The force carries the ``StickDampers`` of the contact.
     """
-    if factors.depends_on_motion:
+    if on_one_axis(kinds, factors):
+        force, jacobian = functions_on_axis(kinds, factors)
+    elif factors.depends_on_motion:
         force = _force_by_motion(kinds, reference, factors)
         jacobian = _jacobian_by_motion(kinds, reference, factors)
     else:
@@ -72,8 +76,8 @@ def _under(factors: LoadAndCoefficient, rest: Floats, evaluate: Callable[..., An
 def _force_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> ForceFunction:
     def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         contact = factors.contact_at(t)
-        forces, radius, slip_speed = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
-        forces *= factors.friction_force(t, radius, slip_speed)
+        forces, *motion = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
+        forces *= factors.friction_force(t, *motion)
         return cast(list[float], forces.tolist())
 
     return force

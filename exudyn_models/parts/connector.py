@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
@@ -36,16 +37,41 @@ def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian
     )
 
 
+BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody")
+"""The objects whose nodes may be those of ``KINDS``, by the names that Exudyn gives them."""
+
+
+def node_of(name: str, mbs: Any, node_or_body: Any) -> Any:
+    """Return the ``NodeIndex`` of a body from its ``ObjectIndex``, and anything else as it is.
+
+    Raises ``ValueError`` for the ``ObjectIndex`` of what is no body with a node.
+    """
+    if type(node_or_body).__name__ != "ObjectIndex":
+        return node_or_body
+    try:
+        body = mbs.GetObject(node_or_body)
+    except exu.ExudynIndexError:
+        count = mbs.systemData.NumberOfObjects()
+        raise ValueError(f"{name} {int(node_or_body)} is none of the {count} objects of this model") from None
+    if body["objectType"] not in BODIES:
+        raise ValueError(
+            f"{name} {int(node_or_body)} is an Object{body['objectType']}: it must be a body with a node, which is "
+            f"an {', an '.join(f'Object{body}' for body in BODIES)}"
+        )
+    return body["nodeNumber"]
+
+
 def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
     """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
     try:
         kind = mbs.GetNode(node)["nodeType"]
-    except exudyn.ExudynIndexError:
+    except exu.ExudynIndexError:
         count = mbs.systemData.NumberOfNodes()
         raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
-    except exudyn.ExudynTypeError:
+    except exu.ExudynTypeError:
         raise ValueError(
-            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex, as AddNode returns it"
+            f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex or the "
+            "ObjectIndex of a body"
         ) from None
     if KINDS.get(kind) in allowed:
         return KINDS[kind]

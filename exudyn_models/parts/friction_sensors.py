@@ -12,8 +12,9 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.any_pair import friction_on_nodes
+from exudyn_models.forces.axial_pairs import on_one_axis, power_on_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Kinds,
@@ -26,7 +27,20 @@ from reference_model.systems import FloatArray
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
-Quantity = Literal["transmitted_moment", "radial_force", "centre_slip", "rim_slip", "power", "heat"]
+Quantity = Literal[
+    "transmitted_moment",
+    "radial_force",
+    "centre_slip",
+    "rim_slip",
+    "relative_spin",
+    "capacity_share",
+    "mode",
+    "power",
+    "heat",
+]
+
+BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
+"""Values of the sensor ``"mode"``, those of Modelica's clutches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +54,13 @@ class RingFriction:
     item : ObjectIndex
         Of the connector.
     nodes : tuple of NodeIndex
-        Of master and disc.
+        Of the master, but the ground, and of the disc.
 
     """
 
     mbs: Any
     item: Any
-    nodes: tuple[Any, Any]
+    nodes: tuple[Any, ...]
     _kinds: Kinds = field(repr=False)
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
@@ -54,7 +68,7 @@ class RingFriction:
     def change(
         self,
         *,
-        friction_coefficient: NumberOrFunction | None = None,
+        friction_coefficient: Coefficient | None = None,
         normal_load: NumberOrFunction | None = None,
     ) -> None:
         """Replace coefficient or load from now on, as ``add_ring_friction`` takes them; None keeps what there is.
@@ -81,6 +95,12 @@ class RingFriction:
         - ``"radial_force"``: F on the disc in N, three components in global axes.
         - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
         - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
+        - ``"relative_spin"``: S = φ̇ − ω in rad/s.
+        - ``"capacity_share"``: how much of what friction can hold is used, 1 where the contact slips. It is P/ε below
+          that, and 0 if friction holds nothing.
+        - ``"mode"``: 0 locked, 1 slipping with the disc faster than the master, or sideways, −1 with the disc slower,
+          2 open, that is without load. What tells locked from slipping is the capacity, not how small a slip is: a
+          contact that creeps under nearly all that it can hold is locked.
         - ``"power"``: what friction turns into heat, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
@@ -113,13 +133,18 @@ class RingFriction:
                 return [math.hypot(slip[0], slip[1])]
             if quantity == "rim_slip":
                 return [self._factors.contact_radius * slip[2]]
+            if quantity == "relative_spin":
+                return [float(slip[2])]
             if asked:
                 raise ValueError(
                     f"normal_load or friction_coefficient depends on the sensor {quantity!r} of the same contact, "
-                    "which depends on them; they may depend on centre_slip, rim_slip and heat"
+                    "which depends on them; they may depend on centre_slip, rim_slip, relative_spin and heat"
                 )
             asked = True
             try:
+                if quantity in ("capacity_share", "mode"):
+                    share = self._capacity_share(t, slip, angle, radius)
+                    return [_mode(share, float(slip[2])) if quantity == "mode" else share or 0.0]
                 friction = self._friction(t, slip, angle, radius)
             finally:
                 asked = False
@@ -133,15 +158,13 @@ class RingFriction:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
+        if on_one_axis(self._kinds, self._factors):
+            return power_on_axis(self._factors, t, self._spin_on_axis(mbs))
         coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
         contact = self._factors.contact or self._factors.contact_at(t)
-        forces, radius, slip_speed = friction_on_nodes(self._kinds, coordinates, velocities, contact)
+        forces, *motion = friction_on_nodes(self._kinds, coordinates, velocities, contact)
         power = -float(forces @ velocities)
-        return (
-            power * self._factors.friction_force(t, radius, slip_speed)
-            if self._factors.depends_on_motion
-            else power
-        )
+        return power * self._factors.friction_force(t, *motion) if self._factors.depends_on_motion else power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -167,17 +190,43 @@ class RingFriction:
         """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
         data = mbs.systemData
         starts = [mbs.GetNodeODE2Index(node) for node in self.nodes]
-        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, self._kinds, strict=True)]
+        kinds = self._kinds[-len(starts) :]
+        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, kinds, strict=True)]
         q, q_t = (
             np.concatenate([values[place] for place in places])  # half the cost of the nodes' own outputs
             for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
         )
         return self._reference + q, q_t
 
+    def _spin_on_axis(self, mbs: Any) -> float:
+        """Return S in rad/s of a rotor on a rotor or on the ground."""
+        velocities = mbs.systemData.GetODE2Coordinates_t()
+        *master, disc = (float(velocities[mbs.GetNodeODE2Index(node)]) for node in self.nodes)
+        return disc - sum(master)
+
+    def _capacity_share(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
+        """Return P/ε, at most 1, or None where friction holds nothing."""
+        contact, spin = self._factors.geometry, float(slip[2])
+        speed = slip_potential_of_contact(float(slip[0]), float(slip[1]), spin, angle, contact)
+        if self._factors.friction_force(t, radius, speed, spin) == 0.0:
+            return None
+        return min(1.0, speed / contact[3])
+
     def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
         arguments = (*slip.tolist(), angle, self._factors.contact_at(t))
         friction = np.array(friction_of_slip(*arguments))
         if self._factors.depends_on_motion:
-            friction *= self._factors.friction_force(t, radius, slip_potential_of_contact(*arguments))
+            friction *= self._factors.friction_force(
+                t, radius, slip_potential_of_contact(*arguments), float(slip[2])
+            )
         return friction
+
+
+def _mode(share: float | None, spin: float) -> float:
+    """Return the mode of a contact from its ``_capacity_share`` and S (rad/s)."""
+    if share is None:
+        return OPEN
+    if share < 1.0:
+        return LOCKED
+    return BACKWARD if spin < 0.0 else FORWARD

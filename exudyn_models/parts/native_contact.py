@@ -18,8 +18,7 @@ import exudyn.itemInterface
 from exudyn_models.forces.friction_laws import CONTINUOUS
 from exudyn_models.forces.load_and_coefficient import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
-from exudyn_models.parts.connector import checked_kind
-from exudyn_models.parts.ring_friction import checked_contact
+from exudyn_models.parts.ring_friction import checked_contact, checked_pair
 from reference_model.systems import finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -53,8 +52,8 @@ def add_native_friction(
     ----------
     mbs : exudyn MainSystem
         Not yet assembled, with both nodes and their bodies.
-    master_node, disc_node : NodeIndex
-        A rotor's or a planar body's, and a planar body's.
+    master_node, disc_node : NodeIndex or ObjectIndex
+        A rotor's or a planar body's, or None for the ground, and a planar body's.
     contact_radius : float
         R in m, >= 0; the contact is a pin if it is 0.
     friction_coefficient : float
@@ -85,15 +84,15 @@ def add_native_friction(
     reach = finite_number("reach", reach)
     if reach <= 0.0:
         raise ValueError(f"reach = {reach:g} m: it must be > 0")
-    checked_kind("master_node", mbs, master_node, (ROTOR, PLANAR))
-    checked_kind("disc_node", mbs, disc_node, (PLANAR,))
+    (*masters, disc), _ = checked_pair(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
+    master = masters[0] if masters else None
     size = 2.0 * reach  # from the triangle's middle to a corner; the circle that fits in has half of that
-    master_marker = _marker(mbs, master_node, 0j)
+    master_marker = _marker(mbs, master, 0j)
     contacts = []
     for i in range(points):
         arm = cmath.rect(radius, math.tau * i / points)
-        data = _slip_data(mbs, size / 2.0, _initial_slip_speed(mbs, master_node, disc_node, arm))
-        markers = [_marker(mbs, disc_node, arm), master_marker]
+        data = _slip_data(mbs, size / 2.0, _initial_slip_speed(mbs, master, disc, arm))
+        markers = [_marker(mbs, disc, arm), master_marker]
         contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, points))
     return contacts
 
@@ -139,7 +138,10 @@ def _plane(vector: complex) -> tuple[float, float]:
 
 
 def _marker(mbs: Any, node: Any, arm: complex) -> Any:
-    """Add a marker at ``arm`` (m) of the body to which ``node`` belongs; return its ``MarkerIndex``."""
+    """Add a marker at ``arm`` (m) of the body of ``node``, or of the ground; return its ``MarkerIndex``."""
+    if node is None:
+        ground = mbs.AddObject(items.ObjectGround())
+        return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[*_plane(arm), 0.0]))
     numbers = range(mbs.systemData.NumberOfObjects())
     body = next(i for i in numbers if int(mbs.GetObject(i).get("nodeNumber", -1)) == int(node))
     return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[*_plane(arm), 0.0]))
@@ -155,7 +157,9 @@ def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex
 
 
 def _initial_motion(mbs: Any, node: Any) -> tuple[complex, float, complex, float]:
-    """Return position (m), angle (rad), velocity (m/s) and spin (rad/s) of the node of a disc or a rotor."""
+    """Return position (m), angle (rad), velocity (m/s) and spin (rad/s) of a node or of the ground."""
+    if node is None:
+        return 0j, 0.0, 0j, 0.0
     reference, initial, rates = (
         mbs.GetNodeParameter(node, name).tolist()
         for name in ("referenceCoordinates", "initialCoordinates", "initialVelocities")

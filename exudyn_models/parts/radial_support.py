@@ -38,7 +38,7 @@ from exudyn_models.forces.slip_kinematics import (
     place_of_disc,
     slip_jacobian,
 )
-from exudyn_models.parts.connector import add_connector, checked_kind
+from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray, finite_number
 
@@ -151,10 +151,11 @@ def add_radial_support(
     ----------
     mbs : exudyn MainSystem
         Not yet assembled, with the nodes.
-    base_node : NodeIndex or None
-        None for the ground. Else a ``Node1D``, which turns about the z-axis through the global origin, a
-        ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``.
-    disc_node : NodeIndex
+    base_node : NodeIndex or ObjectIndex or None
+        None for the ground; an ``ObjectIndex`` is that of a body with such a node. Else a ``Node1D``, which turns
+        about the z-axis through the global origin, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG`` or a
+        ``NodeRigidBodyRxyz``.
+    disc_node : NodeIndex or ObjectIndex
         One of those, but not a ``Node1D``.
     stiffness : float
         C in N/m, >= 0.
@@ -177,6 +178,7 @@ def add_radial_support(
     """
     law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
     place = _checked_offset(offset)
+    base_node, disc_node = node_of("base_node", mbs, base_node), node_of("disc_node", mbs, disc_node)
     kinds, hidden = _checked_nodes(mbs, base_node, disc_node)
     nodes = (disc_node,) if base_node is None else (base_node, disc_node)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]

@@ -6,16 +6,20 @@ It puts the full reaction on the master, as ``connector`` says. ``friction_laws`
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
 
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.slip_kinematics import GROUND, KINDS, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
-from exudyn_models.parts.connector import add_connector, checked_kind
+from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
 from reference_model.systems import finite_number
+
+ALL = tuple(KINDS.values())
 
 
 class AddFriction(Protocol):
@@ -45,10 +49,12 @@ def add_ring_friction(
     contact_radius: float | None = None,
     inner_radius: float | None = None,
     outer_radius: float | None = None,
-    friction_coefficient: NumberOrFunction,
+    friction_coefficient: Coefficient,
     normal_load: NumberOrFunction,
     regularisation: float,
     contact_points: int | None = None,
+    static_ratio: float = 1.0,
+    plates: int = 1,
     held: int | None = None,
 ) -> RingFriction:
     """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
@@ -59,20 +65,22 @@ def add_ring_friction(
     ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
 
     Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
-    ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The plane of contact goes through the disc's node across the
-    z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load presses
-    nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False, because the
-    nodes are shared with their bodies; Exudyn says so.
+    ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The ground is a master that rests, whose axis is the z-axis
+    through the global origin: a brake, or friction of a bearing. The plane of contact goes through the disc's node
+    across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load
+    presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False,
+    because the nodes are shared with their bodies; Exudyn says so.
 
     Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
 
     - ``time`` in s,
     - ``radius`` in m, the distance of the disc's node from the master's axis,
     - ``slip_speed`` in m/s, the mean slip speed P of the contact,
+    - ``relative_spin`` in rad/s, S = φ̇ − ω, positive where the disc is faster,
 
     as ``lambda time: ...`` or ``lambda radius, slip_speed: ...``. They may read sensors of ``mbs``, as a controller
-    does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by radius and
-    slip speed, not what comes by way of sensors.
+    does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by all but
+    the time, not what comes by way of sensors.
 
     A static solver keeps the velocities with which the nodes start, so that it finds the equilibrium of a disc on a
     master that turns.
@@ -81,20 +89,29 @@ def add_ring_friction(
     ----------
     mbs : exudyn MainSystem
         Not yet assembled, with both nodes.
-    master_node, disc_node : NodeIndex
-        Of the two bodies, in ``mbs``: an index of a node in another model is that of the node that has it here.
+    master_node : NodeIndex or ObjectIndex or None
+        Of the one body, or None for the ground. An ``ObjectIndex`` is that of a body with such a node. An index of a
+        node in another model is that of the node that has it here.
+    disc_node : NodeIndex or ObjectIndex
+        Of the other body.
     contact_radius : float
         R in m, >= 0; the contact is a pin if it is 0.
     inner_radius, outer_radius : float
         In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
-    friction_coefficient : float or callable
-        μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one.
+    friction_coefficient : float, table or callable
+        μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one, or rows of a slip speed
+        in m/s and its μ, the first one at 0, with a smooth monotone curve between (``friction_curves``).
     normal_load : float or callable
-        N in N of the whole contact, >= 0, or a function that returns it.
+        N in N, >= 0, or a function that returns it: the force along the axis. All ``plates`` carry it.
     regularisation : float
         ε in m/s, > 0.
     contact_points : int or None
         n >= 1, or None for the whole circle or annulus.
+    static_ratio : float
+        Static over sliding friction, >= 1. Friction holds up to ``static_ratio``·μN and falls to μN between the slip
+        speeds ε and 2ε: what that changes is of first order in ε.
+    plates : int
+        Pairs of faces in contact, >= 1, one behind the other: friction is that of one times their number.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
@@ -109,14 +126,29 @@ def add_ring_friction(
     contact = _checked_geometry(
         contact_radius, inner_radius, outer_radius, regularisation, contact_points, held
     )
-    factors = LoadAndCoefficient(contact, friction_coefficient, normal_load)
-    kinds = checked_kind("master_node", mbs, master_node), checked_kind("disc_node", mbs, disc_node)
-    if int(master_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is the master_node too: friction takes two bodies")
-    nodes = master_node, disc_node
+    factors = LoadAndCoefficient(contact, friction_coefficient, normal_load, static_ratio, plates)
+    nodes, kinds = checked_pair(mbs, master_node, disc_node)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     item = add_connector(mbs, nodes, *force_and_jacobian(kinds, reference, factors))
     return RingFriction(mbs, item, nodes, kinds, reference, factors)
+
+
+def checked_pair(
+    mbs: Any, master_node: Any, disc_node: Any, masters: Sequence[int] = ALL, discs: Sequence[int] = ALL
+) -> tuple[tuple[Any, ...], Kinds]:
+    """Return the nodes, of which the ground is none, and the kinds of both.
+
+    Raises ``ValueError`` if they are none of those allowed, or one and the same.
+    """
+    disc = node_of("disc_node", mbs, disc_node)
+    disc_kind = checked_kind("disc_node", mbs, disc, discs)
+    if master_node is None:
+        return (disc,), (GROUND, disc_kind)
+    master = node_of("master_node", mbs, master_node)
+    master_kind = checked_kind("master_node", mbs, master, masters)
+    if int(master) == int(disc):
+        raise ValueError(f"disc_node {int(disc)} is the master_node too: friction takes two bodies")
+    return (master, disc), (master_kind, disc_kind)
 
 
 def _checked_geometry(

@@ -137,6 +137,8 @@ class Ramp:
         (lambda time, gain=4.0, radius=1.0: gain * time + radius, 11.0),
         (partial(lambda time, radius: time + radius, radius=0.5), 2.5),
         (lambda: 7.0, 7.0),
+        (lambda relative_spin: 2.0 * relative_spin + 20.0, 6.0),
+        (lambda relative_spin, time: 10.0 * time + relative_spin, 13.0),
         (Ramp(), 20.0),
         (lambda time: np.float64(3.0), 3.0),
     ],
@@ -145,7 +147,7 @@ class Ramp:
 def test_a_function_is_given_what_it_names(function, expected, of_load):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
     factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
-    found = factors.friction_force(2.0, 3.0, 5.0)
+    found = factors.friction_force(2.0, 3.0, 5.0, -7.0)
     assert found == 0.5 * expected
     assert type(found) is float
 
@@ -153,7 +155,10 @@ def test_a_function_is_given_what_it_names(function, expected, of_load):
 @pytest.mark.parametrize(
     ("function", "message"),
     [
-        (lambda t: 1.0, "takes `t`: a function must take any of time, radius, slip_speed by these names"),
+        (
+            lambda t: 1.0,
+            "takes `t`: a function must take any of time, radius, slip_speed, relative_spin by these names",
+        ),
         (lambda time, speed: 1.0, "takes `speed`"),
         (lambda *arguments: 1.0, r"takes `\*arguments`"),
         (lambda **options: 1.0, r"takes `\*\*options`"),

@@ -191,10 +191,10 @@ def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve(node, nam
     [
         (exu.NodeIndex(7), "7 is none of the 2 nodes of this model"),
         (exu.NodeIndex(), "-1 is none of the 2 nodes of this model"),
-        (exu.ObjectIndex(0), "= 0 is of type ObjectIndex: it must be a NodeIndex, as AddNode returns it"),
+        (exu.ObjectIndex(7), "7 is none of the 2 objects of this model"),
         (exu.MarkerIndex(1), "= 1 is of type MarkerIndex: it must be a NodeIndex"),
         (1.0, r"= 1\.0 is of type float: it must be a NodeIndex"),
-        (None, "= None is of type NoneType: it must be a NodeIndex"),
+        ("disc", "= 'disc' is of type str: it must be a NodeIndex or the ObjectIndex of a body"),
     ],
 )
 @pytest.mark.parametrize("name", ["master_node", "disc_node"])

@@ -1,0 +1,115 @@
+"""What a clutch does, as its sensors tell it: slip in rad/s, the share of its capacity, its mode."""
+
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+import pytest
+from free_bodies import rotor
+from pairs_of_bodies import DISC, MASTER, body
+
+from exudyn_models import add_ring_friction, solve_dynamic
+
+items: Any = exudyn.itemInterface
+
+INERTIA, RADIUS, LOAD, EPSILON = 0.02, 0.12, 100.0, 1e-4
+CAPACITY = 0.3 * LOAD * RADIUS
+RING = {"contact_radius": RADIUS, "friction_coefficient": 0.3, "normal_load": LOAD, "regularisation": EPSILON}
+QUANTITIES = ("relative_spin", "capacity_share", "mode")
+
+
+def told(torque, end, spin=0.0, **contact):
+    """Return times and what the sensors of a brake tell of a rotor under a torque in N m, a function of time."""
+    mbs = exu.SystemContainer().AddSystem()
+    disc = rotor(mbs, INERTIA, spin)
+    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=0))
+    load = items.LoadCoordinate(
+        markerNumber=marker, load=0.0, loadUserFunction=lambda mbs, t, load: torque(t)
+    )
+    mbs.AddLoad(load)
+    brake = add_ring_friction(mbs, None, disc, **RING | contact)
+    sensors = [brake.add_sensor(name) for name in QUANTITIES]
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = end, round(end / 1e-3), 0
+    options.absoluteTolerance, options.relativeTolerance = 1e-9, 0.0
+    solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
+    stored = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
+    return stored[0][:, 0], *(values[:, 1] for values in stored)
+
+
+def test_a_contact_that_holds_tells_which_share_of_its_capacity_it_takes():
+    times, spin, share, mode = told(lambda t: 0.8 * CAPACITY * t, 1.0)
+    settled = times > 0.01  # INERTIA·ε/(μN·R²) = 5 µs
+    np.testing.assert_allclose(share[settled], 0.8 * times[settled], atol=1e-4)
+    np.testing.assert_allclose(spin, share * EPSILON / RADIUS, rtol=1e-9, atol=1e-15)
+    assert (mode == 0.0).all()
+
+
+def test_the_mode_follows_break_away_in_either_direction_and_stick():
+    period = 2.0
+
+    def torque(t):
+        return 1.5 * CAPACITY * np.sin(2.0 * np.pi * t / period)
+
+    times, spin, share, mode = told(torque, 1.1 * period)
+    assert set(mode) == {-1.0, 0.0, 1.0}
+    assert (np.sign(spin[mode != 0.0]) == mode[mode != 0.0]).all()
+    assert (share[mode != 0.0] == 1.0).all()
+    assert (share[mode == 0.0] < 1.0).all()
+    changes = times[1:][np.diff(mode) != 0.0]
+    assert mode[0] == 0.0
+    # By hand: it breaks away where 1.5·sin(2πt/T) = 1, and half a period later the other way.
+    first = period / (2.0 * np.pi) * np.arcsin(1.0 / 1.5)
+    assert changes[0] == pytest.approx(first, abs=2e-3)
+    assert len(changes) == 4
+    assert changes[2] == pytest.approx(first + period / 2.0, abs=2e-3)
+
+
+def test_a_contact_that_holds_nearly_all_it_can_is_locked_once_its_slip_has_ended():
+    times, _, share, mode = told(lambda t: 0.97 * CAPACITY, 0.5, spin=0.5)
+    stop = 0.5 * INERTIA / (0.03 * CAPACITY)
+    assert (mode[times < 0.99 * stop] == 1.0).all()
+    locked = times > 1.01 * stop
+    assert (mode[locked] == 0.0).all()
+    np.testing.assert_allclose(share[locked], 0.97, atol=1e-3)
+
+
+def test_a_clutch_without_load_is_open():
+    _, spin, share, mode = told(lambda t: 0.0, 0.3, spin=1.0, normal_load=lambda time: max(0.0, time - 0.1))
+    opened = mode == 2.0
+    assert (share[opened] == 0.0).all()
+    np.testing.assert_allclose(spin[opened], 1.0, rtol=1e-15)
+    assert opened[:2].all()
+    assert opened.sum() < len(mode)
+    assert (mode[~opened] == 1.0).all()
+
+
+def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = [body(mbs, kind, *data) for kind, data in (("planar", MASTER), ("Tait-Bryan", DISC))]
+    friction = add_ring_friction(mbs, *nodes, **RING)
+    spin, share, mode = (friction.add_sensor(name) for name in QUANTITIES)
+    mbs.Assemble()
+    assert mbs.GetSensorValues(spin) < -2.5
+    assert mbs.GetSensorValues(share) == 1.0
+    assert mbs.GetSensorValues(mode) == -1.0
+
+
+@pytest.mark.parametrize("quantity", ["capacity_share", "mode"])
+def test_a_load_may_not_depend_on_what_it_makes(quantity):
+    mbs = exu.SystemContainer().AddSystem()
+    sensors = []
+    brake = add_ring_friction(
+        mbs,
+        None,
+        rotor(mbs, INERTIA, 1.0),
+        **RING | {"normal_load": lambda time: 1.0 + float(mbs.GetSensorValues(sensors[0]))},
+    )
+    sensors.append(brake.add_sensor(quantity))
+    mbs.Assemble()
+    with pytest.raises(Exception, match=f"depends on the sensor '{quantity}' of the same contact"):
+        mbs.GetSensorValues(sensors[0])
