@@ -33,7 +33,7 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 STABLE = 3.0
 """Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
 
-STIFF, APART = 0.5, 20.0
+STIFF, APART = 0.25, 5.0
 """The same from which a step may be stiff that accuracy limits, and that over the change of slip from which it is."""
 
 PATIENCE = 15
