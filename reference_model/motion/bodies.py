@@ -81,13 +81,14 @@ class Body(ABC):
         self.sticky = centre.friction > 0.0
         self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
-    def go(self, y: list[float]) -> None:
-        """Run from the unknowns ``y`` at t = 0 to the last time."""
+    def go(self, y: list[float]) -> tuple[float, list[float]]:
+        """Run from the unknowns ``y`` at t = 0 to the end of the run; return when and where it ended."""
         run, t = self.run, 0.0
         run.record(t, lambda _: np.array([y]).T)
         self.begin(y)
         while t < run.end:
             t, y = self.advance(t, y)
+        return t, y
 
     def begin(self, y: list[float]) -> None:
         """Enter the first phase."""

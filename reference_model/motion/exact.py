@@ -54,30 +54,39 @@ def simulate_with(
     *,
     tolerance: float = 1e-9,
     contact: Contact | None = None,
+    slipping: float = math.inf,
 ) -> Trajectory:
-    """Do as :func:`reference_model.simulate`, with thresholds of which tests measure that they do not matter."""
+    """Do as :func:`reference_model.simulate`, with thresholds of which tests measure that they do not matter.
+
+    A phase of slip that has lasted for ``slipping`` s ends the motion: it may be shorter than ``times``.
+    """
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
-    times = checked_times(times)
+    moments = checked_times(times)
     tolerance = checked_tolerance(tolerance)
     law = contact_of(system, contact)
     unit = Units.of(system, state)
     run = Run(
-        (times - times[0]) / unit.time,
+        (moments - moments[0]) / unit.time,
         system.state_size,
-        lambda t: float(times[0] + t * unit.time),
+        lambda t: float(moments[0] + t * unit.time),
         thresholds,
         tolerance,
         unit.springs(system),
+        slipping / unit.time,
     )
     frame = _Frame.of(system, unit)
-    _body(run, system, law, unit).go(frame.unknowns(state))
+    end, y = _body(run, system, law, unit).go(frame.unknowns(state))
 
-    states = frame.states(run.motion)
+    motion = run.motion
+    if run.recorded < len(moments):
+        moments = np.append(moments[: run.recorded], run.seconds(end))
+        motion = np.vstack((motion[: run.recorded], y))
+    states = frame.states(motion)
     states[0] = state
     if not np.all(np.isfinite(states)):
         raise SimulationError(
-            f"the states are not finite from t = {times[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
+            f"the states are not finite from t = {moments[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
             "the parameters differ by too many orders of magnitude"
         )
     begun = [(kind, run.seconds(t), frame.states(y)) for kind, t, y in run.phases]
@@ -88,7 +97,7 @@ def simulate_with(
         steps=run.steps,
         wall_time=time.perf_counter() - clock,
     )
-    return Trajectory(system, times, states, phases_of(begun, float(times[-1])), solution)
+    return Trajectory(system, moments, states, phases_of(begun, float(moments[-1])), solution)
 
 
 def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, unit: Units) -> Body:

@@ -33,7 +33,7 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 STABLE = 3.0
 """Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
 
-STIFF, APART = 0.5, 20.0
+STIFF, APART = 0.25, 5.0
 """The same from which a step may be stiff that accuracy limits, and that over the change of slip from which it is."""
 
 PATIENCE = 15
@@ -109,6 +109,8 @@ class Run:
         The one that was asked for.
     springs : float
         Their rate in 1/T.
+    slipping : float
+        How long a phase of slip may last: the run ends with it.
 
     """
 
@@ -118,12 +120,13 @@ class Run:
     thresholds: Thresholds
     tolerance: float
     springs: float
+    slipping: float = math.inf
     motion: FloatArray = field(init=False)
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
     steps: int = 0
     patience: int = PATIENCE
-    _recorded: int = 0
+    recorded: int = 0  # of the times
     _looked_back: float = 0.0
 
     def __post_init__(self) -> None:
@@ -136,6 +139,7 @@ class Run:
         """Begin a phase of this kind, unless it is under way."""
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
+            self.end = min(t + (self.slipping if kind == "slip" else math.inf), float(self.times[-1]))
 
     def step(self, solver: Explicit | Radau, since: float) -> None:
         """Take one step, or raise ``StepError`` with the time up to which all was well."""
@@ -167,15 +171,14 @@ class Run:
 
     def pending(self, t: float) -> bool:
         """Tell whether a time that was asked for lies before or at ``t``."""
-        return self._recorded < len(self.times) and bool(self.times[self._recorded] <= t)
+        return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
     def record(self, until: float, sample: Sampler) -> None:
         """Store the motion at the times up to ``until`` that are not yet recorded."""
         stop = int(np.searchsorted(self.times, until, side="right"))
-        span = slice(self._recorded, stop)
-        if stop > self._recorded:
-            self.motion[span] = sample(self.times[span]).T
-            self._recorded = stop
+        if stop > self.recorded:
+            self.motion[self.recorded : stop] = sample(self.times[self.recorded : stop]).T
+            self.recorded = stop
 
 
 class SwitchingSurface(NamedTuple):

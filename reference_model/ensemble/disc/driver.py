@@ -28,8 +28,8 @@ from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
-LEAST_SPAN = 0.1
-"""Turns of the master disc, or of the free centre, that the reference takes a trajectory through at least."""
+LEAST_SLIP = 0.1
+"""Turns of the master disc, or of the free centre, through which all must slip for compiled code to take over."""
 
 
 def simulate_discs(
@@ -162,17 +162,17 @@ def _through_rest(
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration
-    asked, span = np.asarray(times), LEAST_SPAN * turn
+    asked, span = np.asarray(times), (1.0 + 2.0 * LEAST_SLIP) * turn
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
         inside = asked[(asked > t) & (asked < end)]
-        motion = simulate_with(Thresholds(), disc, state, [t, *inside, end], tolerance=tolerance)
-        t, state, last = end, motion.at_end, motion.phases[-1]
+        motion = simulate_with(
+            Thresholds(), disc, state, [t, *inside, end], tolerance=tolerance, slipping=LEAST_SLIP * turn
+        )
+        t, state, last = float(motion.times[-1]), motion.at_end, motion.phases[-1]
         stuck = last.kind == "stick" and last.end - last.start >= turn
         yield motion, stuck
         if last.kind == "slip":
             break
         if stuck:
             span = duration
-        elif last.kind == "stick":
-            span = LEAST_SPAN * turn + turn

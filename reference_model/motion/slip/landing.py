@@ -83,7 +83,7 @@ class Landings:
         while (piece := self._piece(y)) is not None:
             run = self._run
             run.count_step(t)
-            run.record(min(t + piece.duration, run.end), partial(piece.standard, t))
+            run.record(t + piece.duration, partial(piece.standard, t))
             t += piece.duration
             y = piece.unknowns(np.ones(1))[:, 0].tolist()
             if piece.share == 1.0:

@@ -122,7 +122,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         ending = solver.y.tolist() if lost is None else solver.dense_output()(lost).tolist()
         t = start + ending[-1]
         if run.pending(t):
-            run.record(min(t, run.end), sampler(solver.dense_output()))
+            run.record(t, sampler(solver.dense_output()))
         y, _, s = unknowns(ending)
         if lost is not None or t >= run.end or s > FAST_AGAIN * motion.slow(y) or leave(y):
             break

@@ -18,7 +18,9 @@ from reference_model import (
     sticking_radius,
 )
 from reference_model.ensemble import recording, simulate_ensemble
+from reference_model.ensemble.disc import driver
 from reference_model.ensemble.disc.kernel import run_points
+from reference_model.motion.exact import simulate_with
 
 SECOND = list(FIG5_STARTS.values())[1]
 """Sticks nine times."""
@@ -273,6 +275,31 @@ def test_a_disc_that_is_handed_over_and_back_needs_no_other_code_than_one_that_i
     assert found.stick_phases
     assert found.phases[-1].kind == "slip"
     assert len(run_points.signatures) == known
+
+
+def test_a_disc_on_points_is_with_the_plain_reference_only_until_it_slips(monkeypatch):
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=0.542, stiffness=1.0, damping=2.66, friction_force=8.11, disc_speed=-0.888,
+        offset=1.48, contact_radius=2.23, shaft_damping=1.26, shaft_speed=-0.381, contact_points=6,
+    )  # fmt: skip
+    parts = []
+
+    def watched(*arguments, **options):
+        parts.append(simulate_with(*arguments, **options))
+        return parts[-1]
+
+    monkeypatch.setattr(driver, "simulate_with", watched)
+    start, times = turning_with(disc, -4.0), np.linspace(0.0, 60.0, 301)
+    found, tight = (
+        simulate(disc, start, times, tolerance=tolerance, compiled=compiled)
+        for tolerance, compiled in ((1e-9, True), (1e-11, False))
+    )
+    slips = [phase.end - phase.start for phase in found.phases[:-1] if phase.kind == "slip"]
+    by_reference = [p.end - p.start for part in parts for p in part.phases if p.kind == "slip"]
+    assert len(slips) > 5
+    assert sum(by_reference) < 0.4 * sum(slips)
+    assert len(parts) <= len(found.stick_phases) + 1
+    assert np.max(np.abs(found.states - tight.states)) < 1e-8  # of 4 m and 3.5 m/s
 
 
 def test_a_single_run_takes_the_steps_of_one_lane_to_the_same_bits():

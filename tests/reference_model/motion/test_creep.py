@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from reference_model import DiscOnDisc, PinOnDisc, simulate
+from reference_model import DiscOnDisc, PinOnDisc, plain, simulate
 from reference_model.motion import stepper as stepping
 
 CREEPING = PinOnDisc(mass=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0)
@@ -105,6 +105,28 @@ def test_slow_slip_whose_direction_settles_much_faster_than_it_changes_is_follow
     explicit = simulate(disc, start, times)
     assert explicit.solution.steps > 300
     assert np.abs(usual.states - explicit.states).max() < 1e-10
+
+
+@pytest.mark.usefixtures("few_steps")
+def test_slip_that_goes_round_once_in_many_times_of_a_strong_damper_is_followed_in_long_steps(monkeypatch):
+    # The damper and friction draw slip to where it should be at some ten times the rate of all else: a twentieth of
+    # that is an explicit step, which is as far from its bound of stability as the motion is from changing much.
+    pin = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=21.6236242, friction_force=27.2237607, disc_speed=2.58398372,
+        offset=8.13455119,
+    )  # fmt: skip
+    start, times = [-1.14337043, 0.1767777, 0.0, 0.0], np.linspace(0.0, 30.0, 301)
+    usual = simulate(pin, start, times)
+    assert usual.solution.steps < 600
+    # Slip does not end, so that a general method may be asked: it takes the law as it is.
+    friction = plain.on_ring(pin.friction_force, 0.0, 1, 0.0)
+    run = solve_ivp(
+        lambda _, state: plain.rates(pin, friction, state), (0.0, 30.0), start, "DOP853", times,
+        rtol=1e-12, atol=1e-12,
+    )  # fmt: skip
+    speed = pin.disc_speed * pin.offset
+    sizes = np.array([pin.offset, pin.offset, speed, speed])
+    assert (np.abs(usual.states - run.y.T) / sizes).max() < 1e-9
 
 
 @pytest.mark.parametrize("stiffer", [1e4, 1e8])

@@ -443,6 +443,21 @@ def test_thresholds_and_tolerance_do_have_an_effect_below_that(fig_5):
     assert np.abs(event_times(tight) - event_times(trajectory)).max() > 1e-14
 
 
+@pytest.mark.parametrize("slipping", [1e-3, 0.03, 1.0])
+def test_motion_that_is_wanted_only_until_it_slips_is_the_first_part_of_the_whole(slipping):
+    stuck, times = [-0.03, 0.0, 0.0, -0.045], np.linspace(0.0, 20.0, 201)
+    whole = simulate(FIG_5, stuck, times)
+    part = simulate_with(Thresholds(), FIG_5, stuck, times, slipping=slipping)
+    released = whole.phases[0].end
+    assert kinds(part) == ["stick", "slip"]
+    # It ends with the step in which that time is over.
+    assert released + slipping - 1e-12 < part.times[-1] < released + 2.0 * slipping + 0.2
+    np.testing.assert_array_equal(part.times[:-1], times[times < part.times[-1]])
+    np.testing.assert_allclose(part.states[:-1], whole.states[times < part.times[-1]], atol=1e-11)
+    ends = simulate(FIG_5, stuck, [0.0, part.times[-1]]).at_end
+    assert np.abs(part.at_end - ends).max() < 1e-9
+
+
 @pytest.mark.parametrize("start", [TO_EQUILIBRIUM, TO_WHIRL])
 def test_stick_and_release_times_agree_with_a_plain_integrator_and_a_plain_root(start):
     expected, t, state = [], 0.0, np.array(start)
