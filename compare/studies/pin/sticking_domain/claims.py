@@ -17,6 +17,7 @@ from compare.engines import Engine
 from compare.studies.pin.sticking_domain.parameters import (
     BRACKET,
     CREEP,
+    CREEP_AT_EDGE,
     DAMPINGS,
     FAST,
     INSIDE,
@@ -84,9 +85,9 @@ def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement
     return found.plus(ROUNDING)
 
 
-def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> bool:
+def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = CREEP) -> bool:
     """Return whether pins may creep so far, where they should stick, that what is read off their stick is open."""
-    return displaced(engine, speeds).largest > CREEP
+    return displaced(engine, speeds).largest > most
 
 
 @STUDY.claim(
@@ -186,7 +187,11 @@ def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> F
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
-    return np.where(missing, np.inf if creeps(engine) else 0.0, np.where(np.isnan(errors), np.inf, errors))
+    return np.where(
+        missing,
+        np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0,
+        np.where(np.isnan(errors), np.inf, errors),
+    )
 
 
 def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
