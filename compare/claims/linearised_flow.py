@@ -80,15 +80,14 @@ def measured_eigenvalues(
 
     @functools.cache
     def differences(tolerance: float, step: float) -> FloatArray:
+        shifts = [step * width * np.eye(len(state))[i] for i, width in zip(moving, size, strict=True)]
+        runs = engine.simulate_many(
+            [(system, state + sign * shift, [0.0, duration]) for shift in shifts for sign in (1.0, -1.0)],
+            tolerance=tolerance,
+        )
         columns = []
-        for i, width in zip(moving, size, strict=True):
-            shift = np.zeros(len(state))
-            shift[i] = step * width
-            ends = [
-                engine.simulate(system, state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
-                for sign in (1.0, -1.0)
-            ]
-            change = rotated(ends[0] - ends[1], -frame_speed * duration) / (2.0 * shift[i])
+        for width, there, back in zip(size, runs[::2], runs[1::2], strict=True):
+            change = rotated(there.at_end - back.at_end, -frame_speed * duration) / (2.0 * (step * width))
             columns.append(change[moving])
         return np.column_stack(columns)
 

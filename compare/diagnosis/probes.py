@@ -56,11 +56,13 @@ def forces(engine: Engine, tolerance: float) -> FloatArray:
 
     Both are means over the motion; of the slip there is the direction, a unit vector, which a force beside it turns.
     """
+    velocities = [cmath.rect(SPEED, heading) for heading in HEADINGS.tolist()]
+    runs = engine.simulate_many(
+        [(SLIDE, (0.0, 0.0, v.real, v.imag), (0.0, SLIDES_FOR)) for v in velocities], tolerance=tolerance
+    )
     found = []
-    for heading in HEADINGS.tolist():
-        v = cmath.rect(SPEED, heading)
-        start, times = (0.0, 0.0, v.real, v.imag), (0.0, SLIDES_FOR)
-        end = engine.simulate(SLIDE, start, times, tolerance=tolerance).at_end
+    for v, run in zip(velocities, runs, strict=True):
+        end = run.at_end
         place, at_end = complex(*end[:2]), complex(*end[2:])
         force = ((at_end - v) * SLIDE.mass / SLIDES_FOR + WEAK * place / 2.0) / FRICTION
         slip = (v + at_end) / abs(v + at_end)
@@ -70,13 +72,11 @@ def forces(engine: Engine, tolerance: float) -> FloatArray:
 
 def creep(engine: Engine, tolerance: float) -> FloatArray:
     """Return the speed in m/s at which a block creeps that ``PULLS`` do not set in motion, shape (n,)."""
-    found = []
-    for share in PULLS:
-        block = replace(SLIDE, offset=share * FRICTION / WEAK)  # so far that a metre changes next to nothing
-        times = np.array([0.0, 0.5, 1.0]) * PULLED_FOR
-        x = engine.simulate(block, (0.0, 0.0, 0.0, 0.0), times, tolerance=tolerance).states[:, 0]
-        found.append((x[2] - x[1]) / (times[2] - times[1]))
-    return np.array(found)
+    # so far that a metre changes next to nothing
+    blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in PULLS]
+    times = np.array([0.0, 0.5, 1.0]) * PULLED_FOR
+    runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
+    return np.array([(run.states[2, 0] - run.states[1, 0]) / (times[2] - times[1]) for run in runs])
 
 
 def lag(engine: Engine, tolerance: float) -> float:

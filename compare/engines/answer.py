@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,3 +42,17 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
         i = int(np.argmax(broken))
         raise BadTrajectoryError(f"the state at t = {asked[i]:g} s is not finite: {states[i].tolist()}")
     return trajectory
+
+
+def as_many_as(answers: object, asked: int) -> list[object]:
+    """Return the ``answers`` of ``simulate_many`` if they are so many; raise ``BadTrajectoryError`` otherwise."""
+    if isinstance(answers, Trajectory) or not isinstance(answers, Iterable):
+        raise TypeError(
+            f"simulate_many() returned {reprlib.repr(answers)}: it must be a list of trajectories"
+        )
+    found = list(answers)
+    if len(found) != asked:
+        raise BadTrajectoryError(
+            f"simulate_many() returned {len(found)} trajectories: {asked} were asked for"
+        )
+    return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,15 @@ class ByName:
 
     def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
         """Call it."""
-        trajectory: Trajectory = getattr(importlib.import_module(self.module), self.function)(
-            *arguments, **options
-        )
+        trajectory: Trajectory = self._function(*arguments, **options)
         return trajectory
+
+    @property
+    def simulate_many(self) -> Callable[..., Any] | None:
+        """What the function has under this name, if anything, see ``compare.engines.engine.SimulateMany``."""
+        return getattr(self._function, "simulate_many", None)
+
+    @property
+    def _function(self) -> Callable[..., Any]:
+        function: Callable[..., Any] = getattr(importlib.import_module(self.module), self.function)
+        return function

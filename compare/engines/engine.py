@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.engines.answer import checked
+from compare.engines.answer import BadTrajectoryError, as_many_as, checked
 from compare.engines.names import one_of
 from compare.engines.precision import LEAST_PRECISE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.tolerances import USUAL_TOLERANCE
 from reference_model.support import Support
-from reference_model.systems import PinOnDisc, System, finite_number
+from reference_model.systems import FloatArray, PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
 
 KINDS = {
@@ -49,6 +49,20 @@ class Simulate(Protocol):
         self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
     ) -> Trajectory:
         """Return the motion of ``system`` from ``initial_state`` (at ``times[0]``) at all ``times``."""
+        ...
+
+
+class SimulateMany(Protocol):
+    """What an engine may implement besides: many motions at once, at a tolerance as in ``Simulate``."""
+
+    def __call__(
+        self,
+        systems: list[System],
+        initial_states: list[ArrayLike],
+        times: list[ArrayLike],
+        **accuracy: float,
+    ) -> Sequence[Trajectory]:
+        """Return what ``Simulate`` does for each of as many systems, states and times."""
         ...
 
 
@@ -156,27 +170,81 @@ class Engine:
             If it is not the one that was asked for, or has numbers that are not finite.
 
         """
+        self._refuse(system, initial_state, times)
+        answer = self.function(
+            system, self._start(system, initial_state, tolerance), times, **self._accuracy(tolerance)
+        )
+        return self._seen(answer, system, initial_state, times, tolerance)
+
+    def simulate_many(
+        self, motions: Iterable[tuple[System, ArrayLike, ArrayLike]], *, tolerance: float = USUAL_TOLERANCE
+    ) -> list[Trajectory]:
+        """Return the motion of each system from its initial state at its times, as ``simulate`` does.
+
+        They are asked for at once where ``function`` has an attribute ``simulate_many``, a function of the systems,
+        the initial states and the times, each a list, else one after the other.
+
+        Raises
+        ------
+        UnsupportedSystemError, TypeError, BadTrajectoryError
+            As ``simulate`` does, or for another number of trajectories than was asked for.
+
+        """
+        motions = list(motions)
+        at_once: SimulateMany | None = getattr(self.function, "simulate_many", None)
+        if at_once is None:
+            return [self.simulate(*motion, tolerance=tolerance) for motion in motions]
+        for motion in motions:
+            self._refuse(*motion)
+        systems = [system for system, _, _ in motions]
+        starts = [self._start(system, state, tolerance) for system, state, _ in motions]
+        answers = at_once(systems, starts, [times for *_, times in motions], **self._accuracy(tolerance))
+        found = []
+        for i, answer in enumerate(as_many_as(answers, len(motions))):
+            try:
+                found.append(self._seen(answer, *motions[i], tolerance))
+            except BadTrajectoryError as error:
+                raise BadTrajectoryError(f"motion {i + 1} of {len(motions)}: {error}") from None
+        return found
+
+    def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
+        """Raise ``UnsupportedSystemError`` for a motion that the engine does not promise."""
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
         if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
             raise UnsupportedSystemError(f"{self.name} does not simulate stick")
-        accuracy = {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
 
-        def asked(times: ArrayLike) -> Trajectory:
+    def _accuracy(self, tolerance: float) -> dict[str, float]:
+        return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
+
+    def _start(self, system: System, initial_state: ArrayLike, tolerance: float) -> ArrayLike:
+        """Return the state that the function is asked to start from."""
+        if self.precision == 0.0:
+            return initial_state
+        return blurred_start(system, np.asarray(initial_state, dtype=float), self.precision, tolerance)
+
+    def _seen(
+        self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
+    ) -> Trajectory:
+        """Return the function's ``answer`` as studies see it: looked at, in its precision, and with its stick."""
+
+        def looked_at(answer: object, times: ArrayLike) -> Trajectory:
+            found = checked(answer, system, times)
             if self.precision == 0.0:
-                return checked(self.function(system, initial_state, times, **accuracy), system, times)
-            given = np.asarray(initial_state, dtype=float)
-            start = blurred_start(system, given, self.precision, tolerance)
-            found = checked(self.function(system, start, times, **accuracy), system, times)
-            return blurred(found, self.precision, tolerance, given)
+                return found
+            return blurred(found, self.precision, tolerance, np.asarray(initial_state, dtype=float))
 
-        found = asked(times)
+        def more(times: FloatArray) -> FloatArray:
+            start = self._start(system, initial_state, tolerance)
+            return looked_at(self.function(system, start, times, **self._accuracy(tolerance)), times).states
+
+        found = looked_at(answer, times)
         if self.phases or any(phase.kind != "slip" for phase in found.phases):
             return found
         coarseness = tolerance / USUAL_TOLERANCE
         if self.step is not None:
             coarseness = COARSE_STEP * self.step_at(tolerance) / self.step
-        return StatesOnly(found, lambda more: asked(more).states, coarseness, self.precision)
+        return StatesOnly(found, more, coarseness, self.precision)
 
     @property
     def root(self) -> float:

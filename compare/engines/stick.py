@@ -57,6 +57,12 @@ ABOVE_CREEP = 8.0
 QUIET, QUIETER = 0.1, 0.5
 """Share of the time of a slow span that is stick for sure: at first, when there may be slow slip in it, and later."""
 
+GROWS = 1.2
+"""Creep in the third quarter of a stick phase over that in the first, from which on it grows up to release."""
+
+BELOW_REST = 16.0
+"""``REST`` over the largest creep that grows: of more it is not known where it ends and slip begins."""
+
 FLANK = 16.0
 """Largest slip from which is extrapolated, over the least."""
 
@@ -98,11 +104,15 @@ class StatesOnly(Trajectory):
 
 @dataclass
 class _Span:
-    """The samples ``first`` to ``last``, by their times in s, between which the slip is below ``level`` in m/s."""
+    """The samples ``first`` to ``last``, by their times in s, between which the slip is below ``level`` in m/s.
+
+    From the level outwards beginning and end are extrapolated by polynomials of a ``degree``.
+    """
 
     first: float
     last: float
     level: float
+    degree: int = 2
 
 
 class _Samples:
@@ -134,7 +144,7 @@ class _Samples:
         self.look(_joined(map(self._flanks, spans)))
         found = [(self._begin(span), self._end(span), span) for span in spans]
         held = [(start, span) for start, stop, span in found if self._is_stick(start, stop, span)]
-        released = [replace(span, level=self._release_level(span)) for _, span in held]
+        released = [self._released(span) for _, span in held]
         self.look(_joined(map(self._flanks, released)))
         sticks = [(start, self._end(span)) for (start, _), span in zip(held, released, strict=True)]
         begun: list[tuple[Literal["slip", "pivot", "stick"], float]] = []
@@ -236,7 +246,9 @@ class _Samples:
         """
         if end - begin <= (span.last - span.first) / 2.0:
             return False
-        rests = self._quantile(begin, end, 0.5) <= min(CREEP * self.coarseness, REST) * self.largest
+        slow, creep, fast = (self._quantile(begin, end, share) for share in (0.25, 0.5, 0.75))
+        most = REST / (BELOW_REST if fast > GROWS * slow else ABOVE_CREEP)
+        rests = creep <= min(CREEP * self.coarseness, most) * self.largest
         return rests and _load(self.system, self._state((begin + end) / 2.0)) <= self.system.friction_force
 
     def _flanks(self, span: _Span) -> FloatArray:
@@ -252,7 +264,7 @@ class _Samples:
         first, _ = self._places(span)
         if first == 0:
             return float(self.times[0])
-        time, nearest = self._extrapolated(np.arange(first)[::-1], 1.0, span.level)
+        time, nearest = self._extrapolated(np.arange(first)[::-1], 1.0, span)
         return min(max(time, nearest), span.last)
 
     def _end(self, span: _Span) -> float:
@@ -260,30 +272,34 @@ class _Samples:
         _, last = self._places(span)
         if last == len(self.times) - 1:
             return float(self.times[-1])
-        time, nearest = self._extrapolated(np.arange(last + 1, len(self.times)), 0.5, span.level)
+        time, nearest = self._extrapolated(np.arange(last + 1, len(self.times)), 0.5, span)
         return max(min(time, nearest), span.first)
 
-    def _release_level(self, span: _Span) -> float:
-        """Return the slip in m/s from which release is extrapolated.
+    def _released(self, span: _Span) -> _Span:
+        """Return a span with the level and the degree from which its end, release, is extrapolated.
 
-        It is the geometric mean of the creep and of ``REST``, if that is more. Where friction is smoothed over ε and
-        creep grows before release, as ε·f/√(1 − f²), it comes to a multiple of ε at the same time for each ε.
+        The level is the geometric mean of the creep and of ``REST``. Where friction is smoothed over ε and creep
+        grows before release, as ε·f/√(1 − f²), it comes to a multiple of ε at the same time for each ε. The level
+        hangs on nothing but that creep: if it jumped with the samples, so would the release, and what it is off by
+        would no more fall with the step as its error estimate takes for granted. Nor would it if what a parabola
+        leaves out, which is late, made up for creep, which is early: a cubic leaves out less.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]
-        creep = float(np.median(slip))
+        creep = self._quantile(float(self.times[first]), float(self.times[last]), 0.5)
         if len(slip) < 2 or np.median(np.abs(np.diff(slip))) > NOISE * creep:
-            return span.level
-        return max(span.level, math.sqrt(creep * REST * self.largest))
+            return span
+        level = max(self.least * self.largest, math.sqrt(creep * REST * self.largest))
+        return replace(span, level=level, degree=3)
 
-    def _extrapolated(self, outwards: NDArray[np.intp], power: float, level: float) -> tuple[float, float]:
-        """Return when slip**power is nothing, by a parabola through a flank, and the time of the nearest sample."""
-        beyond = np.flatnonzero(self.slip[outwards] > FLANK * level)
+    def _extrapolated(self, outwards: NDArray[np.intp], power: float, span: _Span) -> tuple[float, float]:
+        """Return when slip**power is nothing, by a polynomial through a flank, and the time of the nearest sample."""
+        beyond = np.flatnonzero(self.slip[outwards] > FLANK * span.level)
         places = outwards[: max(int(beyond[0]), 1) if beyond.size else None]
-        roots, nearest = (self.slip[places] / level) ** power, float(self.times[places[0]])
-        degree = min(2, len(np.unique(roots)) - 1)
-        parabola = np.polynomial.Polynomial.fit(roots, self.times[places] - nearest, degree)
-        return float(parabola(0.0)) + nearest, nearest
+        roots, nearest = (self.slip[places] / span.level) ** power, float(self.times[places[0]])
+        degree = min(span.degree, len(np.unique(roots)) - 1)
+        fitted = np.polynomial.Polynomial.fit(roots, self.times[places] - nearest, degree)
+        return float(fitted(0.0)) + nearest, nearest
 
     def _state(self, time: float) -> FloatArray:
         """Return the state of the nearest sample."""

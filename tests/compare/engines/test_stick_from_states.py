@@ -1,12 +1,15 @@
 """Stick that is found from states is that which the reference tells."""
 
+import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import reference_model
+from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
 from compare.engines.engine import UnsupportedSystemError
@@ -185,3 +188,36 @@ def test_release_after_creep_that_grows_is_off_by_less_with_less_smoothing():
         off.append(abs(run.phases[2].start - exact))
     assert off[1] < 0.2 * off[0]
     assert off[1] < 0.01
+
+
+def stepped(pin, start, times, *, step):
+    """Simulate ``smoothed`` friction, ε in proportion to the step, by the implicit Euler rule between half drifts."""
+    slow, states = step * pin.friction_force / pin.mass, [start]
+    z, v = complex(*start[:2]), complex(*start[2:])
+    for begin, end in pairwise(times):
+        many = max(1, math.ceil((end - begin) / step - 1e-9))
+        h = (end - begin) / many
+        for _ in range(many):
+            z += 0.5 * h * v
+            pushed = v - h * pin.stiffness * (z - pin.offset) / pin.mass
+            carried = 1j * pin.disc_speed * z
+            for _ in range(4):
+                hold = pin.friction_force / math.hypot(abs(v - carried), slow)
+                v = (pushed + h * hold * carried / pin.mass) / (1.0 + h * (hold + pin.damping) / pin.mass)
+            z += 0.5 * h * v
+        states.append((z.real, z.imag, v.real, v.imag))
+    return Trajectory(pin, np.array(times), np.array(states))
+
+
+def test_the_change_with_the_step_tells_by_how_much_stick_and_release_are_off():
+    start, ends = FIG5_STARTS["equilibrium"], [0.0, 6.4]
+    mine = Engine("stepped", stepped, phases=False, step=1e-3)
+    found = refined(
+        lambda tolerance: mine.simulate(FIG5, start, ends, tolerance=tolerance).stick_times, 1.2e-9
+    )
+    assert np.max(np.abs(found.value - told(FIG5, start, ends).stick_times)) < 0.5 * found.largest
+
+
+def test_what_creeps_nearly_as_fast_as_it_slips_is_not_told_to_stick():
+    mine = Engine("stepped", stepped, phases=False, step=1e-3)
+    assert mine.simulate(FIG5, FIG5_STARTS["equilibrium"], [0.0, 6.4], tolerance=2e-8).stick_phases == ()

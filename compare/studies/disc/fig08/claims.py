@@ -221,10 +221,8 @@ def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measure
     start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
 
     def as_said(tolerance: float) -> list[bool]:
-        runs = [
-            engine.simulate(with_load(RING, load), start, [0.0, STICKING_TIME], tolerance=tolerance)
-            for load in loads
-        ]
+        motions = [(with_load(RING, load), start, [0.0, STICKING_TIME]) for load in loads]
+        runs = engine.simulate_many(motions, tolerance=tolerance)
         return [
             (run.phases[-1].kind == "stick") == (ratio > 1.0) for run, ratio in zip(runs, ratios, strict=True)
         ]

@@ -160,8 +160,8 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
     outwards = np.repeat((-1.0, 1.0), places)
 
     def margins(tolerance: float) -> FloatArray:
-        ends = [engine.simulate(FIG5, start, [0.0, AFTER], tolerance=tolerance).at_end for start in sides]
-        return outwards * [beyond_equilibrium(end) for end in ends]
+        runs = engine.simulate_many([(FIG5, start, [0.0, AFTER]) for start in sides], tolerance=tolerance)
+        return outwards * [beyond_equilibrium(run.at_end) for run in runs]
 
     return answers_of(*asked(margins, ASIDE_TOLERANCE), source=FROM_REST, note=f"{2 * places} starts.")
 

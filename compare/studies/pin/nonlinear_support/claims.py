@@ -174,10 +174,9 @@ def harmonic_balance(engine: Engine) -> Measured:
 def slides(engine: Engine) -> Measured:
     """Follow pins that spiral out to the whirl."""
     pins = [replace(pin, offset=OFFSET) for pin in PINS.values()]
+    motions = [(pin, SLIDING_START, SLIDING_TIMES) for pin in pins]
     found = refined(
-        lambda tolerance: [
-            engine.simulate(pin, SLIDING_START, SLIDING_TIMES, tolerance=tolerance).states for pin in pins
-        ],
+        lambda tolerance: [run.states for run in engine.simulate_many(motions, tolerance=tolerance)],
         TOLERANCE,
     )
     return Measured(
@@ -231,10 +230,10 @@ def rests(engine: Engine) -> Measured:
     places = [equilibrium_position(pin) for pin in pins]
 
     def ends(tolerance: float) -> list[FloatArray]:
-        return [
-            engine.simulate(pin, (x + BESIDE, y, 0.0, 0.0), REST_TIMES, tolerance=tolerance).states[1:, :2]
-            for pin, (x, y) in zip(pins, places, strict=True)
+        motions = [
+            (pin, (x + BESIDE, y, 0.0, 0.0), REST_TIMES) for pin, (x, y) in zip(pins, places, strict=True)
         ]
+        return [run.states[1:, :2] for run in engine.simulate_many(motions, tolerance=tolerance)]
 
     found = refined(ends, TOLERANCE)
     # As in fig06: the slowest deviation decays like exp(−βt/2m).

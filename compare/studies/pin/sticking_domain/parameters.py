@@ -24,6 +24,9 @@ OUTSIDE = (1.02, 1.5)
 CREEP = 1e-2
 """Relative displacement of a stuck pin from which on it is not known whether it sticks."""
 
+CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
+"""The same for a pin just outside: creep of that share of its distance to the edge may hold it for too long."""
+
 LATEST = 1.1
 """How long a pin outside is watched, in units of the time that (7) predicts."""
 

@@ -79,11 +79,14 @@ def moved(
     """
 
     def states(tolerance: float) -> FloatArray:
+        ways = [direction(heading) for heading in headings]
+        runs = engine.simulate_many(
+            [(pin, state_of(pin.offset + along * start[0], along * start[1]), times) for along in ways],
+            tolerance=tolerance,
+        )
         found = []
-        for heading in headings:
-            along = direction(heading)
-            state = state_of(pin.offset + along * start[0], along * start[1])
-            seen = engine.simulate(pin, state, times, tolerance=tolerance).states[1:]
+        for along, run in zip(ways, runs, strict=True):
+            seen = run.states[1:]
             place, velocity = seen[:, 0] - pin.offset + 1j * seen[:, 1], seen[:, 2] + 1j * seen[:, 3]
             turned = np.column_stack((place, velocity)) / along
             found.append(np.ascontiguousarray(turned).view(float))
@@ -196,13 +199,16 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Ask on which side of the cone a block is, at eight places beside it."""
 
     def margins(tolerance: float) -> FloatArray:
-        found = []
-        for load, side in ((LOADS[-1], -1.0), (BEYOND, 1.0)):
-            for heading in headings:
-                place = -load * FRICTION / SPRING.stiffness * direction(heading)
-                end = engine.simulate(SPRING, state_of(place), [0.0, HELD], tolerance=tolerance).at_end
-                found.append(side * (abs(complex(*end[:2]) - place) - MOVED))
-        return np.array(found)
+        places = [
+            -load * FRICTION / SPRING.stiffness * direction(heading)
+            for load in (LOADS[-1], BEYOND)
+            for heading in headings
+        ]
+        runs = engine.simulate_many(
+            [(SPRING, state_of(place), [0.0, HELD]) for place in places], tolerance=tolerance
+        )
+        moved = [abs(complex(*run.at_end[:2]) - place) for run, place in zip(runs, places, strict=True)]
+        return np.repeat((-1.0, 1.0), len(headings)) * (np.array(moved) - MOVED)
 
     return answers_of(*asked(margins, WORKING), system=SPRING)
 

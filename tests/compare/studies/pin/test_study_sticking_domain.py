@@ -5,10 +5,13 @@ import pytest
 from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
-from compare.studies.pin.sticking_domain import parameters
+from compare.claims.error_estimates import Measurement
+from compare.engines import Engine
+from compare.studies.pin.sticking_domain import claims, parameters
 from compare.studies.pin.sticking_domain.claims import STUDY
 from compare.studies.pin.sticking_domain.theory import vertex
 from compare.studies.toolkit.sticking import safest_angle
+from reference_model import Phase, Trajectory
 from reference_model.formulas.pin import squared_holding_force
 
 SPEEDS, SEARCHED = {"speeds": (1.4,)}, {"searched": (0.9, 1.0, 1.1)}
@@ -41,3 +44,20 @@ def test_the_vertex_of_an_exact_parabola_is_found():
     found, error = vertex(s, 2.0 + 3.0 * (s - 0.9) ** 2, np.full(3, 1e-6))
     assert found == pytest.approx(np.sqrt(0.9), rel=1e-12)
     assert 0.0 < error < 1e-4
+
+
+@pytest.mark.parametrize(("creep", "open_"), [(1e-6, False), (7e-3, True)])
+def test_a_pin_just_outside_that_is_not_let_go_tells_nothing_where_it_creeps_nearly_to_the_edge(
+    creep, open_, monkeypatch
+):
+    def displaced(engine, speeds=()):
+        return Measurement(np.zeros(2), np.full(2, creep))
+
+    def simulate(pin, start, times, *, tolerance):
+        states = np.tile(start, (len(times), 1))
+        return Trajectory(pin, np.array(times), states, (Phase("stick", times[0], times[-1], states[0]),))
+
+    monkeypatch.setattr(claims, "displaced", displaced)
+    found = claims.lets_go(Engine("mine", simulate), (1.4,))
+    assert np.all(np.isinf(found.value))
+    assert np.all(np.isinf(found.error) == open_)

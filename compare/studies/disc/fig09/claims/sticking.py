@@ -42,10 +42,8 @@ def sticks(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measured:
 
     @functools.cache
     def runs(tolerance: float) -> list[Trajectory]:
-        return [
-            engine.simulate(disc, start, [0.0, REVOLUTION], tolerance=tolerance)
-            for disc, start in zip(discs, starts, strict=True)
-        ]
+        motions = [(disc, start, [0.0, REVOLUTION]) for disc, start in zip(discs, starts, strict=True)]
+        return engine.simulate_many(motions, tolerance=tolerance)
 
     def departures(tolerance: float) -> FloatArray:
         rows = []
@@ -90,11 +88,9 @@ def releases(engine: Engine, loads: Sequence[float] = STICK_LOADS) -> Measured:
     starts = [(with_load(RING, load), *stuck_at(with_load(RING, load), share)) for load, share in cases]
 
     def turns(tolerance: float) -> list[float]:
-        return [
-            disc.disc_speed
-            * first_release(engine.simulate(disc, start, [0.0, LATEST * release], tolerance=tolerance))
-            for disc, start, release in starts
-        ]
+        motions = [(disc, start, [0.0, LATEST * release]) for disc, start, release in starts]
+        runs = engine.simulate_many(motions, tolerance=tolerance)
+        return [run.system.disc_speed * first_release(run) for run in runs]
 
     found = refined(turns, TOLERANCE)
     return Measured(

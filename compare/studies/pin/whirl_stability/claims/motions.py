@@ -131,14 +131,15 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
         return None
 
     def rates_of(interval: float, tolerance: float) -> FloatArray:
+        pins = [pin_at(speed) for speed in starts]
+        runs = engine.simulate_many(
+            [(pin, on_circle(pin), interval * np.arange(5)) for pin in pins], tolerance=tolerance
+        )
         found = []
-        for speed in starts:
-            pin = pin_at(speed)
-            state = on_circle(pin)
-            run = engine.simulate(pin, state, interval * np.arange(5), tolerance=tolerance)
+        for pin, run in zip(pins, runs, strict=True):
             x, y, vx, vy = run.states.T
             moment = FORWARD @ (pin.mass * (x * vy - y * vx)) / interval
-            found.append(moment / (pin.friction_force * state[0]))
+            found.append(moment / (pin.friction_force * on_circle(pin)[0]))
         return np.array(found)
 
     found = refined(functools.partial(rates_of, INTERVAL), 10.0 * TIGHTEST)
@@ -256,9 +257,8 @@ def history(engine: Engine) -> Measured | None:
 
     def deviation(amplitude: float, tolerance: float) -> FloatArray:
         starts = (on_circle(PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
-        outwards, inwards = (
-            engine.simulate(PIN, start, DEVIATION_TIMES, tolerance=tolerance).radius for start in starts
-        )
+        runs = engine.simulate_many([(PIN, start, DEVIATION_TIMES) for start in starts], tolerance=tolerance)
+        outwards, inwards = (run.radius for run in runs)
         return np.asarray((outwards - inwards) / (2.0 * amplitude * circle))
 
     found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)

@@ -1,0 +1,140 @@
+"""An engine that simulates many motions at once is asked for them at once, and judged as one that does not."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import reference_model
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.engines import BadTrajectoryError, Engine, UnsupportedSystemError, engines
+from compare.studies import studies
+
+MOTIONS = [
+    (FIG5, FIG5_STARTS["whirl"], np.linspace(0.0, 6.0, 7)),
+    (replace(FIG5, disc_speed=2.0), (0.3, 0.0, 0.0, 0.1), [0.0, 1.0]),
+]
+
+
+class OneByOne:
+    """The reference, which counts how often it is asked for one motion."""
+
+    def __init__(self):
+        self.alone = 0
+
+    def __call__(self, system, initial_state, times, *, tolerance):
+        self.alone += 1
+        found = reference_model.simulate(system, initial_state, times, tolerance=tolerance)
+        return reference_model.Trajectory(system, found.times, found.states)
+
+
+class AtOnce(OneByOne):
+    """The same, which simulates many at once; what it ``returns`` may be spoilt."""
+
+    def __init__(self, returns=list):
+        super().__init__()
+        self.many, self.returns = [], returns
+
+    def simulate_many(self, systems, initial_states, times, *, tolerance):
+        self.many.append(len(systems))
+        runs = [
+            OneByOne()(*motion, tolerance=tolerance)
+            for motion in zip(systems, initial_states, times, strict=True)
+        ]
+        return self.returns(runs)
+
+
+@pytest.mark.parametrize("promise", [{}, {"phases": False}, {"precision": 1e-6}])
+def test_many_at_once_are_to_the_last_bit_what_they_are_one_by_one(promise):
+    at_once = AtOnce()
+    found = Engine("mine", at_once, **promise).simulate_many(MOTIONS, tolerance=1e-7)
+    assert (at_once.many, at_once.alone) == ([2], 0)
+    alone = Engine("mine", OneByOne(), **promise)
+    for run, motion in zip(found, MOTIONS, strict=True):
+        expected = alone.simulate(*motion, tolerance=1e-7)
+        np.testing.assert_array_equal(run.states, expected.states)
+        np.testing.assert_array_equal(run.stick_times, expected.stick_times)
+
+
+def test_who_has_nothing_for_many_is_asked_one_by_one():
+    alone = OneByOne()
+    assert [len(run.times) for run in Engine("mine", alone).simulate_many(MOTIONS)] == [7, 2]
+    assert alone.alone == 2
+
+
+def test_a_study_asks_for_many_at_once_and_finds_the_same():
+    (block,) = studies(["block"])
+    at_once, alone = AtOnce(), OneByOne()
+    found = block.measure(Engine("mine", at_once, ("block",), phases=False))
+    expected = block.measure(Engine("mine", alone, ("block",), phases=False))
+    assert max(at_once.many) >= 8
+    assert at_once.alone < alone.alone / 2
+    for claim, other in zip(found.claims, expected.claims, strict=True):
+        assert claim.verdict is other.verdict
+        np.testing.assert_array_equal(claim.measured, other.measured)
+        np.testing.assert_array_equal(claim.budget.numerical, other.budget.numerical)
+
+
+def shorter(runs):
+    return [runs[0], replace(runs[1], times=runs[1].times[:1], states=runs[1].states[:1])]
+
+
+@pytest.mark.parametrize(
+    ("returns", "error", "sentence"),
+    [
+        (
+            lambda runs: runs[:1],
+            BadTrajectoryError,
+            "simulate_many() returned 1 trajectories: 2 were asked for",
+        ),
+        (lambda runs: runs[0], TypeError, "it must be a list of trajectories"),
+        (lambda runs: None, TypeError, "simulate_many() returned None: it must be a list of trajectories"),
+        (
+            shorter,
+            BadTrajectoryError,
+            "motion 2 of 2: the trajectory's times have shape (1,): (2,) were asked for",
+        ),
+        (
+            lambda runs: runs[::-1],
+            BadTrajectoryError,
+            "motion 1 of 2: the trajectory's times have shape (2,)",
+        ),
+    ],
+)
+def test_what_is_no_answer_for_many_is_told_in_a_sentence(returns, error, sentence):
+    with pytest.raises(error) as raised:
+        Engine("mine", AtOnce(returns)).simulate_many(MOTIONS)
+    assert sentence in str(raised.value)
+
+
+def test_one_motion_that_is_not_promised_refuses_all_before_any_is_asked_for():
+    at_once = AtOnce()
+    with pytest.raises(UnsupportedSystemError, match="mine does not simulate a disc on a continuous ring"):
+        Engine("mine", at_once).simulate_many([*MOTIONS, (FIG11, np.zeros(6), [0.0, 1.0])])
+    assert at_once.many == []
+
+
+@pytest.mark.parametrize("place", ["simulate", "closure"])
+def test_a_function_of_a_module_has_it_as_an_attribute(place, tmp_path, monkeypatch):
+    (tmp_path / "many_of_mine.py").write_text(
+        """
+def simulate(system, initial_state, times, *, step):
+    raise AssertionError
+
+def closed():
+    return lambda *arguments, step: simulate(*arguments, step=step)
+
+def simulate_many(systems, initial_states, times, *, step):
+    return [step]
+
+closure = closed()
+simulate.simulate_many = closure.simulate_many = simulate_many
+simulate.step = closure.step = 1e-3
+"""
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    (engine,) = engines([f"many_of_mine:{place}"])
+    with pytest.raises(TypeError, match=r"simulate\(\) returned 0.001: it must be a Trajectory"):
+        engine.simulate_many(MOTIONS[:1])
