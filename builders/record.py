@@ -63,8 +63,8 @@ NAMES = (*INSTALLED, *PROGRAMS, *OURS)
 PROBE_LIMIT = 60.0
 """In s, after which a probe of the law is given up; the row then has none."""
 
-FINEST = 0.1 * (TOLERANCES[LEAST - 1] ** (1.0 / 3.0))
-"""The least step of a program in single precision, in units of 1/max(k, ω): rounding grows with their number."""
+FINEST = 2e-3
+"""The least step of a program in single precision, in units of 1/max(k, ω): with 1.3e-3 rounding makes Rapier worse."""
 
 Simulate = Callable[..., Trajectory]
 

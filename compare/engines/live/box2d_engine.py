@@ -79,7 +79,7 @@ simulate_with_friction_joints = Setting(
     "by friction joints, in single precision: steps of order 1, until rounding grows with their number.",
     _World,
     linear=False,
-    finest=1.3465e-3,  # a rung of the recordings
+    finest=2e-3,
     step=2e-3,
     precision=1e-6,
 )
