@@ -64,7 +64,7 @@ PROBE_LIMIT = 60.0
 """In s, after which a probe of the law is given up; the row then has none."""
 
 FINEST = 2e-3
-"""The least step of a program in single precision, in units of 1/max(k, ω): with 1.3e-3 rounding makes Rapier worse."""
+"""The least step of a program in single precision, in units of 1/max(k, ω): at 1.3e-3 rounding spoils Rapier."""
 
 Simulate = Callable[..., Trajectory]
 

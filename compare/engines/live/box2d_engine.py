@@ -80,7 +80,6 @@ simulate_with_friction_joints = Setting(
     _World,
     linear=False,
     finest=2e-3,
-    step=2e-3,
     precision=1e-6,
 )
 SETTINGS = (simulate_with_friction_joints,)

@@ -71,6 +71,5 @@ simulate_with_pivots = Setting(
     "order 1.",
     _Space,
     linear=False,
-    step=2e-3,
 )
 SETTINGS = (simulate_with_pivots,)

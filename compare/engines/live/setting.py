@@ -86,7 +86,7 @@ class Setting:
     finest: float = 0.0
     linear: bool = True
     kinds: tuple[str, ...] = ("pin", "points")
-    step: float | None = 1e-3
+    step: float | None = 2e-3
     precision: float = 0.0
 
     @property
