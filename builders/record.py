@@ -1,7 +1,7 @@
 """Measure foreign engines, and our own beside them, and write ``compare/foreign/<engine>.json`` for the report.
 
     pip install --editable '.[engines]'
-    python builders/record.py                 # all engines: five minutes of one core
+    python builders/record.py                 # all engines: ten minutes of one core
     python builders/record.py mujoco bullet   # or some of them
     python builders/record.py --laws          # what tells the law alone; times and errors stay as they are recorded
 
@@ -13,15 +13,19 @@ left out, with a sentence. Times are to be compared within one recording only.
 from __future__ import annotations
 
 import argparse
+import functools
 import importlib
 import json
 import platform
 import re
+import shlex
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,11 +33,16 @@ import numpy as np
 import compare.engines
 from compare.claims.as_json import as_json
 from compare.claims.error_estimates import COARSENING
-from compare.diagnosis.findings import PROBES, parts_of
-from compare.engines import Engine
+from compare.diagnosis.findings import PROBES
+from compare.diagnosis.run import measured
+from compare.engines import INSTALLED, Engine, installed_engine
+from compare.engines.live.setting import rate
 from compare.foreign.cases import CASES, Case
 from compare.foreign.records import COLUMNS, DIGITS, FOLDER
+from compare.run.workers import Failure, Workers
 from reference_model import SimulationError, Trajectory
+from reference_model.systems import System
+from reference_model.trajectory import Solution
 
 LONGEST = 0.7
 """Seconds: the first run that takes so long is the last of its ladder,"""
@@ -43,46 +52,72 @@ LEAST = 5
 
 TOLERANCES = 1e-2 / COARSENING ** np.arange(12)
 
-FOREIGN = {"mujoco": "MuJoCo", "bullet": "Bullet", "drake": "Drake", "dart": "DART"}
-"""By the name of the module, which is ``<name>_engine``."""
+PROGRAMS = {"rapier": "Rapier", "jolt": "Jolt"}
+"""Engines of npm, by what ``examples/exec_contact.js`` is told; node_modules has to be in the current folder."""
 
-PACKAGES = {
-    "mujoco": "mujoco",
-    "bullet": "pybullet",
-    "drake": "drake",
-    "dart": "dartpy",
-    "reference": "friction-discs",
-    "exudyn": "exudyn",
-    "exudyn-native": "exudyn",
-}
+OURS = {"reference": "friction-discs", "exudyn": "exudyn", "exudyn-native": "exudyn"}
+"""Our own engines, and the package whose version they have."""
 
-WHEELS = {
-    "mujoco": "Linux, macOS and Windows",
-    "bullet": "Linux; elsewhere pip compiles it",
-    "drake": "Linux, and macOS with newer Pythons; none for Windows",
-    "dart": "Linux, and from Python 3.12 on macOS and Windows",
-}
-"""Where pip finds a package ready to use."""
+NAMES = (*INSTALLED, *PROGRAMS, *OURS)
+
+PROBE_LIMIT = 60.0
+"""In s, after which a probe of the law is given up; the row then has none."""
+
+FINEST = 2e-3
+"""The least step of a program in single precision, in units of 1/max(k, ω): at 1.3e-3 rounding spoils Rapier."""
 
 Simulate = Callable[..., Trajectory]
 
 
-def settings_of(name: str) -> dict[str, Simulate]:
-    """Return what simulates with each setting of an engine, by its name; raise ``ImportError`` without it."""
-    if name in FOREIGN:
-        settings = importlib.import_module(f"{name}_engine").SETTINGS
-        return {setting.name: setting for setting in settings}
+@dataclass(frozen=True)
+class Setting:
+    """What is recorded: an engine with its promises, what simulates to a tolerance, and how it is set."""
+
+    engine: Engine
+    simulate: Simulate
+    says: str = ""
+
+
+def settings_of(name: str) -> dict[str, Setting]:
+    """Return the settings of an engine, by name; raise ``ValueError`` where it is not installed."""
+    if name in INSTALLED:
+        found = {}
+        for key in INSTALLED[name].settings:
+            engine = installed_engine(name, key)
+            setting = getattr(importlib.import_module(engine.function.module), engine.function.function)
+            found[setting.name] = Setting(engine, setting, setting.says)
+        return found
+    if name in PROGRAMS:
+        program = Path(__file__).parents[1] / "examples" / "exec_contact.js"
+        (engine,) = compare.engines.engines([f"exec:node {shlex.quote(str(program))} {name}"])
+        says = "with a ball on a plate, by npm's package in single precision: steps of order 1."
+        return {"contact": Setting(engine, functools.partial(by_steps, engine), says)}
     (engine,) = compare.engines.engines([name])
-    return {"": engine.simulate}
+    return {"": Setting(engine, engine.simulate)}
 
 
-def ladder(simulate: Simulate, case: Case) -> list[list[float | None]]:
-    """Return a row of ``COLUMNS`` for each tolerance, from the largest on."""
-    _timed(simulate, case, case.times[:2], TOLERANCES[0])  # what is compiled or loaded at the first call
+def by_steps(engine: Engine, system: System, start: Any, times: Any, *, tolerance: float) -> Trajectory:
+    """Return the motion by a program, with steps that go with the tolerance as those of adapters do."""
+    step = max(0.1 * tolerance ** (1.0 / 3.0), FINEST) / rate(system)
+    before = time.perf_counter()
+    found = engine.function(system, start, times, step=step)
+    steps = int(np.sum(np.ceil(np.diff(times) / step)))
+    solution = Solution(engine.name, tolerance, steps, steps, time.perf_counter() - before)
+    return replace(found, solution=solution)
+
+
+def ladder(simulate: Simulate, case: Case, *, outside: bool = False) -> list[list[float | None]]:
+    """Return a row of ``COLUMNS`` for each tolerance, from the largest on.
+
+    What another process does, ``outside``, is timed by the clock alone.
+    """
+    _timed(
+        simulate, case, case.times[:2], TOLERANCES[0], outside
+    )  # what is compiled or loaded at the first call
     rows: list[list[float | None]] = []
     before = None
     for tolerance in TOLERANCES.tolist():
-        trajectory, seconds, wall = _timed(simulate, case, case.times, tolerance)
+        trajectory, seconds, wall = _timed(simulate, case, case.times, tolerance, outside)
         if trajectory is None:
             continue  # at a tolerance this large
         found = case.quantity(trajectory)
@@ -98,7 +133,7 @@ def ladder(simulate: Simulate, case: Case) -> list[list[float | None]]:
 
 
 def _timed(
-    simulate: Simulate, case: Case, times: Any, tolerance: float
+    simulate: Simulate, case: Case, times: Any, tolerance: float, outside: bool
 ) -> tuple[Trajectory | None, float, float]:
     wall, processor = time.perf_counter(), time.process_time()
     try:
@@ -106,20 +141,24 @@ def _timed(
     except SimulationError as error:
         print(f"  tolerance {tolerance:g}: {error}")
         return None, 0.0, 0.0
-    return trajectory, time.process_time() - processor, time.perf_counter() - wall
+    wall, processor = time.perf_counter() - wall, time.process_time() - processor
+    return trajectory, wall if outside else processor, wall
 
 
 def record(name: str) -> dict[str, Any]:
-    """Measure all settings of an engine; raise ``ImportError`` if it is not installed."""
-    settings = []
-    for setting, simulate in settings_of(name).items():
-        print(f"{name}: {setting}", flush=True)
-        runs = {key: ladder(simulate, case) for key, case in CASES.items()}
-        says = getattr(simulate, "says", "")
-        settings.append({"name": setting, "says": says, "probes": probes(name, simulate), "runs": runs})
+    """Measure all settings of an engine; raise ``ValueError`` if it is not installed."""
+    settings, outside = [], name in PROGRAMS
+    for title, setting in settings_of(name).items():
+        print(f"{name}: {title}", flush=True)
+        runs = {
+            key: ladder(setting.simulate, case, outside=outside)
+            for key, case in CASES.items()
+            if setting.engine.simulates(case.system)
+        }
+        settings.append({"name": title, "says": setting.says, "probes": probes(setting.engine), "runs": runs})
     return {
-        "engine": FOREIGN.get(name, name),
-        "version": version(PACKAGES[name]),
+        "engine": INSTALLED[name].title if name in INSTALLED else PROGRAMS.get(name, name),
+        "version": setting.engine.version or version(OURS[name]),
         "recorded": f"{datetime.now(timezone.utc):%Y-%m-%d}",
         "platform": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "columns": COLUMNS,
@@ -127,10 +166,18 @@ def record(name: str) -> dict[str, Any]:
     }
 
 
-def probes(name: str, simulate: Simulate) -> dict[str, Any]:
-    """Return what tells the law of friction of a setting, as JSON."""
-    engine = Engine(name, simulate, phases=False, nonlinear=False)
-    return {probe: as_json(parts_of(engine)[probe](engine)) for probe in PROBES}
+def probes(engine: Engine) -> dict[str, Any]:
+    """Return what tells the law of friction of a setting, as JSON; what does not end or fails is left out."""
+    found = {}
+    with Workers(1, PROBE_LIMIT) as workers:
+        for probe in PROBES:
+            workers.submit(probe, measured, engine, probe)
+        for done in workers.finished():
+            if isinstance(done.value, Failure):
+                print(f"  {engine.name}, {done.key}: {done.value}", flush=True)
+            else:
+                found[str(done.key)] = as_json(done.value)
+    return found
 
 
 def record_laws(name: str) -> dict[str, Any]:
@@ -138,7 +185,8 @@ def record_laws(name: str) -> dict[str, Any]:
     found: dict[str, Any] = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     simulating = settings_of(name)
     for setting in found["settings"]:
-        setting["probes"] = probes(name, simulating[setting["name"]])
+        print(f"{name}: {setting['name']}", flush=True)
+        setting["probes"] = probes(simulating[setting["name"]].engine)
     return found
 
 
@@ -152,20 +200,19 @@ def written(found: dict[str, Any]) -> str:
 def main() -> None:
     """Record the engines that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("engines", nargs="*", metavar="ENGINE", help=", ".join(PACKAGES))
+    parser.add_argument("engines", nargs="*", metavar="ENGINE", help=", ".join(NAMES))
     parser.add_argument(
         "--laws", action="store_true", help="measure anew what tells the law, and nothing else"
     )
     given = parser.parse_args()
-    names = given.engines or list(PACKAGES)
-    if unknown := set(names) - set(PACKAGES):
-        parser.error(f"no engine {', '.join(sorted(unknown))}: known are {', '.join(PACKAGES)}")
+    names = given.engines or list(NAMES)
+    if unknown := set(names) - set(NAMES):
+        parser.error(f"no engine {', '.join(sorted(unknown))}: known are {', '.join(NAMES)}")
     for name in names:
         try:
             found = record_laws(name) if given.laws else record(name)
-        except ImportError as error:
-            wheels = f"; wheels of {PACKAGES[name]} are for {WHEELS[name]}" if name in WHEELS else ""
-            print(f"{name} is left out, it is not installed ({error}){wheels}", file=sys.stderr)
+        except ValueError as error:
+            print(f"{name} is left out: {error}", file=sys.stderr)
             continue
         (FOLDER / f"{name}.json").write_text(written(found), encoding="utf-8", newline="\n")
 

@@ -70,3 +70,18 @@ def test_the_pin_in_javascript_moves_as_the_study_of_plain_motions_claims(case):
 def test_the_pin_in_javascript_knows_no_stick():
     with pytest.raises(UnsupportedSystemError, match="does not simulate stick"):
         in_node().simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 15.0])
+
+
+@in_javascript
+@pytest.mark.parametrize("name", ["rapier", "jolt"])
+def test_contact_of_rapier_and_jolt_slides_as_the_reference_does_and_better_with_a_smaller_step(name):
+    try:
+        (engine,) = engines([f"exec:{shlex.join([NODE, str(EXAMPLES / 'exec_contact.js'), name])}"])
+    except ValueError as error:
+        pytest.skip(f"npm's package is not in the current folder: {error}")
+    start, times = (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 5.0, 6)
+    exact = simulate(FIG5, start, times, tolerance=1e-12).states
+    coarse, fine = (
+        np.max(np.abs(engine.function(FIG5, start, times, step=h).states - exact)) for h in (8e-3, 2e-3)
+    )
+    assert fine < 0.4 * coarse

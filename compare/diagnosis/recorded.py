@@ -22,7 +22,8 @@ def _row(recording: Recording) -> Row:
     motions = {name: _motion(runs, name) for name, runs in recording.runs.items()}
     probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
     version = f"{recording.version}, recorded on {recording.recorded}"
-    return Row(recording.name, version, motions=motions, **probes)
+    lacking = tuple(name for name in CASES if name not in recording.runs)
+    return Row(recording.name, version, motions=motions, not_simulated=lacking, **probes)
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:

@@ -26,6 +26,7 @@ from compare.engines.engine import (
     Simulate,
     UnsupportedSystemError,
 )
+from compare.engines.live.installed import INSTALLED, installed_engine
 from compare.engines.names import one_of
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
@@ -46,6 +47,7 @@ from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
 __all__ = [
     "COARSENING",
     "EVERY_KIND",
+    "INSTALLED",
     "KINDS",
     "USUAL_TOLERANCE",
     "BadTrajectoryError",
@@ -63,6 +65,7 @@ __all__ = [
     "exudyn",
     "exudyn_native",
     "imported",
+    "installed_engine",
     "known_name",
     "on_request",
     "one_of",

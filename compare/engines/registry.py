@@ -29,11 +29,12 @@ _ON_REQUEST: set[str] = set()
 class Scheme(NamedTuple):
     """What names of the form "scheme:REST" mean: the engine of REST, and a quick check of it.
 
-    Both raise ``ValueError`` for a REST that is none.
+    Both raise ``ValueError`` for a REST that is none. One that may stand ``alone`` is asked for "" then.
     """
 
     engine: Callable[[str], Engine]
     check: Callable[[str], object]
+    alone: bool = False
 
 
 _SCHEMES: dict[str, Scheme] = {}
@@ -98,10 +99,9 @@ def repeated_by(name: str) -> str:
 
 
 def _named(name: str) -> Engine:
-    scheme, colon, rest = name.partition(":")
-    if colon and scheme in _SCHEMES:
-        return _SCHEMES[scheme].engine(rest)
-    if colon:
+    if scheme := _scheme(name):
+        return scheme.engine(name.partition(":")[2])
+    if ":" in name:
         return imported(name, name)
     if name in _REGISTRY:
         return replace(_REGISTRY[name], contact_only=False)
@@ -110,10 +110,18 @@ def _named(name: str) -> Engine:
 
 def known_name(name: str) -> str:
     """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
-    scheme, colon, rest = name.partition(":")
-    if colon and scheme in _SCHEMES:
-        _SCHEMES[scheme].check(rest)
-    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *_installed()])
+    if scheme := _scheme(name):
+        scheme.check(name.partition(":")[2])
+        return name
+    alone = [name for name, scheme in _SCHEMES.items() if scheme.alone]
+    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *alone, *_installed()])
+
+
+def _scheme(name: str) -> Scheme | None:
+    """Return what ``name`` is an engine of by its part before a colon; None where that says nothing."""
+    first, colon, _ = name.partition(":")
+    scheme = _SCHEMES.get(first)
+    return scheme if scheme and (colon or scheme.alone) and first not in _installed() else None
 
 
 def _installed() -> dict[str, str]:

@@ -19,7 +19,7 @@ COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
 
 The error in m is the largest over time, against the exact motion; the change is that against the run before, whose
 tolerance is larger by ``compare.claims.error_estimates.COARSENING``, and none at the first. Seconds are those of
-the processor, wall those on the clock.
+the processor, wall those on the clock; of an engine that is another process both are those on the clock.
 """
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
@@ -42,8 +42,8 @@ class Recording:
     says : str
         How it is set, in words.
     runs : mapping
-        Of each case, by the names of ``compare.foreign.cases.CASES``: arrays of shape (n, len(COLUMNS)), from the
-        largest tolerance to the smallest.
+        Of each case that it simulates, by the names of ``compare.foreign.cases.CASES``: arrays of shape
+        (n, len(COLUMNS)), from the largest tolerance to the smallest.
     probes : mapping
         What tells the law of friction, as JSON of the parts ``compare.diagnosis.findings.PROBES``; empty where it is
         not recorded.

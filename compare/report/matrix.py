@@ -179,17 +179,18 @@ class RecordedMatrix:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        """The claims that all make, as the first one makes them."""
+        """The claims of all cases, as the first one, an engine of ours, makes them."""
         return self.settings[0].claims
 
-    def cells(self, setting: Recorded) -> tuple[Cell, ...]:
-        """Return the cells of a row, in the order of ``claims``."""
-        return tuple(_cell([claim]) for claim in setting.claims)
+    def cells(self, setting: Recorded) -> tuple[Cell | None, ...]:
+        """Return the cells of a row, in the order of ``claims``; None for what the engine does not simulate."""
+        found = {claim.sentence: _cell([claim]) for claim in setting.claims}
+        return tuple(found.get(claim.sentence) for claim in self.claims)
 
     @property
     def totals(self) -> Counter[State]:
         """How many cells are in each state."""
-        return Counter(cell.state for setting in self.settings for cell in self.cells(setting))
+        return Counter(cell.state for setting in self.settings for cell in self.cells(setting) if cell)
 
 
 @dataclass(frozen=True)

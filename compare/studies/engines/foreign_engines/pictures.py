@@ -11,7 +11,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = {"MuJoCo": PURPLE, "Bullet": GREY, "Drake": SKY, "DART": BLACK}
+COLOURS = {
+    "MuJoCo": PURPLE,
+    "Bullet": GREY,
+    "Drake": SKY,
+    "DART": BLACK,
+    "Chipmunk": "#8c564b",
+    "Box2D": "#b5a400",
+    "Rapier": "#c2185b",
+    "Jolt": "#5e35b1",
+}
 
 MARKERS = "os^Dv"
 """Of an engine's settings; our force, the last one of each, has a dotted line and a cross."""

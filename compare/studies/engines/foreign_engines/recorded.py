@@ -17,10 +17,10 @@ def recorded_settings() -> tuple[Recorded, ...]:
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    """Return the claim of each case about one setting of an engine, from its finest run."""
+    """Return the claim of each case that one setting of an engine simulates, from its finest run."""
     claims = []
-    for name, case in CASES.items():
-        runs = recording.runs[name]
+    for name, runs in recording.runs.items():
+        case = CASES[name]
         rounding = ROUNDING * max(map(abs, case.start))
         claims.append(
             Claim(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from compare.claims.error_estimates import COARSENING
 from compare.claims.study import Table
 from compare.foreign.cases import CASES
-from compare.foreign.records import ERROR, SECONDS, STEPS, estimate
+from compare.foreign.records import ERROR, SECONDS, STEPS, Recording, estimate
 from compare.studies.engines.foreign_engines.ladders import recorded
 from compare.studies.engines.foreign_engines.parameters import WANTED
 from reference_model.systems import FloatArray
@@ -36,14 +38,17 @@ def time_to(wanted: float, runs: FloatArray) -> str:
     return f"{1e3 * math.exp(np.interp(math.log(wanted), error[::-1], seconds[::-1])):.3g}"
 
 
+def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> list[str]:
+    """Return ``words`` about the runs of each case."""
+    return [words(recording.runs[case]) if case in recording.runs else "not simulated" for case in CASES]
+
+
 def tables() -> tuple[Table, ...]:
     """Return how far each setting is off, what it costs, and how it was set."""
     titles = tuple(case.title for case in CASES.values())
-    finest = tuple(
-        (recording.name, *(_finest(recording.runs[case]) for case in CASES)) for recording in recorded()
-    )
+    finest = tuple((recording.name, *_of_each_case(recording, _finest)) for recording in recorded())
     cost = tuple(
-        (recording.name, *(time_to(WANTED, recording.runs[case]) for case in CASES))
+        (recording.name, *_of_each_case(recording, functools.partial(time_to, WANTED)))
         for recording in recorded()
     )
     how = tuple(

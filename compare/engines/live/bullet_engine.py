@@ -24,8 +24,17 @@ from typing import Any
 
 import numpy as np
 import pybullet
-from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
+from compare.engines.live.setting import (
+    Model,
+    Setting,
+    contact_arms,
+    inertia_of,
+    mobility,
+    our_friction,
+    shaft_torque,
+    support_force,
+)
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 ITERATIONS = 50
@@ -137,12 +146,10 @@ class _World(Model):
         system = self.system
         half = len(state) // 2
         z, v = complex(*state[:2]), complex(*state[half : half + 2])
-        w = z - system.offset
-        stop = system.stop_stiffness * max(0.0, 1.0 - system.stop_gap / abs(w)) if w else 0.0
-        force = -(system.stiffness + system.hardening * abs(w) ** 2 + stop) * w - system.damping * v
+        force = support_force(system, z, v)
         forces = [force.real, force.imag]
         if isinstance(system, DiscOnDisc):
-            forces.append(system.shaft_damping * (system.shaft_speed - state[5]))
+            forces.append(shaft_torque(system, state[5]))
         if not self.native:
             friction = our_friction(system, self.arms, state, self.epsilon)
             forces = [a + b for a, b in zip(forces, friction, strict=True)]

@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from common import Model, Setting, contact_arms, inertia_of, our_friction, rate
 from pydrake.geometry import AddContactMaterial, Box, ProximityProperties, Sphere
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
@@ -40,6 +39,7 @@ from pydrake.multibody.tree import (
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
+from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, our_friction, rate
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import SimulationError
 
@@ -232,18 +232,21 @@ simulate_cenic = Setting(
     "with the convex solver under error control: its error falls like √tolerance, unevenly.",
     _Motion,
     {"scheme": _Scheme(integrator="cenic", driven=True)},
+    step=None,
 )
 simulate_runge_kutta = Setting(
     "Runge–Kutta 5",
     "with contact as a force, by explicit steps of order 5, in stick of the length ε·m/μN.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5")},
+    step=None,
 )
 simulate_with_our_force = Setting(
     "our force",
     "with −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5", our_force=True)},
+    step=None,
 )
 SETTINGS = (
     simulate_tamsi,

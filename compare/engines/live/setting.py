@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.engines import UnsupportedSystemError
+from compare.engines.engine import UnsupportedSystemError
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -53,8 +53,9 @@ class Model:
 class Setting:
     """One setting of an engine, which is called as any engine's ``simulate`` is.
 
-    Steps are as long as 0.1·tolerance^(1/3) over the larger of k and ω, so that errors of first order fall by half
-    where they are estimated, but not below ``finest`` over that, and divide each interval of ``times``.
+    With a ``step`` in s steps are as long as that; without one as long as 0.1·tolerance^(1/3) over the larger of k
+    and ω, so that errors of first order fall by half where they are estimated, but not below ``finest`` over that.
+    They divide each interval of ``times``.
 
     Parameters
     ----------
@@ -70,6 +71,11 @@ class Setting:
         Whether the engine has no other springs.
     kinds : tuple of str
         What it promises to simulate, as in ``compare.engines.KINDS``.
+    step : float, optional
+        What it declares as an engine by name: the fixed step in s for a tolerance of 1e-9, at which it simulates
+        in less than real time; None for an integrator that controls its error.
+    precision : float
+        What it declares too, as in ``compare.engines.Engine``.
 
     """
 
@@ -80,6 +86,8 @@ class Setting:
     finest: float = 0.0
     linear: bool = True
     kinds: tuple[str, ...] = ("pin", "points")
+    step: float | None = 2e-3
+    precision: float = 0.0
 
     @property
     def __wrapped__(self) -> type[Model]:
@@ -87,14 +95,20 @@ class Setting:
         return self.model
 
     def __call__(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+        self,
+        system: System,
+        initial_state: ArrayLike,
+        times: ArrayLike,
+        *,
+        tolerance: float = 1e-9,
+        step: float | None = None,
     ) -> Trajectory:
         """Return the motion."""
         state, grid = checked_state(system, initial_state), checked_times(times)
         tolerance, engine = checked_tolerance(tolerance), self.model.engine
         if self.linear and not system.linear_support:
             raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
-        longest = max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
+        longest = step or max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
         states = [state]
         began = time.perf_counter()
         model = self.model(system, state, tolerance, **self.options)
@@ -142,6 +156,18 @@ def mobility(system: System) -> float:
 def inertia_of(system: System) -> float:
     """Return J, and for a pin, which does not turn, its mass as a number in the place of J."""
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
+
+
+def shaft_torque(system: System, spin: float) -> float:
+    """Return what the shaft turns a disc with that ``spin`` in rad/s by, in N m; a pin has none."""
+    return system.shaft_damping * (system.shaft_speed - spin) if isinstance(system, DiscOnDisc) else 0.0
+
+
+def support_force(system: System, z: complex, v: complex) -> complex:
+    """Return the force in N of springs, stop and dampers at the place ``z`` in m, with the velocity ``v`` in m/s."""
+    w = z - system.offset
+    stop = system.stop_stiffness * max(0.0, 1.0 - system.stop_gap / abs(w)) if w else 0.0
+    return -(system.stiffness + system.hardening * abs(w) ** 2 + stop) * w - system.damping * v
 
 
 def our_friction(system: System, arms: list[complex], state: Sequence[float], epsilon: float) -> Any:

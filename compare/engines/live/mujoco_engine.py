@@ -28,8 +28,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
+from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 FRICTION_COEFFICIENT = 1e-5
@@ -103,7 +103,11 @@ def _xml(system: System, arms: list[complex], option: str, *, native: bool) -> s
     inertia -= sum(foot * abs(arm) ** 2 + spin for arm in feet)
     weight = system.friction_force / FRICTION_COEFFICIENT / len(arms)
     support = f'stiffness="{system.stiffness!r}" damping="{system.damping!r}"'
-    turn = f'<joint type="hinge" axis="0 0 1" damping="{system.shaft_damping!r}"/>' if disc else ""
+    turn = (
+        f'<joint type="hinge" axis="0 0 1" damping="{system.shaft_damping!r}"/>'
+        if isinstance(system, DiscOnDisc)
+        else ""
+    )
     bodies = "".join(
         f"""<body pos="{arm.real!r} {arm.imag!r} {SIZE}"><joint type="slide" axis="0 0 1"/>
             <inertial pos="0 0 0" mass="{foot!r}" diaginertia="{spin!r} {spin!r} {spin!r}"/>

@@ -24,8 +24,8 @@ from typing import Any
 
 import dartpy
 import numpy as np
-from common import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 
+from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 SOLVER_TOLERANCE = 1e-10

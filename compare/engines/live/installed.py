@@ -1,0 +1,135 @@
+"""``mujoco``, ``mujoco:pyramid`` and the like: engines of other people by name, where they are installed."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from types import MappingProxyType
+
+from compare.engines.by_name import ByName
+from compare.engines.engine import Engine
+from compare.engines.names import one_of
+from compare.engines.registry import Scheme, register_scheme
+
+
+@dataclass(frozen=True)
+class Installed:
+    """An engine that a package of Python brings.
+
+    Parameters
+    ----------
+    title : str
+        What its authors call it.
+    package : str
+        What pip installs.
+    wheels : str
+        For which systems pip has it ready to use.
+    settings : mapping
+        The function in the adapter of each setting, by its short name; the first one is meant where none is named.
+
+    """
+
+    title: str
+    package: str
+    wheels: str
+    settings: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Make the settings read-only."""
+        object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
+
+
+INSTALLED = {
+    "mujoco": Installed(
+        "MuJoCo",
+        "mujoco",
+        "Linux, macOS and Windows",
+        {
+            "ellipse": "simulate_elliptic",
+            "ellipse-rk4": "simulate_elliptic_rk4",
+            "pyramid": "simulate_pyramidal",
+            "our-force": "simulate_with_our_force",
+        },
+    ),
+    "bullet": Installed(
+        "Bullet",
+        "pybullet",
+        "Linux; elsewhere pip compiles it",
+        {"cone": "simulate_with_cone", "box": "simulate_with_box", "our-force": "simulate_with_our_force"},
+    ),
+    "drake": Installed(
+        "Drake",
+        "drake",
+        "Linux, and macOS with newer Pythons; none for Windows",
+        {
+            "tamsi": "simulate_tamsi",
+            "sap": "simulate_sap",
+            "lagged": "simulate_lagged",
+            "cenic": "simulate_cenic",
+            "runge-kutta": "simulate_runge_kutta",
+            "our-force": "simulate_with_our_force",
+        },
+    ),
+    "dart": Installed(
+        "DART",
+        "dartpy",
+        "Linux, and from Python 3.12 on macOS and Windows",
+        {
+            "nsgs": "simulate_nsgs",
+            "fbf": "simulate_fbf",
+            "dantzig": "simulate_dantzig",
+            "pgs": "simulate_pgs",
+            "our-force": "simulate_with_our_force",
+        },
+    ),
+    "chipmunk": Installed(
+        "Chipmunk", "pymunk", "Linux, macOS and Windows", {"pivot": "simulate_with_pivots"}
+    ),
+    "box2d": Installed(
+        "Box2D", "box2d", "Linux, macOS and Windows", {"friction-joint": "simulate_with_friction_joints"}
+    ),
+}
+"""By the name on the command line, which is that of the adapter, ``<name>_engine``, too."""
+
+
+def installed_engine(name: str, setting: str) -> Engine:
+    """Return the engine ``name`` with that setting, "" for its first; raise ``ValueError`` if it is not installed."""
+    known = INSTALLED[name]
+    setting = _known_setting(name, setting)
+    module = f"{__package__}.{name}_engine"
+    try:
+        adapter = importlib.import_module(module)
+    except ImportError as error:
+        raise ValueError(
+            f"engine {name!r}: {known.title} is not installed ({error}): pip install {known.package}; "
+            f"wheels are for {known.wheels}"
+        ) from None
+    simulate = getattr(adapter, known.settings[setting])
+    return Engine(
+        f"{name}:{setting}" if setting != next(iter(known.settings)) else name,
+        ByName(module, known.settings[setting]),
+        kinds=simulate.kinds,
+        nonlinear=not simulate.linear,
+        phases=False,
+        precision=simulate.precision,
+        step=simulate.step,
+        version=version(known.package),
+        about=f"{known.title} {simulate.says}",
+    )
+
+
+def _known_setting(name: str, setting: str) -> str:
+    settings = INSTALLED[name].settings
+    return one_of(f"setting of {name}", setting, settings) if setting else next(iter(settings))
+
+
+for _name in INSTALLED:
+    register_scheme(
+        _name,
+        Scheme(
+            functools.partial(installed_engine, _name), functools.partial(_known_setting, _name), alone=True
+        ),
+    )

@@ -1,0 +1,72 @@
+"""Engines of other people by name; those that are not installed are left out here."""
+
+import importlib
+import sys
+
+import numpy as np
+import pytest
+
+from compare.engines import INSTALLED, KINDS, Engine, engines, known_name
+from reference_model import PinOnDisc, simulate
+
+NAMES = [f"{name}:{setting}" for name, known in INSTALLED.items() for setting in known.settings]
+COARSE = 4e-3
+
+
+def live(name):
+    """Return the engine of that name, or leave the test out."""
+    try:
+        return engines([name])[0]
+    except ValueError as error:
+        pytest.skip(str(error))
+
+
+@pytest.mark.parametrize("name", INSTALLED)
+def test_an_engine_that_is_not_installed_says_which_package_to_install(name, monkeypatch):
+    adapter = f"compare.engines.live.{name}_engine"
+    monkeypatch.setitem(sys.modules, adapter, None)  # as if what it imports were not there
+    known = INSTALLED[name]
+    with pytest.raises(ValueError, match=f"{known.title} is not installed .*: pip install {known.package}; "):
+        engines([name])
+
+
+@pytest.mark.parametrize("name", [*INSTALLED, *NAMES])
+def test_names_are_known_without_the_engine(name, monkeypatch):
+    monkeypatch.setattr(importlib, "import_module", None)
+    assert known_name(name) == name
+
+
+def test_a_setting_or_engine_that_is_none_is_told_the_nearest():
+    with pytest.raises(ValueError, match=r"unknown setting of mujoco 'piramid': did you mean 'pyramid'\?"):
+        engines(["mujoco:piramid"])
+    with pytest.raises(ValueError, match=r"unknown engine 'mujocco': did you mean 'mujoco'\?"):
+        engines(["mujocco"])
+
+
+def test_an_engine_of_a_colon_and_no_setting_is_its_first_as_its_name_alone():
+    first = live("chipmunk")
+    assert live("chipmunk:") == first == live("chipmunk:pivot")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_live_engine_declares_itself_and_its_errors_fall(name):
+    engine = live(name)
+    assert isinstance(engine, Engine)
+    assert set(engine.kinds) <= set(KINDS)
+    assert engine.version
+    assert not engine.phases
+    hash(engine)  # rows of the matrix go by it
+    slides = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+    times = np.linspace(0.0, 2.0, 5)
+    exact = simulate(slides, (0.9, 0.0, 0.0, 0.9), times, tolerance=1e-12).states
+    accuracy = (
+        [{"step": COARSE}, {"step": COARSE / 4}]
+        if engine.step
+        else [{"tolerance": 1e-4}, {"tolerance": 1e-7}]
+    )
+    coarse, fine = (
+        np.max(np.abs(engine.function(slides, (0.9, 0.0, 0.0, 0.9), times, **how).states - exact))
+        for how in accuracy
+    )
+    by_axis = name in ("mujoco:pyramid", "bullet:box", "dart:dantzig", "dart:pgs")
+    assert (fine > 1e-3) if by_axis else fine < max(0.5 * coarse, 1e-6)
