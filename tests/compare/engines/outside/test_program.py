@@ -288,8 +288,16 @@ def test_a_worker_that_is_killed_as_by_a_study_limit_takes_its_program_along(tmp
     wait_until(lambda: not _members(group))
 
 
+@pytest.fixture
+def in_the_foreground():
+    """Take SIGINT as a terminal's foreground does: what is started in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @posix
-def test_ctrl_c_ends_the_program_that_was_asked():
+def test_ctrl_c_ends_the_program_that_was_asked(in_the_foreground):
     engine = faulty("hang")
     asked(engine)
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
