@@ -236,6 +236,9 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
 }
 """Name and unit of each state of a system."""
 
+SMALLEST_TOLERANCE = 1e-14
+"""What double precision can reach."""
+
 LARGEST_STATE = 1e50
 """Largest size of a component of a state in its SI unit: energies, and forces of hardening springs, stay finite."""
 
@@ -299,8 +302,8 @@ def checked_times(times: ArrayLike) -> FloatArray:
 def checked_tolerance(tolerance: float) -> float:
     """Return ``tolerance`` if double precision can reach it, or raise ``ValueError``."""
     number = finite_number("tolerance", tolerance)
-    if not 1e-14 <= number <= 1e-2:
-        raise ValueError(f"tolerance = {number:g}: it must lie between 1e-14 and 1e-2")
+    if not SMALLEST_TOLERANCE <= number <= 1e-2:
+        raise ValueError(f"tolerance = {number:g}: it must lie between {SMALLEST_TOLERANCE} and 1e-2")
     return number
 
 

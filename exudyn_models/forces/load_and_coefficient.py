@@ -6,7 +6,6 @@ import inspect
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from numbers import Real
 from typing import TypeAlias, cast
 
 import numpy as np
@@ -78,23 +77,15 @@ class LoadAndCoefficient:
         coefficient, its_arguments = _coefficient(friction_coefficient)
         load, loads_arguments = _factor("normal_load", normal_load, " N")
         self.friction_coefficient, self.normal_load = friction_coefficient, normal_load
-        factors = (friction_coefficient, coefficient), (normal_load, load)
-        self._functions = [factor for value, factor in factors if not isinstance(value, Real)]
-        self._constant = float(self._plates)
-        for value, factor in factors:
-            if isinstance(value, Real):
-                self._constant *= factor(math.nan, math.nan, math.nan, math.nan)
+        factors = coefficient, load
+        self._functions = [factor for factor in factors if callable(factor)]
+        self._constant = math.prod((factor for factor in factors if not callable(factor)), start=self._plates)
         self._reads = {*its_arguments, *loads_arguments}
         if self._static_ratio > 1.0:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
-        numbers = not (self._reads or callable(friction_coefficient) or callable(normal_load))
         #: The contact with its μN, or None where that is no number.
-        self.contact = (
-            _with(self.geometry, self.friction_force(math.nan, math.nan, math.nan, math.nan))
-            if numbers
-            else None
-        )
+        self.contact = None if self._functions or self._reads else _with(self.geometry, self._constant)
 
     def contact_at(self, t: float) -> Contact:
         """Return the contact with μN at the time t (s), or with 1 N in its place if that depends on the motion."""
@@ -139,8 +130,8 @@ def _with(contact: Contact, friction: float) -> Contact:
     return radius, points, friction, epsilon, held, inner
 
 
-def _coefficient(value: Coefficient) -> tuple[Factor, tuple[str, ...]]:
-    """Return a coefficient as a function of all ``ARGUMENTS``, and which of them it depends on."""
+def _coefficient(value: Coefficient) -> tuple[float | Factor, tuple[str, ...]]:
+    """Return a coefficient as a number or a function of all ``ARGUMENTS``, and which of them it depends on."""
     name = "friction_coefficient"
     table = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
     return _factor(name, curve_of_table(name, value) if table else cast(NumberOrFunction, value), "")
@@ -153,18 +144,17 @@ def _checked_static_ratio(value: float) -> float:
     return ratio
 
 
-def _checked_plates(value: int) -> int:
+def _checked_plates(value: int) -> float:
     number = finite_number("plates", value)
     if number < 1.0 or number != int(number):
         raise ValueError(f"plates = {number:g}: it must be a whole number >= 1")
-    return int(number)
+    return number
 
 
-def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[Factor, tuple[str, ...]]:
-    """Return a coefficient or load as a function of all ``ARGUMENTS``, and which of them it depends on."""
+def _factor(name: str, value: NumberOrFunction, unit: str) -> tuple[float | Factor, tuple[str, ...]]:
+    """Return a coefficient or load as a number or a function of all ``ARGUMENTS``, and which it depends on."""
     if not callable(value):
-        number = checked_not_negative(name, value, unit)
-        return lambda time, radius, slip_speed, relative_spin: number, ()
+        return checked_not_negative(name, value, unit), ()
     function, arguments = value, _arguments(name, value)
     call = _CALLS.get(arguments) or partial(_call, arguments)
 

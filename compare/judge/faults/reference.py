@@ -10,14 +10,11 @@ from numpy.typing import ArrayLike
 
 import reference_model
 from reference_model.contact.contact_law import Contact
-from reference_model.systems import System
+from reference_model.systems import SMALLEST_TOLERANCE, System
 from reference_model.trajectory import Trajectory
 
 SHARE = 0.1
 """Of the tolerance, for runs that may be compiled."""
-
-SMALLEST = 1e-14
-"""Tolerance that the reference takes."""
 
 
 def simulate(
@@ -30,7 +27,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion, as :func:`reference_model.simulate` does."""
     if contact is None:
-        tolerance = max(SHARE * tolerance, SMALLEST)
+        tolerance = max(SHARE * tolerance, SMALLEST_TOLERANCE)
     return reference_model.simulate(
         system, initial_state, times, tolerance=tolerance, contact=contact, compiled=None
     )
