@@ -45,6 +45,9 @@ class PointsBody(DiscBody):
         self.slipping = [point.slipping(run.thresholds) for point in self.points]
         self.pivoting = [point.pivoting(run.thresholds) for point in self.points]
         self.pivot: int | None = None
+        # Seen from a point, the centre has the errors of r with leverage.
+        leverage = max(1.0, abs(self.points[0].arm(0.0)) / motion.gyration)
+        self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * leverage)
 
     # ------------------------------------------------------------ slip, and points that come to rest
 
@@ -63,7 +66,7 @@ class PointsBody(DiscBody):
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
         if slow is None or self.creeping(y) is not None:
             return super().advance(t, y)
-        if self.coordinates.speed(y) < self.run.thresholds.common_rest:
+        if self.coordinates.speed(y) < self._least_speed:
             return self._rest(t, y)
         own = self._own(slow, y)
         if not self._at_rest(slow, y):
@@ -139,7 +142,7 @@ class PointsBody(DiscBody):
         """Let point ``i`` slip from rest while the disc turns, or rest on if the disc rests before that counts."""
         own = [*y[:3], y[5]]
         point = self.points[i]
-        if point.gain(own) < self.run.thresholds.common_rest:
+        if point.gain(own) < self._least_speed:
             motion = replace(self.pivoting[i], grip=None)
             end = slide_slowly(self.run, motion, t, own, never)
             return end.t, motion.standard(np.array([end.y]).T)[:, 0].tolist()

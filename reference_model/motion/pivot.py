@@ -141,6 +141,7 @@ class OnePoint:
             self._pace,
             self._standard,
             angle=2,
+            turning=3,
             surfaces=surfaces,
         )
 

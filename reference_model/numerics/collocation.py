@@ -92,15 +92,15 @@ class Scales(NamedTuple):
     ----------
     tolerated : callable
         Takes the unknowns and returns the errors that a step may have.
-    difference : float
-        Change of an unknown by which derivatives are found.
+    differences : callable
+        Takes unknowns (k, n) and returns their changes by which derivatives are found, of the same shape.
     most : array of shape (n,)
         Changes of the unknowns that Newton's method may make at a time.
 
     """
 
     tolerated: Callable[[FloatArray], FloatArray]
-    difference: float
+    differences: Callable[[FloatArray], FloatArray]
     most: FloatArray
 
 
@@ -206,11 +206,12 @@ class Radau:
             if error <= 1.0:
                 break
             h *= max(0.1, change)
+        before = self._next if self._polynomial is None else self._polynomial.t - self._polynomial.t_old
         self.t = self.t_bound if h == self.t_bound - self.t else self.t + h
         self.y = polynomial(self.t)
         self.f = self._rates(self.y[:, np.newaxis])[:, 0]
         self._tolerated = self._scales.tolerated(self.y)
-        self._unchanged = self._unchanged + 1 if change < 1.5 else 0
+        self._unchanged = self._unchanged + 1 if h < 1.5 * before else 0
         self._next = h * min(most, change)
         self._polynomial = polynomial
         if self.t == self.t_bound:
@@ -235,8 +236,7 @@ class Radau:
                 if found == MOST_JACOBIANS:
                     return None
                 found += 1
-                changes = np.full(values.shape, self._scales.difference)
-                jacobians = jacobians_at(self._rates, values, rates, changes)
+                jacobians = jacobians_at(self._rates, values, rates, self._scales.differences(values))
                 try:
                     matrix = newton_matrix(jacobians, h)
                     rows = 1.0 / np.max(abs(matrix), axis=1)

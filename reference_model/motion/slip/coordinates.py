@@ -17,6 +17,15 @@ from reference_model.systems import FloatArray
 
 Rates = Callable[[Sequence[float]], Sequence[float]]
 
+LEAST_SLIP = 1e-100
+"""A slip speed that stands for none, but gives friction a direction."""
+
+DIFFERENCE = 1e-7
+"""Change of unknowns of order one by which derivatives are found."""
+
+SHARE = 1e-5
+"""Change of a relative velocity, as a share of it, by which derivatives are found if that is less."""
+
 
 @dataclass(frozen=True)
 class Coordinates:
@@ -41,6 +50,9 @@ class Coordinates:
         Takes unknowns of shape (k, n) and returns the standard unknowns of the body, (unknowns, n).
     angle : int or None
         Which unknown is an angle, if one is: it counts by its absolute error.
+    turning : int or None
+        Which unknown besides the slip is a relative velocity, if one is: friction may change with it at its own size,
+        however small that is.
     grip : callable or None
         How much more could be held of what friction holds in this motion, which ends when that falls to zero.
     surfaces : tuple of SwitchingSurface
@@ -55,6 +67,7 @@ class Coordinates:
     pace: float
     standard: Callable[[FloatArray], FloatArray] = lambda y: y
     angle: int | None = None
+    turning: int | None = None
     grip: Callable[[Sequence[float]], float] | None = None
     surfaces: tuple[SwitchingSurface, ...] = ()
 
@@ -65,6 +78,14 @@ class Coordinates:
     def speed(self, y: Sequence[float]) -> float:
         """Return the slip speed."""
         return math.hypot(*y[-self.slip :])
+
+    def differences(self, unknowns: FloatArray) -> FloatArray:
+        """Return changes of ``unknowns`` (k, n), of which the first are these, by which derivatives are found."""
+        changes = np.full(unknowns.shape, DIFFERENCE)
+        if self.turning is not None:
+            own = SHARE * abs(unknowns[:, self.turning]) + LEAST_SLIP
+            changes[:, self.turning] = np.minimum(DIFFERENCE, own)
+        return changes
 
     def tolerances(self, run: Run, unknowns: int) -> FloatArray:
         """Return the relative tolerances of the first ``unknowns``."""
@@ -107,9 +128,6 @@ def never(_: list[float]) -> bool:
 
 FAST_AGAIN = 1.2
 """Slip speed over that below which slip is slow, from which it is so no more."""
-
-LEAST_SLIP = 1e-100
-"""A slip speed that stands for none, but gives friction a direction."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
 """Way that lingering slip may have left, as a share of the local tolerance and in units, for it to count as over."""

@@ -35,9 +35,6 @@ SLAVED = 1.0
 AGAIN = 0.25
 """Share of the slip speed at a trial that failed, at which there is another one."""
 
-DIFFERENCE = 1e-7
-"""Change of the unknowns, all of order one, by which derivatives are found."""
-
 MOST_ITERATIONS = 8
 
 DRAWN = 8.0
@@ -223,7 +220,7 @@ def _collocate(run: Run, motion: Coordinates, y: list[float], share: float) -> _
         found = changes_at(nodes.T).T
         if not np.all(np.isfinite(found)):
             return None
-        jacobians = jacobians_at(changes_at, nodes, found, np.full(nodes.shape, DIFFERENCE))[:, :-1, :-1]
+        jacobians = jacobians_at(changes_at, nodes, found, motion.differences(nodes))[:, :-1, :-1]
         residual = weights * (DERIVATIVE @ np.vstack((start, values))) - found[:, :-1]
         matrix = np.einsum("ij,ik,kl->ikjl", DERIVATIVE[:, 1:], weights, np.eye(len(start)))
         matrix[range(NODES), :, range(NODES)] -= jacobians

@@ -28,9 +28,6 @@ from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
-DIFFERENCE = 1e-7
-"""Change of the unknowns, all of order one, by which derivatives are found."""
-
 TIGHTEST_IMPLICIT = 3e-13
 """Error of a step, on unknowns of order one, below which rounding is felt in the solution of its equations."""
 
@@ -89,7 +86,7 @@ def slide_stiffly(
         (start, run.end),
         relative,
         surfaces,
-        (Scales(tolerated, DIFFERENCE, most), 2.0 * step),
+        (Scales(tolerated, motion.differences, most), 2.0 * step),
     )
     landings = Landings(run, motion, leave)
     t, taken, slowly = start, run.steps, speed < motion.slow(y)

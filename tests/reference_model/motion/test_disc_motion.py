@@ -515,3 +515,19 @@ def test_slip_that_has_begun_is_left_to_other_descriptions_where_one_of_eleven_p
     np.testing.assert_allclose(
         found.states, simulate(disc, start, times, tolerance=1e-11).states, rtol=0.0, atol=1e-11
     )
+
+
+def test_a_disc_comes_to_rest_whose_points_slow_down_together_with_its_spin():
+    """While one point slips at 1e-9 the disc turns as slowly about it, which the friction of the others feels."""
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=0.03998109482112049, stiffness=1.0, damping=1.4871663898968424,
+        friction_force=0.3703489740541269, disc_speed=0.2576902384454173, offset=0.0,
+        contact_radius=31.300008177985706, contact_points=6, shaft_damping=2.1051544974681895,
+        shaft_speed=2.584547264519307,
+    )  # fmt: skip
+    state = (-0.75743052, 0.50400537, 0.07696222, 0.17785081, -0.20103693, 6.14738994)
+    found, tight = (simulate(disc, state, (0.0, 5.0), tolerance=tolerance) for tolerance in (1e-9, 1e-10))
+    assert [phase.kind for phase in found.phases] == ["slip", "stick"]
+    assert found.solution.steps < 10_000
+    assert found.phases[-1].start == pytest.approx(tight.phases[-1].start, abs=1e-8)
+    np.testing.assert_allclose(found.at_end, tight.at_end, rtol=0.0, atol=1e-8)
