@@ -9,7 +9,7 @@ Solving Ordinary Differential Equations II, IV.5) needs a few steps, until the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,34 +85,63 @@ def begin_slip(
         If the motion can't be resolved.
 
     """
-    others, carried = np.array(y), np.array(drift)
-
-    def growth(delay: float, towards: FloatArray) -> FloatArray:
-        """Return the rates of a slip that is next to none."""
-        rates = motion.rates([*(others + delay * carried), *(LEAST_SLIP * towards)])
-        return np.array(rates[len(others) :])
-
-    at_first = growth(0.0, direction)
-    first, against = max(float(at_first @ direction), 0.0), float(growth(0.0, -direction) @ direction)
-    if first > SUDDEN * 0.5 * (against - first):
+    rest = _Rest(motion, np.array(y), np.array(drift), direction)
+    if rest.sudden:
         least = run.thresholds.reversal_slip * min(1.0, motion.slow(y))
         return slide_slowly(run, motion, t, [*y, *(least * direction)], leave)
-    # Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change −
-    # J·turning). J need not be symmetric, so that gain is not what the change has along the direction.
-    change = (growth(MOMENT, direction) - at_first) / MOMENT
-    turned = [growth(0.0, direction + TURN * axis) for axis in np.eye(motion.slip)]
-    along = np.outer(direction, direction)
-    resistance = (at_first[:, np.newaxis] - np.transpose(turned)) / TURN @ (np.eye(motion.slip) - along)
-    solved = np.linalg.solve(resistance + 2.0 * first * (np.eye(motion.slip) - along) + along, change)
-    gain = float(solved @ direction)
-    turning = solved - gain * direction
+    return _follow(run, motion, t, rest.leading_order(), leave)
 
-    def begun(delays: FloatArray) -> FloatArray:
-        """Return the unknowns to the leading order in time, shape (n, unknowns)."""
-        after = delays[:, np.newaxis]
-        slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
-        return np.hstack((others + after * carried, slip))
 
+Beginning = Callable[[FloatArray], FloatArray]
+"""Takes times (n,) since slip begins and returns about what the unknowns are then, shape (n, unknowns)."""
+
+
+class _Rest:
+    """Slip that is about to begin, and how it does."""
+
+    def __init__(
+        self, motion: Coordinates, others: FloatArray, carried: FloatArray, direction: FloatArray
+    ) -> None:
+        self._motion, self._others, self._carried, self._direction = motion, others, carried, direction
+        self._at_first = self._growth(0.0, direction)
+        self._first = max(float(self._at_first @ direction), 0.0)
+
+    @property
+    def sudden(self) -> bool:
+        """Whether the pull is well above what friction can hold."""
+        against = float(self._growth(0.0, -self._direction) @ self._direction)
+        return self._first > SUDDEN * 0.5 * (against - self._first)
+
+    def leading_order(self) -> Beginning:
+        """Return the unknowns to the leading order in time.
+
+        Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first +
+        t·(change − J·turning). J need not be symmetric, so that gain is not what the change has along the direction.
+        """
+        others, carried, direction, first = self._others, self._carried, self._direction, self._first
+        axes, along = np.eye(len(direction)), np.outer(direction, direction)
+        change = (self._growth(MOMENT, direction) - self._at_first) / MOMENT
+        turned = [self._growth(0.0, direction + TURN * axis) for axis in axes]
+        resistance = (self._at_first[:, np.newaxis] - np.transpose(turned)) / TURN @ (axes - along)
+        solved = np.linalg.solve(resistance + 2.0 * first * (axes - along) + along, change)
+        gain = float(solved @ direction)
+        turning = solved - gain * direction
+
+        def begun(delays: FloatArray) -> FloatArray:
+            after = delays[:, np.newaxis]
+            slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
+            return np.hstack((others + after * carried, slip))
+
+        return begun
+
+    def _growth(self, delay: float, towards: FloatArray) -> FloatArray:
+        """Return the rates of a slip that is next to none."""
+        rates = self._motion.rates([*(self._others + delay * self._carried), *(LEAST_SLIP * towards)])
+        return np.array(rates[len(self._others) :])
+
+
+def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Leave) -> Outcome:
+    """Follow slip that is ``begun`` at ``t`` by collocation, as long as no explicit method is as good."""
     start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
     while t < run.end:
         run.count_step(t)
@@ -213,8 +242,7 @@ def _collocate(
         rates = rates_at(values.T).T
         if not np.all(np.isfinite(rates)):
             return None
-        changes = np.full(values.shape, 1e-7)
-        # Derivatives by the slip on its own scale.
+        changes = motion.differences(values)  # by the slip, on its own scale
         changes[:, others:] *= np.maximum(
             np.linalg.norm(values[:, others:], axis=1, keepdims=True), LEAST_SLIP
         )

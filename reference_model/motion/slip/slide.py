@@ -27,7 +27,7 @@ from reference_model.motion.slip.coordinates import (
 )
 from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
-from reference_model.motion.stepper import TIGHTEST, Run, Sampler, Stepper
+from reference_model.motion.stepper import TIGHTEST, Run, Stepper
 from reference_model.systems import FloatArray
 
 
@@ -98,15 +98,6 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
             dt,
         ]
 
-    def sampler(dense: DenseOutput) -> Sampler:
-        def sample(times: FloatArray) -> FloatArray:
-            stretched = dense(_stretched_times(dense, times - start, s0))
-            n = stretched[others : others + d]
-            slip = np.exp(stretched[-2]) * n / np.linalg.norm(n, axis=0)
-            return motion.standard(np.vstack((stretched[:others], slip)))
-
-        return sample
-
     speed = motion.speed(y)
     # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
     relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
@@ -122,7 +113,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         ending = solver.y.tolist() if lost is None else solver.dense_output()(lost).tolist()
         t = start + ending[-1]
         if run.pending(t):
-            run.record(t, sampler(solver.dense_output()))
+            run.record(t, partial(_stretched, motion, start, s0, solver.dense_output()))
         y, _, s = unknowns(ending)
         if lost is not None or t >= run.end or s > FAST_AGAIN * motion.slow(y) or leave(y):
             break
@@ -132,6 +123,17 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         if solver.stiff_for_long(_change(slip, y) + t - before):
             return slide_stiffly(run, motion, t, y, leave, t - before)
     return Outcome(t, y, let_go=lost is not None)
+
+
+def _stretched(
+    motion: Coordinates, start: float, s0: float, dense: DenseOutput, times: FloatArray
+) -> FloatArray:
+    """Return the standard unknowns in a step in stretched time, which is zero at ``start``."""
+    d = motion.slip
+    stretched = dense(_stretched_times(dense, times - start, s0))
+    n = stretched[-2 - d : -2]
+    slip = np.exp(stretched[-2]) * n / np.linalg.norm(n, axis=0)
+    return motion.standard(np.vstack((stretched[: -2 - d], slip)))
 
 
 def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:

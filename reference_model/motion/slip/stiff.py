@@ -48,11 +48,42 @@ def slide_stiffly(
 
     ``step`` is that of an explicit method.
     """
+    others = len(y) - motion.slip
+    solver = _stepper(run, motion, start, y, 2.0 * step)
+    landings = Landings(run, motion, leave)
+    t, taken, slowly = start, run.steps, motion.speed(y) < motion.slow(y)
+    while t < run.end:
+        before = t
+        try:
+            solver.step(t)
+        except StepError:
+            run.patience *= 2
+            break
+        lost = grip_lost(motion, solver, partial(_one, others))
+        t = solver.t if lost is None else lost
+        if run.pending(t):
+            run.record(t, partial(_standard, motion, others, solver.dense_output()))
+        y = _one(others, (solver.y if lost is None else solver.dense_output()(lost)).tolist())
+        if lost is not None:
+            return Outcome(t, y, let_go=True)
+        if t - start > COST * step * (run.steps - taken):
+            run.patience = PATIENCE
+        if t >= run.end or leave(y) or (slowly and motion.speed(y) > FAST_AGAIN * motion.slow(y)):
+            break
+        slow = motion.slow(y) > 0.0
+        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
+        if ended is not None:
+            return ended
+        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
+            run.patience *= 2
+            break
+    return Outcome(t, y)
+
+
+def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_step: float) -> Stepper:
+    """Return the implicit steps from ``y`` on, of unknowns in which the slip is n and ln s."""
     d = motion.slip
     others = len(y) - d
-
-    def unknowns(polar: list[float]) -> list[float]:
-        return list(_unknowns(others, np.array([polar]).T)[0][:, 0].tolist())
 
     def rates(polar: FloatArray) -> FloatArray:
         y, n, s = _unknowns(others, polar)
@@ -78,49 +109,26 @@ def slide_stiffly(
     most[-1] = 1.0
     speed = motion.speed(y)
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed)]
-    surfaces = [surface.seen_by(unknowns) for surface in motion.surfaces]
-    solver = Stepper(
+    surfaces = [surface.seen_by(partial(_one, others)) for surface in motion.surfaces]
+    return Stepper(
         run,
         rates,
         initial,
         (start, run.end),
         relative,
         surfaces,
-        (Scales(tolerated, motion.differences, most), 2.0 * step),
+        (Scales(tolerated, motion.differences, most), first_step),
     )
-    landings = Landings(run, motion, leave)
-    t, taken, slowly = start, run.steps, speed < motion.slow(y)
-    while t < run.end:
-        before = t
-        try:
-            solver.step(t)
-        except StepError:
-            run.patience *= 2
-            break
-        lost = grip_lost(motion, solver, unknowns)
-        t = solver.t if lost is None else lost
-        if run.pending(t):
-            run.record(t, partial(_standard, motion, others, solver.dense_output()))
-        y = unknowns((solver.y if lost is None else solver.dense_output()(lost)).tolist())
-        if lost is not None:
-            return Outcome(t, y, let_go=True)
-        if t - start > COST * step * (run.steps - taken):
-            run.patience = PATIENCE
-        if t >= run.end or leave(y) or (slowly and motion.speed(y) > FAST_AGAIN * motion.slow(y)):
-            break
-        slow = motion.slow(y) > 0.0
-        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
-        if ended is not None:
-            return ended
-        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
-            run.patience *= 2
-            break
-    return Outcome(t, y)
 
 
 def _standard(motion: Coordinates, others: int, dense: DenseOutput, times: FloatArray) -> FloatArray:
     """Return the standard unknowns in a step."""
     return motion.standard(_unknowns(others, dense(times))[0])
+
+
+def _one(others: int, polar: list[float]) -> list[float]:
+    """Return the unknowns for ``polar`` ones."""
+    return list(_unknowns(others, np.array([polar]).T)[0][:, 0].tolist())
 
 
 def _unknowns(others: int, polar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
