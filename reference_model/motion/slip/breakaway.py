@@ -24,6 +24,7 @@ from reference_model.numerics.collocation import (
     POINTS,
     TO_SERIES,
     Polynomial,
+    RatesAt,
     jacobians_at,
     newton_matrix,
 )
@@ -47,6 +48,9 @@ SUDDEN = 0.05
 
 STIFF = 10.0
 """Stiffness of a step, rate times length, below which an explicit method is as good."""
+
+FASTER = 0.01
+"""Change of the slip speed, as a share, by which the derivative along the slip is found."""
 
 MOST_ITERATIONS = 12
 
@@ -242,11 +246,7 @@ def _collocate(
         rates = rates_at(values.T).T
         if not np.all(np.isfinite(rates)):
             return None
-        changes = motion.differences(values)  # by the slip, on its own scale
-        changes[:, others:] *= np.maximum(
-            np.linalg.norm(values[:, others:], axis=1, keepdims=True), LEAST_SLIP
-        )
-        jacobians = jacobians_at(rates_at, values, rates, changes)
+        jacobians = _jacobians(motion, rates_at, values, rates)
         residual = values - start - step * (INTEGRAL @ rates)
         try:
             change = np.linalg.solve(newton_matrix(jacobians, step), residual.ravel())
@@ -265,3 +265,23 @@ def _collocate(
                 falling=bool(np.dot(values[-1][others:], rates[-1][others:]) <= 0.0),
             )
     return None
+
+
+def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
+    """Return the derivatives of the rates by the unknowns at the nodes, shape (NODES, n, n).
+
+    By the slip they are found on its own scale. Friction bends with its direction, but hardly depends on its speed,
+    which Newton's method has to know far better than differences by components tell.
+    """
+    slips = values[:, -motion.slip :]
+    speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)
+    changes = motion.differences(values)
+    changes[:, -motion.slip :] *= speeds
+    jacobians = jacobians_at(rates_at, values, rates, changes)
+    faster = values.copy()
+    faster[:, -motion.slip :] *= 1.0 + FASTER
+    along = (rates_at(faster.T).T - rates) / (FASTER * speeds)
+    n = slips / speeds
+    by_slip = jacobians[:, :, -motion.slip :]
+    by_slip += (along - np.einsum("ijk,ik->ij", by_slip, n))[:, :, np.newaxis] * n[:, np.newaxis]
+    return jacobians

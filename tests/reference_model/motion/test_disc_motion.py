@@ -531,3 +531,18 @@ def test_a_disc_comes_to_rest_whose_points_slow_down_together_with_its_spin():
     assert found.solution.steps < 10_000
     assert found.phases[-1].start == pytest.approx(tight.phases[-1].start, abs=1e-8)
     np.testing.assert_allclose(found.at_end, tight.at_end, rtol=0.0, atol=1e-8)
+
+
+def test_slip_begins_from_rest_where_friction_bends_strongly_with_its_direction():
+    """With R = 61 gyrations and the rim nearly at rest at one place; Newton's method allowed steps of 1e-5 T only."""
+    disc = DiscOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.9122493566453166, friction_force=0.42246193396754766,
+        offset=0.011738777525018004, disc_speed=-0.30831513496411733, polar_inertia=0.014227018671365579,
+        contact_radius=7.331675604559605, shaft_damping=5.506612266964061, shaft_speed=-0.012909855736200413,
+    )  # fmt: skip
+    start = (1.13282222, 1.18174411, 5.41952252, -9.11512326, -3.06168674, -0.30831513)
+    times = np.linspace(0.0, 50.0, 101)
+    found, tight = (simulate(disc, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
+    assert [phase.kind for phase in found.phases] == ["slip", "stick", "slip", "stick", "slip", "stick"]
+    assert found.solution.steps < 600
+    np.testing.assert_allclose(found.states, tight.states, rtol=0.0, atol=3e-8)
