@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, usual_basis
+from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose
 from compare.engines import Engine, UnsupportedSystemError
+from compare.engines.finer_steps import at_finer_steps
 from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
@@ -146,6 +147,10 @@ def _takes_engine(function: Callable[..., Any]) -> bool:
 
 def _slug(words: str) -> str:
     return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
+
+
+AT_FINER_STEPS = "Asked at a step {:g} times as short as the engine's own, which leaves it open."
+"""What the note of a claim says besides where that is so."""
 
 
 def nothing_drawn(data: ByEngine) -> Figures:
@@ -337,16 +342,36 @@ class Study:
             for case, arguments in declared.cases():
                 if only and not {name, f"{name}/{case}"} & set(only):
                     continue
-                given = arguments if engine is None else (engine, *arguments)
                 try:
-                    measured = declared.function(*given, **few.get(name, {}))
+                    found = self._found(declared, case, arguments, engine, few.get(name, {}))
                 except UnsupportedSystemError as error:
                     lacking.append(str(error))
                     continue
-                if measured is not None:
-                    claims.append(self._claim_of(declared, case, measured, engine))
-                    data |= _arrays(measured.data)
+                if found is not None:
+                    claims.append(found[0])
+                    data |= found[1]
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
+
+    def _found(
+        self,
+        declared: Declared,
+        case: str,
+        arguments: tuple[Any, ...],
+        engine: Engine | None,
+        few: Mapping[str, Any],
+    ) -> tuple[Claim, Data] | None:
+        """Return the claim and its data, at a shorter step than the engine's own if it takes that to decide it."""
+        found = None
+        for asked, shorter in at_finer_steps(engine):
+            measured = declared.function(*(() if asked is None else (asked,)), *arguments, **few)
+            if measured is None:
+                break
+            if shorter > 1.0:
+                measured = replace(measured, note=f"{measured.note} {AT_FINER_STEPS.format(shorter)}".strip())
+            found = self._claim_of(declared, case, measured, engine), _arrays(measured.data)
+            if found[0].verdict is not Verdict.INCONCLUSIVE:
+                break
+        return found
 
     def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
         system = measured.system or self.system

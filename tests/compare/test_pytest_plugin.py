@@ -193,29 +193,31 @@ honest.sticks, honest.step = False, 5e-2
 """
 
 
-def test_the_example_fails_where_it_ignores_its_error_is_open_where_it_is_rough_and_passes_mended(tmp_path):
-    """And is judged on what it promises."""
+def test_the_example_fails_where_it_ignores_its_error_and_never_where_it_is_rough_and_passes_mended(tmp_path):
+    """And is judged on what it promises. How much of a rough one is open depends on what time is left."""
     shutil.copy(ROOT / "examples" / "07_engine_under_pytest.py", tmp_path / "example.py")
     (tmp_path / "rough.py").write_text(HONEST)
-    verdicts = {"example:euler": "failure", "rough:honest": "skipped", "example:runge_kutta": "passed"}
-    _, output, cases = judge(tmp_path, "trajectories", *verdicts)
-    attempted = 0
+    verdicts = {"example:euler": "failure", "example:runge_kutta": "passed"}
+    _, output, cases = judge(tmp_path, "trajectories", *verdicts, "rough:honest")
+    attempted = left_open = 0
     for claim in CLAIMS["trajectories"]:
+        found = {name: cases[f"{claim} [{name}]"][0] for name in (*verdicts, "rough:honest")}
         if of_pins_that_slide(claim):
             attempted += 1
-            assert {name: cases[f"{claim} [{name}]"][0] for name in verdicts} == verdicts, claim
+            left_open += found["rough:honest"] == "skipped"
+            assert found == {**verdicts, "rough:honest": found["rough:honest"]}, claim
+            assert found["rough:honest"] in ("passed", "skipped"), claim
         else:
-            assert {cases[f"{claim} [{name}]"][0] for name in verdicts} == {"skipped"}, claim
+            assert set(found.values()) == {"skipped"}, claim
     promised = len(CLAIMS["trajectories"]) - attempted
-    told = (
-        f"{attempted} failed, {attempted} passed, {3 * promised} not attempted, {attempted} inconclusive in"
-    )
+    told = f"{attempted} failed, {2 * attempted - left_open} passed, {3 * promised} not attempted"
     assert told in output
+    assert f" {left_open} inconclusive in" in output or left_open == 0
     assert (
         "not attempted: example:runge_kutta does not simulate stick; "
         "example:runge_kutta does not simulate a disc on a continuous ring or a disc on single points ("
     ) in output
-    assert "inconclusive: an error budget of " in output
+    assert ("inconclusive: an error budget of " in output) == (left_open > 0)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,94 @@
+"""A claim that is open at an engine's own step is asked again at shorter ones, and no wrong engine gains by it."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from compare.claims.claim import Verdict
+from compare.claims.measured import Measured
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.engines.finer_steps import LONGEST, SHORTER, at_finer_steps
+from reference_model import PinOnDisc, Trajectory
+
+STEP = 0.1
+PIN = PinOnDisc(
+    mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0, offset=0.0
+)  # swings like cos t
+
+
+def euler(system, state, times, *, step):
+    """Swing by the symplectic method of Euler."""
+    return _euler(system, state, times, step, 1.0)
+
+
+def stiffer(system, state, times, *, step):
+    """Do so with a spring that is 1 % too stiff."""
+    return _euler(system, state, times, step, 1.01)
+
+
+def _euler(system, state, times, step, stiffness):
+    steps = math.ceil((times[-1] - times[0]) / step)
+    h, (x, _, vx, _) = (times[-1] - times[0]) / steps, state
+    for _ in range(steps):
+        vx -= h * stiffness * x
+        x += h * vx
+    return Trajectory(system, np.array(times), np.array([state, (x, 0.0, vx, 0.0)]))
+
+
+def swing(engine, tolerance):
+    return engine.simulate(PIN, (1.0, 0.0, 0.0, 0.0), (0.0, 10.0), tolerance=tolerance).states[-1][0]
+
+
+def study_of(resolution):
+    study = Study("mine", "Mine", "")
+
+    @study.claim("It swings", resolution=resolution)
+    def swings(engine):
+        found = swing(engine, 1e-9)
+        return Measured(
+            value=found,
+            predicted=math.cos(10.0),
+            error=abs(found - swing(engine, 8e-9)),
+            system=PIN,
+            source="here",
+        )
+
+    return study
+
+
+def engine_of(function, **more):
+    return Engine(function.__name__, function, step=STEP, **more)
+
+
+def test_a_claim_is_asked_at_shorter_steps_until_it_is_decided():
+    (claim,) = study_of(2e-2).measure(engine_of(euler)).claims
+    assert claim.verdict is Verdict.AGREES
+    assert claim.note == "Asked at a step 4 times as short as the engine's own, which leaves it open."
+    (claim,) = study_of(0.5).measure(engine_of(euler)).claims
+    assert claim.verdict is Verdict.AGREES
+    assert claim.note == ""
+
+
+def test_a_wrong_engine_is_found_out_at_a_shorter_step():
+    (claim,) = study_of(1e-3).measure(engine_of(stiffer)).claims
+    assert claim.verdict is Verdict.DIFFERS
+
+
+def test_only_a_fixed_step_becomes_shorter_and_as_long_as_there_is_time(monkeypatch):
+    clock = itertools.count(0.0, 0.4 * LONGEST / SHORTER)  # each look at it finds the time of 0.4 claims gone
+    monkeypatch.setattr("compare.engines.finer_steps.time.perf_counter", lambda: next(clock))
+    free = Engine("free", euler)
+    assert list(at_finer_steps(free)) == [(free, 1.0)]
+    assert list(at_finer_steps(None)) == [(None, 1.0)]
+    shorter = itertools.islice(at_finer_steps(engine_of(euler)), 4)
+    assert [(engine.step, share) for engine, share in shorter] == [
+        (pytest.approx(STEP / share), share) for share in (1.0, 4.0, 16.0, 64.0)
+    ]
+    monkeypatch.setattr(
+        "compare.engines.finer_steps.time.perf_counter",
+        itertools.count(0.0, 1.1 * LONGEST / SHORTER).__next__,
+    )
+    assert len(list(at_finer_steps(engine_of(euler)))) == 1
