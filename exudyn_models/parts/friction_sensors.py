@@ -215,9 +215,7 @@ class RingFriction:
         """Return where the coordinates of both nodes stand among those of the model."""
         kinds = self._kinds[-len(self.nodes) :]
         starts = map(mbs.GetNodeODE2Index, self.nodes)
-        return [
-            start + i for start, kind in zip(starts, kinds, strict=True) for i in range(SIZES[kind])
-        ]
+        return [start + i for start, kind in zip(starts, kinds, strict=True) for i in range(SIZES[kind])]
 
     def _spin_on_axis(self, mbs: Any) -> float:
         """Return S in rad/s of a rotor on a rotor or on the ground."""
