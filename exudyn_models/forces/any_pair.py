@@ -89,7 +89,8 @@ def power_on_any(parameters: Floats, q: Floats, q_t: Floats) -> tuple[float, flo
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
     forces, radius, speed, spin = friction_on_nodes(kinds, coordinates, velocities, contact)
-    return -(forces @ velocities), radius, speed, spin
+    power: float = -np.dot(forces, velocities)
+    return power, radius, speed, spin
 
 
 @compiled
