@@ -341,15 +341,17 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 def _diagnoses(config: pytest.Config, failed: list[pytest.TestReport]) -> Iterator[str]:
     """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
-    from compare.diagnosis.run import in_short
+    from compare.diagnosis.run import IN_SHORT, in_short
     from compare.engines import engines
+    from compare.run.workers import Workers
 
     names = [name for name in _engines(config) if len(_engines(config)) == 1 or _is_named(name, failed)]
-    for name in names:
-        try:
-            yield f"{name}: {' '.join(in_short(engines([name])[0]).sentences)}"
-        except ValueError as error:  # it can't even be imported
-            yield str(error)
+    with Workers(1, IN_SHORT) as workers:
+        for name in names:
+            try:
+                yield f"{name}: {' '.join(in_short(engines([name])[0], workers).sentences)}"
+            except ValueError as error:  # it can't even be imported
+                yield str(error)
 
 
 def _is_named(name: str, reports: list[pytest.TestReport]) -> bool:

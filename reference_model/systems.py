@@ -58,8 +58,32 @@ class _SupportedMass:
         "stop_stiffness",
     )
 
+    _least: ClassVar[tuple[tuple[str, float], ...]]
+
+    def __init_subclass__(cls) -> None:
+        """Note how small each parameter may be."""
+        cls._least = tuple(
+            (name, LEAST if name in cls._positive else 0.0 if name in cls._not_negative else -MOST)
+            for name in cls._units
+        )
+
     def __post_init__(self) -> None:
         """Refuse what no system can be."""
+        values = vars(self)
+        for name, least in self._least:  # searches vary parameters very often: what is sound passes quickly
+            value = values[name]
+            if type(value) is not float or not least <= value <= MOST:
+                self._check_numbers()
+                break
+        for name, (formula, ratio) in self._ratios().items():
+            if ratio > MOST_RATIO:
+                raise ValueError(
+                    f"{name} = {getattr(self, name):g} {self._units[name]}: {formula} = {ratio:g} "
+                    f"must be at most {MOST_RATIO:g}"
+                )
+
+    def _check_numbers(self) -> None:
+        """Make all of them floats; raise ``ValueError`` for one that is out of its range."""
         for name, unit in self._units.items():
             value = finite_number(name, getattr(self, name))
             object.__setattr__(self, name, value)
@@ -70,12 +94,6 @@ class _SupportedMass:
             if abs(value) > MOST or (positive and value < LEAST):
                 allowed = f"between {LEAST:g} and" if positive else "at most"
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
-        for name, (formula, ratio) in self._ratios().items():
-            if ratio > MOST_RATIO:
-                raise ValueError(
-                    f"{name} = {getattr(self, name):g} {self._units[name]}: {formula} = {ratio:g} "
-                    f"must be at most {MOST_RATIO:g}"
-                )
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
         """Return by parameter what may not be too large of it beside others: its formula and value, in SI units."""

@@ -55,15 +55,17 @@ def diagnosed(
                 yield rows[name]
 
 
-def in_short(engine: Engine) -> Row:
-    """Return what the probes say of an engine, in seconds; after a first part without a result no other is asked."""
+def in_short(engine: Engine, workers: Workers) -> Row:
+    """Return what the probes say of an engine, in seconds; after a first part without a result no other is asked.
+
+    ``workers`` are best one with the limit ``IN_SHORT``, the same for one engine after the other.
+    """
     row, parts = _empty(engine), parts_of(engine)
-    with Workers(1, IN_SHORT) as workers:
-        for part in PROBES:
-            if part in parts and not row.gaps:
-                workers.submit(part, measured, engine, part)
-                (done,) = workers.finished()
-                row = _with(row, part, done.value, done.seconds)
+    for part in PROBES:
+        if part in parts and not row.gaps:
+            workers.submit(part, measured, engine, part)
+            (done,) = workers.finished()
+            row = _with(row, part, done.value, done.seconds)
     return row
 
 

@@ -32,6 +32,9 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 ENERGY_UNIT = 1e3
 """J in which the energy balance counts."""
 
+ANGLE, SPEED = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
+"""What a rotor's node tells."""
+
 
 @dataclass(frozen=True, eq=False)
 class DrivetrainMotion:
@@ -308,10 +311,8 @@ def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
 
     def now(mbs: Any, t: float) -> tuple[float, float]:
         """Return torque and speed."""
-        angle, speed = (
-            float(mbs.GetNodeOutput(node, variable))
-            for variable in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
-        )
+        angle = float(mbs.GetNodeOutput(node, ANGLE))
+        speed = float(mbs.GetNodeOutput(node, SPEED))
         return torque(t, angle, speed), speed
 
     mbs.AddLoad(

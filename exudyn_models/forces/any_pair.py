@@ -82,6 +82,18 @@ def friction_derivatives_on_nodes(
 
 
 @compiled
+def power_on_any(parameters: Floats, q: Floats, q_t: Floats) -> tuple[float, float, float, float]:
+    """Return what friction turns into heat in W, the disc's radius in m, P in m/s and S in rad/s.
+
+    ``parameters`` are those of ``force_on_any``.
+    """
+    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    forces, radius, speed, spin = friction_on_nodes(kinds, coordinates, velocities, contact)
+    power: float = -np.dot(forces, velocities)
+    return power, radius, speed, spin
+
+
+@compiled
 def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
     """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
 

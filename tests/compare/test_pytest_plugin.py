@@ -68,7 +68,7 @@ def run(folder, *arguments):
 def run_by_itself(folder, *arguments):
     """Do the same in a process of its own."""
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", *OPTIONS, *arguments],
+        [sys.executable, "-m", "pytest", *OPTIONS, *WITHOUT_OTHERS, *arguments],
         cwd=folder,
         env=outside(),
         capture_output=True,
@@ -84,6 +84,9 @@ def outside():
 
 
 OPTIONS = ("-p", "no:cacheprovider", "--junit-xml=out.xml")
+
+WITHOUT_OTHERS = ("-p", "no:hypothesispytest", "-p", "no:zarr")
+"""Plugins of libraries that import all of these whenever pytest starts, which takes longer than it."""
 
 
 def cases_in(folder):
@@ -161,7 +164,8 @@ def test_an_engine_without_an_answer_fails_with_the_reason(engine, judged):
         assert FAILING[engine] in text
 
 
-def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path):
+def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr("compare.diagnosis.run.IN_SHORT", 1.0)
     status, _, cases = judge(tmp_path, "sticking-domain", "mine:hanging", options=("--study-limit", "1"))
     assert status == 1
     assert set(cases) == set(CLAIMS["sticking-domain"])  # one engine alone needs no name
@@ -296,8 +300,7 @@ def test_the_tests_of_others_do_not_notice_the_plugin(tmp_path):
     options = [
         "--engine",
         "diesel",
-        "-p",
-        "no:hypothesispytest",
+        *WITHOUT_OTHERS,
         "-o",
         "pythonpath=.",
         "-p",

@@ -153,12 +153,14 @@ def _is_suspect(matrix: Matrix, engine: str) -> bool:
 
 def _print_diagnoses(suspects: Iterable[Engine]) -> None:
     """Print what is behind the claims of engines that differ, in a few sentences."""
-    from compare.diagnosis.run import in_short
+    from compare.diagnosis.run import IN_SHORT, in_short
+    from compare.run.workers import Workers
 
-    for engine in suspects:
-        row = in_short(engine)
-        with printing():
-            print(f"{row.engine}: {' '.join(row.sentences)}")
+    with Workers(1, IN_SHORT) as workers:
+        for engine in suspects:
+            row = in_short(engine, workers)
+            with printing():
+                print(f"{row.engine}: {' '.join(row.sentences)}")
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int) -> int:

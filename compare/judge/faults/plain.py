@@ -12,6 +12,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -20,6 +21,7 @@ from scipy.integrate import LSODA
 from scipy.optimize import brentq
 
 from compare.judge.faults.equations import carried, fixed_steps, rates, rotated, slip_speed, turning_rates
+from compare.judge.faults.jit import for_types_of
 from compare.judge.faults.make import RIGHT, Make, Numbers, steepest
 from reference_model.systems import FloatArray, System, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
@@ -64,9 +66,25 @@ class _Run:
     steps: int = 0
     phases: list[tuple[Literal["slip", "stick"], float, FloatArray]] = field(default_factory=list)
 
+    @cached_property
+    def rates(self) -> Callable[..., FloatArray]:
+        """The right side."""
+        return for_types_of(rates, 0.0, self.unknowns[0], 1.0, 1.0, self.numbers, self.make)
+
+    @cached_property
+    def turning_rates(self) -> Callable[..., FloatArray]:
+        """The same in the frame that turns."""
+        y = self.unknowns[0]
+        return for_types_of(turning_rates, 0.0, y, 0.0, y, 1.0, 1.0, self.numbers, self.make)
+
+    @cached_property
+    def slip_speed(self) -> Callable[..., float]:
+        """The slip speed of unknowns."""
+        return for_types_of(slip_speed, self.unknowns[0], self.numbers, self.make)
+
     def speed(self, y: FloatArray) -> float:
         """Return the slip speed."""
-        return slip_speed(y, self.numbers, self.make)
+        return self.slip_speed(y, self.numbers, self.make)
 
     @property
     def glance(self) -> float:
@@ -79,7 +97,7 @@ class _Run:
         numbers, make, speed = self.numbers, self.make, self.speed(y)
         least = self.epsilon / steepest(numbers)
         step = 1e-2 * least
-        moved = self.speed(y + step * rates(t, y, self.epsilon, 1.0, numbers, make))
+        moved = self.speed(y + step * self.rates(t, y, self.epsilon, 1.0, numbers, make))
         slowest = 1e-3 * speed / least  # friction that can hardly hold
         return speed / max((speed - moved) / step, slowest)
 
@@ -134,9 +152,9 @@ class _Run:
 
         def started(t: float, x: FloatArray) -> LSODA:
             return LSODA(
-                (lambda t, x: turning_rates(t, x, *law))
+                (lambda t, x: self.turning_rates(t, x, *law))
                 if turning
-                else (lambda t, x: rates(t, x, *slipping)),
+                else (lambda t, x: self.rates(t, x, *slipping)),
                 t,
                 x,
                 end,
@@ -174,7 +192,7 @@ class _Run:
         self.steps += 1
         if self.steps > MOST_STEPS:
             raise SimulationError(f"more than {MOST_STEPS:,} steps up to t = {solver.t:g} s")
-        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+        if solver.status == "failed" or not all(map(math.isfinite, solver.y.tolist())):
             raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
 
     def record(self, until: float, at: Callable[[float], FloatArray]) -> None:

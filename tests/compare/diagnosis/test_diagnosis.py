@@ -16,6 +16,7 @@ from compare.diagnosis.ladder import RUNGS, tolerances
 from compare.diagnosis.recorded import recorded_rows
 from compare.diagnosis.row import Row
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
+from compare.run.workers import Workers
 
 RIGHT = engine("right")
 
@@ -119,7 +120,7 @@ def test_a_part_without_a_result_is_named_and_the_others_are_there():
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == {"law", "creep"}
     assert row.sentences[0].startswith("No result of law, creep: out of order")
-    assert set(run.in_short(broken).gaps) == {"law"}
+    assert set(run.in_short(broken, Workers(1)).gaps) == {"law"}
 
 
 def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):

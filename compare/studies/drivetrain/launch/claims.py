@@ -161,7 +161,7 @@ def _creeping(engine: Engine) -> tuple[FloatArray, FloatArray]:
     car = centred_car()
     ends, torques = [], []
     for epsilon in EPSILONS:
-        motion = launch(car, epsilon=float(epsilon), tolerance=1e-6)
+        motion = launch(car, epsilon=float(epsilon), tolerance=1e-5)
         ends.append(_speeds_and_heat(motion))
         share = CubicSpline(motion.times, motion.slip)(STUCK) * car.friction_radius / epsilon
         torques.append(share * np.interp(STUCK, KNOTS, CAPACITIES))

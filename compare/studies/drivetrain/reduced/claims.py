@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import observed_exponent, refined
+from compare.claims.error_estimates import Measurement, observed_exponent, refined
 from compare.claims.measured import Measured
 from compare.claims.study import Study
 from compare.engines import Engine
@@ -41,6 +41,17 @@ def _motion(
     return drivetrain_motion(case, tolerance, inertia)
 
 
+@functools.cache  # the same beside every engine
+def _in_reference(name: str, times: tuple[float, ...]) -> Measurement:
+    case = CASES[name]
+    return refined(
+        lambda tolerance: (
+            simulate(case.disc, case.start, times, tolerance=tolerance, contact=case.contact).states
+        ),
+        TOLERANCE,
+    )
+
+
 @STUDY.claim(
     "A drivetrain that is reduced to a friction disc moves as the reference does: {}",
     equation="(19)",
@@ -54,12 +65,8 @@ def moves(engine: Engine, name: str) -> Measured:
     """Run a case for 50 s in the drivetrain and in the reference."""
     case = CASES[name]
     times, states = _motion(engine, case, TOLERANCE)
-
-    def in_reference(tolerance: float) -> FloatArray:
-        return simulate(case.disc, case.start, times, tolerance=tolerance, contact=case.contact).states
-
     found = refined(lambda tolerance: _motion(engine, case, tolerance)[1][-1], TOLERANCE)
-    predicted = refined(in_reference, TOLERANCE)
+    predicted = _in_reference(name, tuple(times.tolist()))
     # An error oscillates as the motion does: those of the plane and those of the turning are taken together.
     together = (found.error + predicted.error[-1]).reshape(2, 3)
     together[:, :2], together[:, 2] = together[:, :2].max(), together[:, 2].max()
