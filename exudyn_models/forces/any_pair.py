@@ -17,6 +17,7 @@ from exudyn_models.forces.friction_laws import (
     slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.product import Law, friction_force_under
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, Floats, Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
@@ -82,13 +83,18 @@ def friction_derivatives_on_nodes(
 
 
 @compiled
-def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
-    """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
+def force_on_any(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
+    """Return the generalised forces on both nodes, as a function for Exudyn behind its first two arguments.
 
-    These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
+    ``parameters`` are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes; there is
+    a ``law`` where the friction force is no number, and 1 N in its place.
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    forces, _, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
+    forces, radius, speed, spin = friction_on_nodes(kinds, coordinates, velocities, contact)
+    if law is not None:
+        forces *= friction_force_under(law, contact[3], t, radius, speed, spin)
     result: Floats = to_tuple(forces, len(q))
     return result
 
