@@ -95,14 +95,6 @@ def _moment(parameters: Floats, law: Law, t: float, spin: float) -> float:
     return -math.copysign(limit * min(1.0, speed / epsilon), spin)
 
 
-def power_on_axis(factors: LoadAndCoefficient, t: float, spin: float) -> float:
-    """Return what friction turns into heat in W, at the time t (s) and S (rad/s)."""
-    contact = factors.geometry
-    speed = mean_radius(contact) * abs(spin)
-    friction = factors.friction_force(t, 0.0, speed, spin)
-    return friction * speed * min(1.0, speed / contact[3])
-
-
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:
     """Return the derivative of M by S, in N m s."""
     contact = factors.geometry

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
+from operator import mul
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import friction_on_nodes
-from exudyn_models.forces.axial_pairs import on_one_axis, power_on_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
@@ -64,6 +64,17 @@ class RingFriction:
     _kinds: Kinds = field(repr=False)
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
+    _functions: dict[str, Any] = field(repr=False)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether friction is found without a function of Python.
+
+        That is so if coefficient and load are numbers, tables or functions of numba (``@numba.njit``), whose values
+        for outer names are those of when it compiled them. Any other function is called as it is, from compiled code
+        too, at the cost of what it does itself.
+        """
+        return self._factors.compiled
 
     def change(
         self,
@@ -84,8 +95,9 @@ class RingFriction:
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
         )
-        functions = force_and_jacobian(self._kinds, self._reference, factors)
-        for name, function in zip(("force", "jacobian"), functions, strict=True):
+        force, jacobian = force_and_jacobian(self._kinds, self._reference, factors)
+        self._functions.update(force=force, jacobian=jacobian)
+        for name, function in self._functions.items():
             self.mbs.SetObjectParameter(self.item, f"{name}UserFunction", function)
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
@@ -158,13 +170,16 @@ class RingFriction:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
-        if on_one_axis(self._kinds, self._factors):
-            return power_on_axis(self._factors, t, self._spin_on_axis(mbs))
-        coordinates, velocities = self._motion(mbs, exu.ConfigurationType.Current)
-        contact = self._factors.contact or self._factors.contact_at(t)
-        forces, *motion = friction_on_nodes(self._kinds, coordinates, velocities, contact)
-        power = -float(forces @ velocities)
-        return power * self._factors.friction_force(t, *motion) if self._factors.depends_on_motion else power
+        data = mbs.systemData
+        q, q_t = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
+        first, *second = self._places
+        velocities = q_t[first].tolist()
+        coordinates = q[first].tolist()
+        for place in second:
+            velocities += q_t[place].tolist()
+            coordinates += q[place].tolist()
+        forces = self._functions["force"](mbs, t, 0, coordinates, velocities)
+        return -sum(map(mul, forces, velocities))
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -189,20 +204,25 @@ class RingFriction:
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
         """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
         data = mbs.systemData
-        starts = [mbs.GetNodeODE2Index(node) for node in self.nodes]
-        kinds = self._kinds[-len(starts) :]
-        places = [slice(start, start + SIZES[kind]) for start, kind in zip(starts, kinds, strict=True)]
         q, q_t = (
-            np.concatenate([values[place] for place in places])  # half the cost of the nodes' own outputs
+            np.concatenate(
+                [values[place] for place in self._places]
+            )  # half the cost of the nodes' own outputs
             for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
         )
         return self._reference + q, q_t
 
-    def _spin_on_axis(self, mbs: Any) -> float:
-        """Return S in rad/s of a rotor on a rotor or on the ground."""
-        velocities = mbs.systemData.GetODE2Coordinates_t()
-        *master, disc = (float(velocities[mbs.GetNodeODE2Index(node)]) for node in self.nodes)
-        return disc - sum(master)
+    @cached_property  # nodes that are added later come behind
+    def _places(self) -> list[slice]:
+        """Where the coordinates of the nodes are among those of the assembled model."""
+        kinds = self._kinds[-len(self.nodes) :]
+        places: list[slice] = []
+        for node, kind in zip(self.nodes, kinds, strict=True):
+            start = self.mbs.GetNodeODE2Index(node)
+            if places and places[-1].stop == start:
+                start = places.pop().start
+            places.append(slice(start, self.mbs.GetNodeODE2Index(node) + SIZES[kind]))
+        return places
 
     def _capacity_share(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, at most 1, or None where friction holds nothing."""

@@ -129,8 +129,10 @@ def add_ring_friction(
     factors = LoadAndCoefficient(contact, friction_coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
-    item = add_connector(mbs, nodes, *force_and_jacobian(kinds, reference, factors))
-    return RingFriction(mbs, item, nodes, kinds, reference, factors)
+    force, jacobian = force_and_jacobian(kinds, reference, factors)
+    item = add_connector(mbs, nodes, force, jacobian)
+    functions = {"force": force, "jacobian": jacobian}
+    return RingFriction(mbs, item, nodes, kinds, reference, factors, functions)
 
 
 def checked_pair(

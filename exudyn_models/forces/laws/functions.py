@@ -55,7 +55,7 @@ class LawFunction:
 
 
 def law_function(name: str, function: Callable[..., float], unit: str) -> LawFunction:
-    """Return a coefficient or load of this name; raise ``ValueError`` if it takes none of ``ARGUMENTS``."""
+    """Return a coefficient or load of this name; raise ``ValueError`` if it can't be one."""
     arguments, in_order = _arguments(name, function)
     positional = function if in_order else partial(_call_by_name, arguments, function)
 
@@ -69,8 +69,15 @@ def law_function(name: str, function: Callable[..., float], unit: str) -> LawFun
         ]
         return checked_not_negative(f"{name}({', '.join(told)})", result, unit)
 
-    compiled = _of_four(function, arguments) if in_order and numba.extending.is_jitted(function) else None
-    return LawFunction(arguments, positional, checked, address_of(compiled) if compiled else 0.0)
+    if not (in_order and numba.extending.is_jitted(function)):
+        return LawFunction(arguments, positional, checked, 0.0)
+    try:
+        address = address_of(_of_four(function, arguments))
+    except numba.core.errors.NumbaError as error:
+        raise ValueError(
+            f"{name} is a function for numba, which can't compile it for floats: {error}"
+        ) from error
+    return LawFunction(arguments, positional, checked, address)
 
 
 def checked_not_negative(name: str, value: float, unit: str) -> float:
@@ -116,17 +123,14 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
 
 @cache  # machine code stays, wherever it may still be called
 def _of_four(function: Any, arguments: tuple[str, ...]) -> Any:
-    """Return a function that numba compiles as one of four floats, None if it can't be one."""
+    """Return a function that numba compiles as one of four floats."""
     places = tuple(list(ARGUMENTS).index(argument) for argument in arguments)
     adapt = _OF_FOUR[len(places)]
 
     def of_four(t: float, r: float, v: float, s: float) -> float:
         return adapt(function, (t, r, v, s), places)  # type: ignore[no-any-return]
 
-    try:
-        return numba.njit("float64(float64, float64, float64, float64)")(of_four)
-    except numba.core.errors.NumbaError:
-        return None
+    return numba.njit("float64(float64, float64, float64, float64)")(of_four)
 
 
 _OF_FOUR = [
