@@ -13,6 +13,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.forces.axial_pairs import on_one_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
@@ -170,16 +171,27 @@ class RingFriction:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
-        data = mbs.systemData
-        q, q_t = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
-        first, *second = self._places
-        velocities = q_t[first].tolist()
-        coordinates = q[first].tolist()
-        for place in second:
-            velocities += q_t[place].tolist()
-            coordinates += q[place].tolist()
+        get_coordinates, get_velocities, first, second = self._access
+        values = get_velocities()
+        velocities = values[first].tolist()
+        if second:
+            velocities += values[second].tolist()
+        coordinates = velocities  # rotors on one axis make nothing of them
+        if get_coordinates:
+            values = get_coordinates()
+            coordinates = values[first].tolist()
+            if second:
+                coordinates += values[second].tolist()
         forces = self._functions["force"](mbs, t, 0, coordinates, velocities)
-        return -sum(map(mul, forces, velocities))
+        return -float(sum(map(mul, forces, velocities)))
+
+    @cached_property  # finding them costs as much as calling them
+    def _access(self) -> tuple[Any, Any, slice, slice | None]:
+        """What returns coordinates, if they are needed, and velocities of the assembled model, and where to look."""
+        data = self.mbs.systemData
+        on_axis = on_one_axis(self._kinds, self._factors)
+        first, second, *_ = *self._places, None
+        return None if on_axis else data.GetODE2Coordinates, data.GetODE2Coordinates_t, first, second
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -213,7 +225,7 @@ class RingFriction:
         return self._reference + q, q_t
 
     @cached_property  # nodes that are added later come behind
-    def _places(self) -> list[slice]:
+    def _places(self) -> list[Any]:
         """Where the coordinates of the nodes are among those of the assembled model."""
         kinds = self._kinds[-len(self.nodes) :]
         places: list[slice] = []
