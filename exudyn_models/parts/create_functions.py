@@ -8,6 +8,7 @@ from typing import Any
 import exudyn as exu
 from exudyn.misc.extensionRegistry import extends, install
 
+from exudyn_models.forces.laws.pressures import Pressure
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
@@ -28,6 +29,7 @@ def MainSystemCreateRingFriction(
     contactPoints: int | None = None,
     staticRatio: float = 1.0,
     plates: int = 1,
+    pressure: Pressure = "uniform",
 ) -> RingFriction:
     """Add friction between two bodies, master and disc; return its handle, with the ``item`` of the connector.
 
@@ -49,6 +51,7 @@ def MainSystemCreateRingFriction(
         contact_points=contactPoints,
         static_ratio=staticRatio,
         plates=plates,
+        pressure=pressure,
     )
 
 

@@ -14,7 +14,7 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import on_one_axis
-from exudyn_models.forces.friction_laws import friction_of_slip, slip_potential_of_contact
+from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
@@ -76,6 +76,11 @@ class RingFriction:
         too, at the cost of what it does itself.
         """
         return self._factors.compiled
+
+    @property
+    def effective_radius(self) -> float:
+        """The lever in m of μN where the disc only turns: M = μN·r, of all plates."""
+        return mean_radius(self._factors.geometry)
 
     def change(
         self,

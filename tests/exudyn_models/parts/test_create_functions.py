@@ -17,7 +17,7 @@ FRICTION = {"friction_coefficient": [[0.0, 0.3], [1.0, 0.2]], "normal_load": lam
 CONTACT = FRICTION | {"regularisation": 1e-3, "static_ratio": 1.2, "plates": 2}
 GEOMETRIES = [
     {"contact_radius": 0.12, "contact_points": 6},
-    {"inner_radius": 0.08, "outer_radius": 0.12},
+    {"inner_radius": 0.08, "outer_radius": 0.12, "pressure": "wear"},
 ]
 SUPPORT = {
     "stiffness": 50.0,
