@@ -46,12 +46,13 @@ def friction_derivatives_on_nodes(
     position_factor: float,
     velocity_factor: float,
     contact: Contact,
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of those by the coordinates and by the velocities.
+    They are weighted sums of those by the coordinates and by the velocities. What ``friction_on_nodes`` returns comes
+    with them.
     """
-    to_slip, _, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
@@ -79,7 +80,8 @@ def friction_derivatives_on_nodes(
             motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
         motion_by_nodes[2, j] = slip_change[2]
         motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
-    return by_nodes, motion_by_nodes
+    forces = force[0] * to_slip[0] + force[1] * to_slip[1] + force[2] * to_slip[2]
+    return by_nodes, motion_by_nodes, (forces, radius_of_disc(kinds, coordinates, axes), speed, spin)
 
 
 @compiled

@@ -8,7 +8,7 @@ friction force that is a number need no compiled code.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ import numpy as np
 from exudyn_models.forces.any_pair import (
     force_on_any,
     friction_derivatives_on_nodes,
-    friction_on_nodes,
     jacobian_on_any,
 )
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
@@ -67,12 +66,15 @@ def _compiled_functions(
     bound = partial(evaluate, _numbers(factors.contact or factors.geometry, rest), factors.law)
     if factors.depends_on_motion:
         return bound, _jacobian_by_motion(kinds, reference, factors)
-    derive = taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
-    if factors.contact is not None:
-        return bound, partial(derive, _numbers(factors.contact, rest))
+
+    @cache  # compiled where it is needed first: explicit solvers don't
+    def derive() -> Callable[..., Any]:
+        return taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
+
+    constant = None if factors.contact is None else _numbers(factors.contact, rest)
 
     def jacobian_by_time(mbs: Any, t: float, *motion: Any) -> Any:
-        return derive(_numbers(factors.contact_at(t), rest), mbs, t, *motion)
+        return derive()(constant or _numbers(factors.contact_at(t), rest), mbs, t, *motion)
 
     return bound, jacobian_by_time
 
@@ -91,12 +93,9 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        contact = factors.contact_at(t)
-        state = kinds, reference + q, np.array(q_t)
-        derivatives, motion_derivatives = friction_derivatives_on_nodes(
-            *state, position_factor, velocity_factor, contact
+        derivatives, motion_derivatives, (forces, *motion) = friction_derivatives_on_nodes(
+            kinds, reference + q, np.array(q_t), position_factor, velocity_factor, factors.geometry
         )
-        forces, *motion = friction_on_nodes(*state, contact)
         derivatives *= factors.friction_force(t, *motion)
         derivatives += np.outer(forces, factors.friction_force_slopes(t, *motion) @ motion_derivatives)
         return -derivatives  # Exudyn takes those of the left-hand side
