@@ -39,6 +39,7 @@ SECTION = {"friction_coefficient": 1.0, "normal_load": FIG5.friction_force, "reg
 PIN: dict[str, Any] = {"contact_radius": 0.0}
 RING: dict[str, Any] = {"contact_radius": 0.12}
 SIX_POINTS, POINTS_24 = RING | {"contact_points": 6}, RING | {"contact_points": 24}
+TABLE = [[0.0, 0.3], [0.1, 0.28], [1.0, 0.25]]
 ANNULUS = {"inner_radius": 0.08, "outer_radius": 0.12}
 
 AddContact = Callable[[Any, Any, Any], Any]
@@ -156,6 +157,13 @@ PLANAR: dict[str, AddContact] = {
     "ring": ours(RING),
     "ring under a load of time": ours(RING, lambda time: FIG5.friction_force),
     "ring under a load of the radius": ours(RING, lambda radius: FIG5.friction_force),
+    "ring, Stribeck and a load of time": lambda *nodes: ours(
+        RING | {"friction_coefficient": stribeck}, load_of_time
+    )(*nodes),
+    "the same, compiled by numba": lambda *nodes: ours(
+        RING | {"friction_coefficient": numba.njit(stribeck)}, numba.njit(constant_load)
+    )(*nodes),
+    "ring, table over slip": ours(RING | {"friction_coefficient": TABLE}),
     "ring with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "annulus": ours(ANNULUS),
     FOUR: ours(RING),
@@ -169,6 +177,7 @@ PLANAR: dict[str, AddContact] = {
 SPATIAL: dict[str, AddContact] = {
     "two spatial bodies, no friction": lambda mbs, master, disc: None,
     "the same with a ring": ours(RING),
+    "the same under a load of the radius": ours(RING, lambda radius: FIG5.friction_force),
 }
 
 
@@ -187,12 +196,17 @@ def load_of_time(time: float) -> float:
     return FIG5.friction_force
 
 
+def constant_load(time: float) -> float:
+    """Return a load in N as numba can compile it."""
+    return 0.05
+
+
 AXIAL: dict[str, AddContact] = {
     "two rotors, no friction": lambda mbs, master, disc: None,
     "the same with a ring under a constant load": ours(RING),
     "under a load of time": ours(RING, load_of_time),
     "Stribeck, load of time": ours(RING | {"friction_coefficient": stribeck}, load_of_time),
-    "table over slip": ours(RING | {"friction_coefficient": [[0.0, 0.3], [0.1, 0.28], [1.0, 0.25]]}),
+    "table over slip": ours(RING | {"friction_coefficient": TABLE}),
     "static over sliding friction": ours(RING | {"static_ratio": 1.1}),
     "with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "with an energy balance": balanced,

@@ -4,7 +4,8 @@ All that is public has its name here; where it comes from, and where to change i
 
 - ``parts``: what goes into a model of yours. Friction between two bodies, ``add_ring_friction`` with its handle
   ``RingFriction``, and by Exudyn's own contact ``add_native_friction``; an elastic support, ``add_radial_support``
-  with its ``RadialSupport``; the ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``.
+  with its ``RadialSupport``; the ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``. Friction
+  and support are ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport`` too, as soon as this package is imported.
 - ``solver``: how to run it. ``solve_dynamic`` is ``mbs.SolveDynamic`` that tells what went wrong;
   ``largest_stable_step`` is for explicit solvers with a fixed step.
 - ``drivetrain``: engine, clutch and vehicle, made of these parts. ``Drivetrain`` has the parameters,
@@ -22,6 +23,7 @@ from exudyn_models.paper.models.disc_on_disc import build_disc_on_disc
 from exudyn_models.paper.models.pin_on_disc import build_pin_on_disc
 from exudyn_models.paper.native_contact import simulate_with_native_contact
 from exudyn_models.paper.simulate import simulate, simulate_fixed_step
+from exudyn_models.parts import create_functions as _create_functions  # noqa: F401  for its methods of mbs
 from exudyn_models.parts.energy_balance import EnergyBalance, add_energy_balance, spring_energy
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.native_contact import add_native_friction

@@ -32,15 +32,13 @@ def kernels() -> Iterator[tuple[str, Callable[[], Any]]]:
 
 
 def _friction_on_pairs() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Yield the user functions for friction; they differ by the number of coordinates only."""
-    from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
-    from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-    from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, SIZES, TAIT_BRYAN
-    from exudyn_models.forces.user_functions import force_and_jacobian
+    """Yield the user functions for friction; they differ by the number of coordinates, and by whether μN is one."""
+    from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, TAIT_BRYAN
 
     names = {GROUND: "the ground", ROTOR: "rotor", PLANAR: "planar body", TAIT_BRYAN: "body in space"}
-    ring = 0.1, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.1
-    for master, disc in (
+    for kinds in (
+        (GROUND, ROTOR),
+        (ROTOR, ROTOR),
         (GROUND, PLANAR),
         (GROUND, TAIT_BRYAN),
         (ROTOR, PLANAR),
@@ -50,6 +48,21 @@ def _friction_on_pairs() -> Iterator[tuple[str, Callable[[], Any]]]:
         (PLANAR, TAIT_BRYAN),
         (TAIT_BRYAN, TAIT_BRYAN),
     ):
-        reference = np.zeros(SIZES[master] + SIZES[disc])
-        functions = partial(force_and_jacobian, (master, disc), reference, LoadAndCoefficient(ring, 0.1, 1.0))
-        yield f"friction between {names[master]} and {names[disc]}", functions
+        between = f"friction between {names[kinds[0]]} and {names[kinds[1]]}"
+        yield between, partial(_call_both, kinds, 0.1)
+        yield f"{between}, of the slip", partial(_call_both, kinds, [[0.0, 0.1], [1.0, 0.1]])
+
+
+def _call_both(kinds: tuple[int, int], coefficient: Any) -> None:
+    """Call force and Jacobian, which compiles them."""
+    from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
+    from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
+    from exudyn_models.forces.slip_kinematics import SIZES
+    from exudyn_models.forces.user_functions import force_and_jacobian
+
+    size = SIZES[kinds[0]] + SIZES[kinds[1]]
+    ring = 0.1, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.1
+    force, jacobian = force_and_jacobian(kinds, np.zeros(size), LoadAndCoefficient(ring, coefficient, 1.0))
+    motion = None, 0.0, 0, [0.1] * size, [0.1] * size
+    force(*motion)
+    jacobian(*motion, 0.0, 1.0)

@@ -17,6 +17,7 @@ from exudyn_models.forces.friction_laws import (
     slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.product import Law, friction_force_under
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, Floats, Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
@@ -45,12 +46,13 @@ def friction_derivatives_on_nodes(
     position_factor: float,
     velocity_factor: float,
     contact: Contact,
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of those by the coordinates and by the velocities.
+    They are weighted sums of those by the coordinates and by the velocities. What ``friction_on_nodes`` returns comes
+    with them.
     """
-    to_slip, _, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = to_slip @ velocities
     angle = math.atan2(sine, cosine)
     force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
@@ -78,29 +80,23 @@ def friction_derivatives_on_nodes(
             motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
         motion_by_nodes[2, j] = slip_change[2]
         motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
-    return by_nodes, motion_by_nodes
+    forces = force[0] * to_slip[0] + force[1] * to_slip[1] + force[2] * to_slip[2]
+    return by_nodes, motion_by_nodes, (forces, radius_of_disc(kinds, coordinates, axes), speed, spin)
 
 
 @compiled
-def power_on_any(parameters: Floats, q: Floats, q_t: Floats) -> tuple[float, float, float, float]:
-    """Return what friction turns into heat in W, the disc's radius in m, P in m/s and S in rad/s.
+def force_on_any(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
+    """Return the generalised forces on both nodes, as a function for Exudyn behind its first two arguments.
 
-    ``parameters`` are those of ``force_on_any``.
+    ``parameters`` are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes; there is
+    a ``law`` where the friction force is no number, and 1 N in its place.
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
     forces, radius, speed, spin = friction_on_nodes(kinds, coordinates, velocities, contact)
-    power: float = -np.dot(forces, velocities)
-    return power, radius, speed, spin
-
-
-@compiled
-def force_on_any(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
-    """Return the generalised forces on both nodes, as a function for Exudyn behind its ``parameters``.
-
-    These are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes.
-    """
-    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    forces, _, _, _ = friction_on_nodes(kinds, coordinates, velocities, contact)
+    if law is not None:
+        forces *= friction_force_under(law, contact[3], t, radius, speed, spin)
     result: Floats = to_tuple(forces, len(q))
     return result
 

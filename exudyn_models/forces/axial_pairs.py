@@ -1,4 +1,4 @@
-"""Friction of a rotor on a rotor or on the ground, both about one axis: so short that it needs no compiled code.
+"""Friction of a rotor on a rotor or on the ground, both about one axis. A constant one needs no compiled code.
 
 All of a contact slips in its own direction there, and force and slip of the centre are zero: with the mean radius r
 of the contact P = r·|S|, and M = −μN·r·sign(S), or that times P/ε where P < ε. Points share that alike.
@@ -7,18 +7,18 @@ of the contact P = r·|S|, and M = −μN·r·sign(S), or that times P/ε where 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import NONE_HELD, mean_radius
+from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
+from exudyn_models.forces.jit import compiled, taking_lists
+from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
-
-Moment = Callable[[float, float], float]
-"""M in N m on the disc, of the time in s and S in rad/s."""
 
 
 def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
@@ -28,16 +28,13 @@ def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
 
 def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, Any]:
     """Return force and Jacobian as the user functions that Exudyn calls."""
-    moment, grounded = _moment(factors), kinds[0] == GROUND
-
-    def force_on_ground(
-        mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]
-    ) -> list[float]:
-        return [moment(t, q_t[0])]
-
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        of_disc = moment(t, q_t[1] - q_t[0])
-        return [-of_disc, of_disc]
+    grounded, contact = kinds[0] == GROUND, factors.geometry
+    if factors.contact is not None:
+        force = _constant(grounded, factors.contact)
+    else:
+        law, size = (force_on_ground, 1) if grounded else (force_on_rotor, 2)
+        evaluate = taking_lists(law, 2, LAW, None, float, None, None, size)
+        force = partial(evaluate, [mean_radius(contact), contact[3]], factors.law)
 
     def jacobian(
         mbs: Any,
@@ -53,37 +50,49 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
         # Exudyn takes derivatives of the left-hand side.
         return -by_spin * (np.ones((1, 1)) if grounded else np.array([[1.0, -1.0], [-1.0, 1.0]]))
 
-    return (force_on_ground if grounded else force), jacobian
+    return force, jacobian
 
 
-def power_on_axis(factors: LoadAndCoefficient, t: float, spin: float) -> float:
-    """Return what friction turns into heat in W, at the time t (s) and S (rad/s)."""
-    contact = factors.geometry
-    speed = mean_radius(contact) * abs(spin)
-    friction = factors.friction_force(t, 0.0, speed, spin)
-    return friction * speed * min(1.0, speed / contact[3])
-
-
-def _moment(factors: LoadAndCoefficient) -> Moment:
-    contact = factors.geometry
+def _constant(grounded: bool, contact: Contact) -> Any:
     radius = mean_radius(contact)
     creep = radius / contact[3]  # P/ε over |S|
-    if factors.contact is not None:
-        limit = factors.contact[2] * radius
+    limit = contact[2] * radius
 
-        def constant(t: float, spin: float) -> float:
-            share = creep * spin
-            return -limit if share > 1.0 else limit if share < -1.0 else -limit * share
+    def on_ground(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        share = creep * q_t[0]
+        return [-limit if share > 1.0 else limit if share < -1.0 else -limit * share]
 
-        return constant
-    friction_force = factors.friction_force
+    def on_rotor(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        share = creep * (q_t[1] - q_t[0])
+        of_disc = -limit if share > 1.0 else limit if share < -1.0 else -limit * share
+        return [-of_disc, of_disc]
 
-    def moment(t: float, spin: float) -> float:
-        share = creep * spin
-        share = 1.0 if share > 1.0 else -1.0 if share < -1.0 else share
-        return -friction_force(t, 0.0, radius * abs(spin), spin) * radius * share
+    return on_ground if grounded else on_rotor
 
-    return moment
+
+@compiled
+def force_on_ground(
+    parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
+    """Return the moment on a rotor from mean radius (m) and ε (m/s), for Exudyn behind two arguments."""
+    return (_moment(parameters, law, t, q_t[0]),)
+
+
+@compiled
+def force_on_rotor(
+    parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
+    """Return the moments on both rotors, as ``force_on_ground``."""
+    of_disc = _moment(parameters, law, t, q_t[1] - q_t[0])
+    return -of_disc, of_disc
+
+
+@compiled
+def _moment(parameters: Floats, law: Law, t: float, spin: float) -> float:
+    radius, epsilon = parameters
+    speed = radius * abs(spin)
+    limit = radius * friction_force_under(law, epsilon, t, 0.0, speed, spin)
+    return -math.copysign(limit * min(1.0, speed / epsilon), spin)
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:

@@ -26,6 +26,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.pressures import mean_radius_of
 from exudyn_models.forces.slip_potential import (
     slip_potential_gradient,
     slip_potential_hessian,
@@ -42,9 +43,11 @@ NONE_HELD = -1
 Contact = tuple[float, int, float, float, int, float]
 """R in m, number of points, μN in N, ε in m/s, the point held or ``NONE_HELD``, and the inner radius in m.
 
-The inner radius is R, but of an annulus, whose outer radius is R. The friction of the point held is viscous at any
-slip: it models one that rests while the disc pivots about it: without the bend of its law at δ its friction is
-linear, and can not throw off Newton's iteration.
+The inner radius is R, but of an annulus, whose outer radius is R. In place of its number of points stands
+``CONTINUOUS`` or, under a pressure that is not uniform, what ``density_of`` returns for that, which is negative.
+
+The friction of the point held is viscous at any slip: it models one that rests while the disc pivots about it:
+without the bend of its law at δ its friction is linear, and can not throw off Newton's iteration.
 """
 
 CONTACT_SIZE = 6
@@ -61,8 +64,10 @@ def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
 def mean_radius(contact: Contact) -> float:
     """Return r in m, P over |S| of a disc that turns in place."""
     outer, points, _, _, _, inner = contact
-    if points != CONTINUOUS:
+    if points > CONTINUOUS:
         return outer
+    if points < CONTINUOUS:
+        return mean_radius_of(points, inner, outer)
     return 2.0 / 3.0 * (outer * outer + outer * inner + inner * inner) / (outer + inner)
 
 
@@ -110,12 +115,12 @@ def friction_of_slip(
 ) -> tuple[float, float, float]:
     """Return F_x, F_y (N) and M (N m) on the disc, whose centre slips with u (m/s) and which spins with φ̇ − ω."""
     radius, points, friction, epsilon, _, inner = contact
-    if points != CONTINUOUS:
+    if points > CONTINUOUS:
         return _force_of_points(ux, uy, radius * spin, angle, contact)
     fx = fy = moment = 0.0
     speed = math.sqrt(ux * ux + uy * uy)
     if speed > 0.0 or spin != 0.0:
-        by_speed, by_spin = slip_potential_gradient(speed, abs(spin), inner, radius)
+        by_speed, by_spin = slip_potential_gradient(speed, abs(spin), inner, radius, points)
         mean = by_speed * speed + by_spin * abs(spin)
         factor = -friction * (1.0 if mean > epsilon else mean / epsilon)
         if speed > 0.0:
@@ -130,8 +135,8 @@ def friction_of_slip(
 def slip_potential_of_contact(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
     """Return the slip potential P, the mean slip speed in m/s, for the arguments of ``friction_of_slip``."""
     radius, points, _, _, _, inner = contact
-    if points == CONTINUOUS:
-        return slip_potential_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius)
+    if points <= CONTINUOUS:
+        return slip_potential_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius, points)
     mean = 0.0
     for i in range(points):
         mean += abs(_slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * i / points, radius)[1]) / points
@@ -249,7 +254,7 @@ def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
     """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
-    if contact[1] == CONTINUOUS:
+    if contact[1] <= CONTINUOUS:
         return _derivatives_of_circles(ux, uy, spin, contact)
     return _derivatives_of_points(ux, uy, spin, angle, contact)
 
@@ -342,13 +347,13 @@ def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
     """As ``derivatives_by_slip``; nothing depends on the angle here."""
-    radius, _, friction, epsilon, _, inner = contact
+    radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     # At rest the slope depends on the direction in which slip starts: take one without spin.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
-    by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius)
-    by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius)
+    by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
+    by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)
     across = by_speed / size if size > 0.0 else by_speed_twice
     by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
     mean = by_speed * speed + by_spin * spin

@@ -41,15 +41,17 @@ extending.register_model(Floats)(numba.core.datamodel.models.UniTupleModel)
 extending.unbox(Floats)(_tuple_of_list)
 
 
-def taking_lists(function: Callable[..., Any], *sizes: int | type[float] | None) -> Callable[..., Any]:
+def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
     """Return a compiled function of tuples as one of lists of as many floats, without numba's choice by type.
 
-    ``sizes`` says for every argument how long its list is; or it is ``float``, or None for an argument that the
-    function does not look at, which may be anything.
+    ``sizes`` says for every argument how long its list is; or it is ``float``, or a type of numba, or None for an
+    argument that the function does not look at, which may be anything.
 
     Raises, when it is called, ``TypeError`` for anything else than lists of numbers, or if one is too short.
     """
     floats: Any = Floats
     kinds = {None: numba.none, float: numba.float64}
-    signature = tuple(kinds[size] if size in kinds else floats(numba.float64, size) for size in sizes)
+    signature = tuple(
+        floats(numba.float64, size) if isinstance(size, int) else kinds.get(size, size) for size in sizes
+    )
     return cast(Callable[..., Any], cast(Any, function).called_by_python.compile(signature))

@@ -5,38 +5,48 @@ Their arguments are those of the functions for any pair, in ``any_pair``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import contact_of, ring_friction, ring_friction_derivatives
+from exudyn_models.forces.friction_laws import (
+    contact_of,
+    ring_friction,
+    ring_friction_derivatives,
+    slip_potential_of_contact,
+)
 from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.product import Law, friction_force_under
 from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
 
 
 @compiled
-def force_on_ground(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+def force_on_ground(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
     """Return the generalised forces on a planar disc."""
-    contact, _ = contact_of(parameters)
-    fx, fy, moment, _ = ring_friction(*_on_ground(parameters, q, q_t), contact)
+    fx, fy, moment, _ = _friction(_on_ground(parameters, q, q_t), parameters, law, t)
     return fx, fy, moment
 
 
 @compiled
-def force_on_rotor(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+def force_on_rotor(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
     """Return the generalised forces on a rotor and a planar disc."""
-    contact, _ = contact_of(parameters)
-    fx, fy, moment, master_moment = ring_friction(*_on_rotor(parameters, q, q_t), contact)
+    fx, fy, moment, master_moment = _friction(_on_rotor(parameters, q, q_t), parameters, law, t)
     return master_moment, fx, fy, moment
 
 
 @compiled
-def force_on_planar(parameters: Floats, mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+def force_on_planar(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
     """Return the generalised forces on a planar master and a planar disc."""
-    contact, _ = contact_of(parameters)
-    fx, fy, moment, master_moment = ring_friction(*_on_planar(parameters, q, q_t), contact)
+    fx, fy, moment, master_moment = _friction(_on_planar(parameters, q, q_t), parameters, law, t)
     return -fx, -fy, master_moment, fx, fy, moment
 
 
@@ -102,6 +112,23 @@ LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
 
 Relative = tuple[float, float, float, float, float, float, float]
 """What the kernel takes of the motion: dx, dy, angle, dvx, dvy and both spins."""
+
+
+@compiled
+def _friction(
+    motion: Relative, parameters: Floats, law: Law | None, t: float
+) -> tuple[float, float, float, float]:
+    """Return force and moment on the disc and moment on the master, under a law of which μN is not a number."""
+    contact, _ = contact_of(parameters)
+    if law is None:
+        return ring_friction(*motion, contact)
+    dx, dy, angle, dvx, dvy, master_spin, disc_spin = motion
+    radius, points, _, epsilon, held, inner = contact
+    spin = disc_spin - master_spin
+    ux, uy = dvx + master_spin * dy, dvy - master_spin * dx
+    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+    friction = friction_force_under(law, epsilon, t, math.sqrt(dx * dx + dy * dy), speed, spin)
+    return ring_friction(*motion, (radius, points, friction, epsilon, held, inner))
 
 
 @compiled

@@ -5,12 +5,12 @@ P is the mean slip speed over the contact; friction is −μN times its gradient
 A circle of radius r whose centre slips with U and which turns with S over what it touches has a rim that moves with
 W = r·|S|. Its P(U, W) is a complete elliptic integral, from an arithmetic-geometric mean without cancellation.
 
-An annulus under uniform pressure has the mean of the rings that it consists of, by Gauss's rule over the radius.
-The slopes of P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point of the ring is at rest: the rule is split
-there, and a substitution r = r₀ + (r₁ − r₀)·t³ on either side draws its rings towards r₀. So the error of n rings on
-a side falls like n^(−12), and that of the curvatures, which have ln|r − r₀|, like n^(−6): for the 12 taken here they
-are 4e-10 and 5e-7 of the largest values. Where r₀ is outside of the annulus the same substitution leaves 1e-14, and
-more only within a thousandth of its edge.
+An annulus has the mean of the rings that it consists of, under a uniform or another pressure, by Gauss's rule over
+the radius. The slopes of P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point of the ring is at rest: the
+rule is split there, and a substitution r = r₀ + (r₁ − r₀)·t³ on either side draws its rings towards r₀. So the error
+of n rings on a side falls like n^(−12), and that of the curvatures, which have ln|r − r₀|, like n^(−6): for the 12
+taken here they are 4e-10 and 5e-7 of the largest values. Where r₀ is outside of the annulus the same substitution
+leaves 1e-14, and more only within a thousandth of its edge.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import math
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.pressures import share_of_ring
 from reference_model.systems import FloatArray
 
 NEAREST = 1e-15
@@ -41,10 +42,12 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(RINGS)
 
 
 @compiled
-def slip_potential_gradient(speed: float, spin: float, inner: float, outer: float) -> tuple[float, float]:
+def slip_potential_gradient(
+    speed: float, spin: float, inner: float, outer: float, density: int
+) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), a ring if alike.
 
-    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero.
+    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. The ``density`` of pressure is that of ``density_of``.
     """
     if inner == outer:
         by_speed, by_rim = ring_potential_slopes(speed, outer * spin)
@@ -55,17 +58,18 @@ def slip_potential_gradient(speed: float, spin: float, inner: float, outer: floa
         if length != 0.0:
             for i in range(RINGS):
                 radius, width = _ring(i, resting, start, length)
-                weight = width * radius
+                share = radius if density == 0 else share_of_ring(density, radius, inner, outer)
+                weight = width * share
                 along_slip, along_rim = ring_potential_slopes(speed, radius * spin)
                 by_speed += weight * along_slip
                 by_spin += weight * radius * along_rim
-    total = (outer - inner) * (outer + inner) / 2.0
+    total = (outer - inner) * (outer + inner) / 2.0 if density == 0 else 1.0
     return by_speed / total, by_spin / total
 
 
 @compiled
 def slip_potential_hessian(
-    speed: float, spin: float, inner: float, outer: float
+    speed: float, spin: float, inner: float, outer: float, density: int
 ) -> tuple[float, float, float]:
     """Return ∂²P/∂U², ∂²P/∂U∂|S| and ∂²P/∂|S|² for the arguments of ``slip_potential_gradient``."""
     if inner == outer:
@@ -77,12 +81,13 @@ def slip_potential_hessian(
         if length != 0.0:
             for i in range(RINGS):
                 radius, width = _ring(i, resting, start, length)
-                weight = width * radius
+                share = radius if density == 0 else share_of_ring(density, radius, inner, outer)
+                weight = width * share
                 along_slip, across, along_rim = ring_potential_curvatures(speed, radius * spin)
                 by_speed_twice += weight * along_slip
                 mixed += weight * radius * across
                 by_spin_twice += weight * radius * radius * along_rim
-    total = (outer - inner) * (outer + inner) / 2.0
+    total = (outer - inner) * (outer + inner) / 2.0 if density == 0 else 1.0
     return by_speed_twice / total, mixed / total, by_spin_twice / total
 
 
@@ -176,11 +181,11 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
 
 
 @compiled
-def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: float) -> float:
+def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: float, density: int) -> float:
     """Return P in m/s for the arguments of ``slip_potential_gradient``, which both may be zero here."""
     if speed == 0.0 and spin == 0.0:
         return 0.0
-    by_speed, by_spin = slip_potential_gradient(speed, spin, inner, outer)
+    by_speed, by_spin = slip_potential_gradient(speed, spin, inner, outer, density)
     return by_speed * speed + by_spin * spin
 
 
@@ -189,5 +194,5 @@ def ring_potentials(speeds: FloatArray, rims: FloatArray) -> FloatArray:
     """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
     result = np.zeros(len(speeds))
     for i in range(len(speeds)):
-        result[i] = slip_potential_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0)
+        result[i] = slip_potential_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0, 0)
     return result

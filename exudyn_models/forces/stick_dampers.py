@@ -61,7 +61,7 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
     The disc's ``angle`` (rad) over the master is that of its first point.
     """
     outer, points, _, epsilon, held, _ = contact
-    if points == CONTINUOUS:
+    if points <= CONTINUOUS:
         radius = mean_radius(contact)
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
     angles = angle + 2.0 * math.pi * np.arange(points) / points

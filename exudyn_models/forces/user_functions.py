@@ -1,27 +1,27 @@
 """Force and Jacobian of a friction contact as the user functions that Exudyn calls.
 
-Where μN is a number Exudyn calls compiled code as it would call Python; where it is a function of time there is a
-call of Python in between, and one that depends on the motion multiplies in Python what compiled code finds for 1 N.
-Rotors on one axis need no compiled code.
+Exudyn calls compiled code as it would call Python, and this asks functions for load and coefficient by itself. A
+Jacobian under a friction force that depends on the motion is put together in Python. Two rotors on one axis under a
+friction force that is a number need no compiled code.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
-from typing import Any, cast
+from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
 from exudyn_models.forces.any_pair import (
     force_on_any,
     friction_derivatives_on_nodes,
-    friction_on_nodes,
     jacobian_on_any,
 )
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
-from exudyn_models.forces.friction_laws import CONTACT_SIZE
+from exudyn_models.forces.friction_laws import CONTACT_SIZE, Contact
 from exudyn_models.forces.jit import taking_lists
+from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import LAWS
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
@@ -41,15 +41,8 @@ def force_and_jacobian(
     """
     if on_one_axis(kinds, factors):
         force, jacobian = functions_on_axis(kinds, factors)
-    elif factors.depends_on_motion:
-        force = _force_by_motion(kinds, reference, factors)
-        jacobian = _jacobian_by_motion(kinds, reference, factors)
     else:
-        laws = LAWS.get(kinds, (force_on_any, jacobian_on_any))
-        rest, size = [*kinds, *reference.tolist()], len(reference)
-        sizes = CONTACT_SIZE + len(rest), None, None, None, size, size
-        force = _under(factors, rest, taking_lists(laws[0], *sizes))
-        jacobian = _under(factors, rest, taking_lists(laws[1], *sizes, float, float))
+        force, jacobian = _compiled_functions(kinds, reference, factors)
     setattr(force, _DAMPERS, StickDampers(kinds, reference, factors))
     return force, jacobian
 
@@ -62,25 +55,32 @@ def stick_dampers_of(force: Any) -> StickDampers | None:
     return getattr(force, _DAMPERS, None)
 
 
-def _under(factors: LoadAndCoefficient, rest: Floats, evaluate: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function with parameters before its other arguments as one with those of the ``factors``."""
-    if factors.contact is not None:
-        return partial(evaluate, [float(number) for number in (*factors.contact, *rest)])
+def _compiled_functions(
+    kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
+) -> tuple[ForceFunction, JacobianFunction]:
+    force, jacobian = LAWS.get(kinds, (force_on_any, jacobian_on_any))
+    rest, size = [*kinds, *reference.tolist()], len(reference)
+    numbers = CONTACT_SIZE + len(rest)
+    law_and_time = (None, None, None) if factors.law is None else (LAW, None, float)
+    evaluate = taking_lists(force, numbers, *law_and_time, None, size, size)
+    bound = partial(evaluate, _numbers(factors.contact or factors.geometry, rest), factors.law)
+    if factors.depends_on_motion:
+        return bound, _jacobian_by_motion(kinds, reference, factors)
 
-    def function(mbs: Any, t: float, *motion: Any) -> Any:
-        return evaluate([*factors.contact_at(t), *rest], mbs, t, *motion)
+    @cache  # compiled where it is needed first: explicit solvers don't
+    def derive() -> Callable[..., Any]:
+        return taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
 
-    return function
+    constant = None if factors.contact is None else _numbers(factors.contact, rest)
+
+    def jacobian_by_time(mbs: Any, t: float, *motion: Any) -> Any:
+        return derive()(constant or _numbers(factors.contact_at(t), rest), mbs, t, *motion)
+
+    return bound, jacobian_by_time
 
 
-def _force_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> ForceFunction:
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        contact = factors.contact_at(t)
-        forces, *motion = friction_on_nodes(kinds, reference + q, np.array(q_t), contact)
-        forces *= factors.friction_force(t, *motion)
-        return cast(list[float], forces.tolist())
-
-    return force
+def _numbers(contact: Contact, rest: Floats) -> list[float]:
+    return [float(number) for number in (*contact, *rest)]
 
 
 def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> JacobianFunction:
@@ -93,12 +93,9 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        contact = factors.contact_at(t)
-        state = kinds, reference + q, np.array(q_t)
-        derivatives, motion_derivatives = friction_derivatives_on_nodes(
-            *state, position_factor, velocity_factor, contact
+        derivatives, motion_derivatives, (forces, *motion) = friction_derivatives_on_nodes(
+            kinds, reference + q, np.array(q_t), position_factor, velocity_factor, factors.geometry
         )
-        forces, *motion = friction_on_nodes(*state, contact)
         derivatives *= factors.friction_force(t, *motion)
         derivatives += np.outer(forces, factors.friction_force_slopes(t, *motion) @ motion_derivatives)
         return -derivatives  # Exudyn takes those of the left-hand side

@@ -6,16 +6,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import mul
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.any_pair import power_on_any
-from exudyn_models.forces.axial_pairs import on_one_axis, power_on_axis
-from exudyn_models.forces.friction_laws import CONTACT_SIZE, friction_of_slip, slip_potential_of_contact
-from exudyn_models.forces.jit import taking_lists
+from exudyn_models.forces.axial_pairs import on_one_axis
+from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
@@ -66,6 +65,22 @@ class RingFriction:
     _kinds: Kinds = field(repr=False)
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
+    _functions: dict[str, Any] = field(repr=False)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether friction is found without a function of Python.
+
+        That is so if coefficient and load are numbers, tables or functions of numba (``@numba.njit``), whose values
+        for outer names are those of when it compiled them. Any other function is called as it is, from compiled code
+        too, at the cost of what it does itself.
+        """
+        return self._factors.compiled
+
+    @property
+    def effective_radius(self) -> float:
+        """The lever in m of μN where the disc only turns: M = μN·r, of all plates."""
+        return mean_radius(self._factors.geometry)
 
     def change(
         self,
@@ -86,8 +101,9 @@ class RingFriction:
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
         )
-        functions = force_and_jacobian(self._kinds, self._reference, factors)
-        for name, function in zip(("force", "jacobian"), functions, strict=True):
+        force, jacobian = force_and_jacobian(self._kinds, self._reference, factors)
+        self._functions.update(force=force, jacobian=jacobian)
+        for name, function in self._functions.items():
             self.mbs.SetObjectParameter(self.item, f"{name}UserFunction", function)
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
@@ -160,21 +176,27 @@ class RingFriction:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
-        if on_one_axis(self._kinds, self._factors):
-            return power_on_axis(self._factors, t, self._spin_on_axis(mbs))
-        contact = self._factors.contact or self._factors.contact_at(t)
-        power, *motion = self._power([*contact, *self._geometry], *self._coordinates(mbs))
-        return power * self._factors.friction_force(t, *motion) if self._factors.depends_on_motion else power
+        get_coordinates, get_velocities, first, second = self._access
+        values = get_velocities()
+        velocities = values[first].tolist()
+        if second:
+            velocities += values[second].tolist()
+        coordinates = velocities  # rotors on one axis make nothing of them
+        if get_coordinates:
+            values = get_coordinates()
+            coordinates = values[first].tolist()
+            if second:
+                coordinates += values[second].tolist()
+        forces = self._functions["force"](mbs, t, 0, coordinates, velocities)
+        return -float(sum(map(mul, forces, velocities)))
 
-    @cached_property
-    def _power(self) -> Callable[..., tuple[float, float, float, float]]:
-        size = len(self._reference)
-        return taking_lists(power_on_any, CONTACT_SIZE + len(self._geometry), size, size)
-
-    @cached_property
-    def _geometry(self) -> list[float]:
-        """The kinds of both nodes and their reference coordinates, which compiled functions take."""
-        return [*self._kinds, *self._reference.tolist()]
+    @cached_property  # finding them costs as much as calling them
+    def _access(self) -> tuple[Any, Any, slice, slice | None]:
+        """What returns coordinates, if they are needed, and velocities of the assembled model, and where to look."""
+        data = self.mbs.systemData
+        on_axis = on_one_axis(self._kinds, self._factors)
+        first, second, *_ = *self._places, None
+        return None if on_axis else data.GetODE2Coordinates, data.GetODE2Coordinates_t, first, second
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
@@ -198,30 +220,26 @@ class RingFriction:
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
         """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
-        q, q_t = self._coordinates(mbs, configuration)
-        return self._reference + q, np.array(q_t)
+        data = mbs.systemData
+        q, q_t = (
+            np.concatenate(
+                [values[place] for place in self._places]
+            )  # half the cost of the nodes' own outputs
+            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
+        )
+        return self._reference + q, q_t
 
-    def _coordinates(
-        self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
-    ) -> tuple[list[float], list[float]]:
-        """Return coordinates, without their reference values, and velocities of both nodes, n each."""
-        data = mbs.systemData  # a third of the cost of the nodes' own outputs
-        q = data.GetODE2Coordinates(configuration).tolist()
-        q_t = data.GetODE2Coordinates_t(configuration).tolist()
-        places = self._places(mbs)
-        return [q[i] for i in places], [q_t[i] for i in places]
-
-    def _places(self, mbs: Any) -> list[int]:
-        """Return where the coordinates of both nodes stand among those of the model."""
+    @cached_property  # nodes that are added later come behind
+    def _places(self) -> list[Any]:
+        """Where the coordinates of the nodes are among those of the assembled model."""
         kinds = self._kinds[-len(self.nodes) :]
-        starts = map(mbs.GetNodeODE2Index, self.nodes)
-        return [start + i for start, kind in zip(starts, kinds, strict=True) for i in range(SIZES[kind])]
-
-    def _spin_on_axis(self, mbs: Any) -> float:
-        """Return S in rad/s of a rotor on a rotor or on the ground."""
-        velocities = mbs.systemData.GetODE2Coordinates_t()
-        *master, disc = (float(velocities[mbs.GetNodeODE2Index(node)]) for node in self.nodes)
-        return disc - sum(master)
+        places: list[slice] = []
+        for node, kind in zip(self.nodes, kinds, strict=True):
+            start = self.mbs.GetNodeODE2Index(node)
+            if places and places[-1].stop == start:
+                start = places.pop().start
+            places.append(slice(start, self.mbs.GetNodeODE2Index(node) + SIZES[kind]))
+        return places
 
     def _capacity_share(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, at most 1, or None where friction holds nothing."""

@@ -16,7 +16,7 @@ import exudyn as exu
 import exudyn.itemInterface
 
 from exudyn_models.forces.friction_laws import CONTINUOUS
-from exudyn_models.forces.load_and_coefficient import checked_not_negative
+from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
 from exudyn_models.parts.ring_friction import checked_contact, checked_pair
 from reference_model.systems import finite_number

@@ -19,7 +19,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.load_and_coefficient import checked_not_negative
+from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.radial_springs import (
     ON_GROUND,
     ON_ROTOR,

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
+from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import GROUND, KINDS, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
@@ -55,13 +56,14 @@ def add_ring_friction(
     contact_points: int | None = None,
     static_ratio: float = 1.0,
     plates: int = 1,
+    pressure: Pressure = "uniform",
     held: int | None = None,
 ) -> RingFriction:
     """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
 
     The contact is a circle of ``contact_radius`` about the origin of the disc's node, or ``contact_points`` points on
     it that turn with the disc: point i at the angle φ + 2πi/n. The points share the normal load N alike. Or it is the
-    annulus between ``inner_radius`` and ``outer_radius`` under uniform pressure. The law is that of
+    annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure`` over its radius. The law is that of
     ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
 
     Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
@@ -112,6 +114,9 @@ def add_ring_friction(
         speeds ε and 2ε: what that changes is of first order in ε.
     plates : int
         Pairs of faces in contact, >= 1, one behind the other: friction is that of one times their number.
+    pressure : {"uniform", "wear"} or callable
+        Of an annulus: alike everywhere; ∝ 1/r, as it comes to be where linings wear evenly; or a smooth function of
+        the radius in m that returns it >= 0 in any unit, because the load says how large it is.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
@@ -124,13 +129,15 @@ def add_ring_friction(
 
     """
     contact = _checked_geometry(
-        contact_radius, inner_radius, outer_radius, regularisation, contact_points, held
+        contact_radius, inner_radius, outer_radius, regularisation, contact_points, held, pressure
     )
     factors = LoadAndCoefficient(contact, friction_coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
-    item = add_connector(mbs, nodes, *force_and_jacobian(kinds, reference, factors))
-    return RingFriction(mbs, item, nodes, kinds, reference, factors)
+    force, jacobian = force_and_jacobian(kinds, reference, factors)
+    item = add_connector(mbs, nodes, force, jacobian)
+    functions = {"force": force, "jacobian": jacobian}
+    return RingFriction(mbs, item, nodes, kinds, reference, factors, functions)
 
 
 def checked_pair(
@@ -158,15 +165,20 @@ def _checked_geometry(
     regularisation: float,
     contact_points: int | None,
     held: int | None,
+    pressure: Pressure,
 ) -> Contact:
     """Return the contact, with 1 N in place of μN; raise ``ValueError`` if there is none like it."""
     if inner_radius is None and outer_radius is None:
         radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         inner = radius
+        if pressure != "uniform":
+            raise ValueError(
+                f"pressure = {pressure!r}: it must be left out but for an annulus, with inner_radius and outer_radius"
+            )
     else:
         inner, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
-        points, epsilon = CONTINUOUS, checked_regularisation(regularisation)
-    if held is not None and held not in range(1, 1 + points):
+        points, epsilon = density_of(pressure, inner, radius), checked_regularisation(regularisation)
+    if held is not None and held not in range(1, 1 + points):  # none of a whole circle
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )

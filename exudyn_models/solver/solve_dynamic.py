@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from contextlib import closing
 from typing import Any
 
 import exudyn as exu
 
+from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.step_limit import StepCheck
 from reference_model.trajectory import SimulationError
@@ -15,9 +18,18 @@ IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.Trapez
 
 
 def solve_dynamic(
-    mbs: Any, simulationSettings: Any, solverType: Any = None, updateInitialValues: bool = False
+    mbs: Any,
+    simulationSettings: Any,
+    solverType: Any = None,
+    updateInitialValues: bool = False,
+    *,
+    breaks: Sequence[float] = (),
 ) -> None:
     """Run ``mbs.SolveDynamic`` with the same arguments, and raise what it does not tell.
+
+    A step across a jump of a load is wrong by the jump times the part of the step that lies before it, of any order
+    the solver may be, and by more under an implicit one. With ``breaks`` the run ends at these times, from before,
+    and goes on from there.
 
     Exudyn's explicit solvers ignore algebraic constraints, or lose their order where they eliminate them, and they go
     on with a state that is not finite and report success. A look at every step, which costs about 1.5 μs, ends the
@@ -39,11 +51,13 @@ def solve_dynamic(
         In place of that of the settings.
     updateInitialValues : bool
         Let the next run go on from where this one ends.
+    breaks : sequence of float
+        In s, in growing order and within the run: where a load, a coefficient or any other function jumps.
 
     Raises
     ------
     ValueError
-        If the solver is explicit and the model has algebraic constraints.
+        If the solver is explicit and the model has algebraic constraints, or ``breaks`` are none.
     SimulationError
         If a step does not converge, a matrix is singular or a state is not finite.
     exudyn.ExudynError
@@ -54,6 +68,14 @@ def solve_dynamic(
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     _check_constraints(mbs, solver)
+    times = checked_breaks(breaks, simulationSettings.timeIntegration)
+    with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
+        for goes_on in parts:
+            _solve(mbs, simulationSettings, solver, goes_on)
+
+
+def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool) -> None:
+    """Run an assembled model without a break."""
     data = mbs.systemData
     start = reached = simulationSettings.timeIntegration.startTime
     finite = True

@@ -168,7 +168,7 @@ class StepCheck:
             f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5, which finds its step by itself, or "
             "an implicit solver",
             RuntimeWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -25,16 +25,16 @@ CONTACTS = {
 @pytest.mark.parametrize("contact", CONTACTS.values(), ids=CONTACTS)
 def test_closed_form_of_planar_pairs_is_the_law_for_any_pair(kinds, contact):
     size = sum(SIZES[kind] for kind in kinds)
-    sizes = CONTACT_SIZE + 2 + size, None, None, None, size, size
-    forces = [taking_lists(law, *sizes) for law in (LAWS[kinds][0], force_on_any)]
-    jacobians = [taking_lists(law, *sizes, float, float) for law in (LAWS[kinds][1], jacobian_on_any)]
+    first, motion = CONTACT_SIZE + 2 + size, (None, None, None, size, size)
+    forces = [taking_lists(law, first, None, *motion) for law in (LAWS[kinds][0], force_on_any)]
+    jacobians = [taking_lists(law, first, *motion, float, float) for law in (LAWS[kinds][1], jacobian_on_any)]
     rng = np.random.default_rng(0)
     for _ in range(20):
         reference, q, q_t = rng.normal(size=(3, size)).tolist()
-        arguments = [*contact, *kinds, *reference], None, 0.0, 0, q, q_t
-        planar, general = (np.array(force(*arguments)) for force in forces)
+        parameters, motion = [*contact, *kinds, *reference], (None, 0.0, 0, q, q_t)
+        planar, general = (np.array(force(parameters, None, *motion)) for force in forces)
         np.testing.assert_allclose(planar, general, rtol=0.0, atol=1e-13)
-        planar, general = (jacobian(*arguments, 3.0, 0.5) for jacobian in jacobians)
+        planar, general = (jacobian(parameters, *motion, 3.0, 0.5) for jacobian in jacobians)
         np.testing.assert_allclose(planar, general, rtol=0.0, atol=1e-11 * abs(general).max())
 
 

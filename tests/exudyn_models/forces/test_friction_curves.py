@@ -18,7 +18,9 @@ from pairs_of_bodies import (
 )
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.forces.friction_curves import curve_of_table, peak_over_sliding
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
+from exudyn_models.forces.laws.curves import peak_over_sliding
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 
 items: Any = exudyn.itemInterface
 
@@ -67,7 +69,11 @@ def test_all_words_together_keep_momenta_and_turn_energy_into_heat(kinds):
 
 
 def test_a_table_is_met_at_its_rows_monotone_between_and_constant_beyond():
-    curve = curve_of_table("friction_coefficient", TABLE)
+    factors = LoadAndCoefficient((0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12), TABLE, 1.0)
+
+    def curve(slip_speed):
+        return factors.friction_force(0.0, 0.0, slip_speed, 0.0)
+
     speeds, values = np.transpose(TABLE)
     np.testing.assert_allclose([curve(v) for v in speeds], values, rtol=1e-15)
     assert curve(1e6) == values[-1]

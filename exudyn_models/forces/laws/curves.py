@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.laws.calls import number_at
+from reference_model.systems import FloatArray
+
 ROUNDING = 0.01
 """Of the edge of ``peak_over_sliding``, so that its slope is finite there: 50 times that of a fall along a line."""
 
+COLUMNS = 5
+"""Of ``curve_of_table``: the slip speed where a piece begins, and its coefficients from the third power down."""
 
+
+@compiled
 def peak_over_sliding(share: float, static_ratio: float) -> float:
     """Return by how much friction exceeds that of sliding: ``static_ratio`` up to P/ε = ``share`` = 1, 1 from 2 on.
 
@@ -28,28 +35,36 @@ def peak_over_sliding(share: float, static_ratio: float) -> float:
     return static_ratio - (static_ratio - 1.0) * way / (math.sqrt(1.0 + ROUNDING**2) - ROUNDING)
 
 
-def curve_of_table(name: str, table: Any) -> Callable[..., float]:
-    """Return a coefficient as a function of ``slip_speed`` (m/s) from rows of a slip speed and its coefficient.
+def curve_of_table(name: str, table: Any) -> FloatArray:
+    """Return the pieces of a coefficient over the slip speed from rows of a slip speed (m/s) and its coefficient.
 
     It goes through all rows, smoothly and without overshoot (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
-    300, by SciPy's ``PchipInterpolator``), and stays at the last one beyond.
+    300, by SciPy's ``PchipInterpolator``), and stays at the last one beyond, which is the last of the pieces, of
+    shape (n, ``COLUMNS``).
 
     Raises ``ValueError`` if it is no such table.
     """
     speeds, values = _checked_table(name, table)
-    curve = PchipInterpolator(speeds, values)
-    starts, rows = speeds.tolist(), curve.c.T.tolist()
-    last, end = starts[-1], float(values[-1])
+    curve = np.vstack((PchipInterpolator(speeds, values).c.T, [0.0, 0.0, 0.0, values[-1]]))
+    return np.ascontiguousarray(np.column_stack((speeds, curve)))
 
-    def coefficient(slip_speed: float) -> float:
-        if slip_speed >= last:
-            return end
-        i = bisect_right(starts, slip_speed) - 1
-        a, b, c, d = rows[i]
-        way = slip_speed - starts[i]
-        return float(((a * way + b) * way + c) * way + d)
 
-    return coefficient
+@compiled
+def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> float:
+    """Return the coefficient at a slip speed >= 0 (m/s) on as many pieces of ``curve_of_table`` at an address."""
+    first, last = 0, int(pieces) - 1
+    while first < last:  # the piece is one of these
+        middle = (first + last + 1) // 2
+        if number_at(address, middle * COLUMNS) <= slip_speed:
+            first = middle
+        else:
+            last = middle - 1
+    start = first * COLUMNS
+    way = slip_speed - number_at(address, start)
+    value = number_at(address, start + 1)
+    for power in range(2, COLUMNS):
+        value = value * way + number_at(address, start + power)
+    return float(value)
 
 
 def _checked_table(name: str, table: Sequence[Sequence[float]]) -> tuple[Any, Any]:

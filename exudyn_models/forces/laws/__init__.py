@@ -1,0 +1,1 @@
+"""What coefficient and load may be: numbers, tables and functions, and how compiled code asks them."""

@@ -1,0 +1,109 @@
+"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts in Exudyn's own style, by its registry."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import exudyn as exu
+from exudyn.misc.extensionRegistry import extends, install
+
+from exudyn_models.forces.laws.pressures import Pressure
+from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
+from exudyn_models.parts.friction_sensors import RingFriction
+from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
+from exudyn_models.parts.ring_friction import add_ring_friction
+
+
+@extends(exu.MainSystem)
+def MainSystemCreateRingFriction(
+    mbs: Any,
+    bodyNumbers: Sequence[Any],
+    *,
+    frictionCoefficient: Coefficient,
+    normalLoad: NumberOrFunction,
+    regularisation: float,
+    contactRadius: float | None = None,
+    innerRadius: float | None = None,
+    outerRadius: float | None = None,
+    contactPoints: int | None = None,
+    staticRatio: float = 1.0,
+    plates: int = 1,
+    pressure: Pressure = "uniform",
+) -> RingFriction:
+    """Add friction between two bodies, master and disc; return its handle, with the ``item`` of the connector.
+
+    ``bodyNumbers`` are two, each an ObjectIndex or a NodeIndex, of master and disc. A ground of Exudyn at the global
+    origin, or None, is a master that rests. All else is as ``add_ring_friction`` has it: radii in m, N in N, ε in
+    m/s. Raises ``ValueError`` as that does, or if there are not two bodies.
+    """
+    master, disc = _two_bodies(mbs, bodyNumbers)
+    return add_ring_friction(
+        mbs,
+        master,
+        disc,
+        contact_radius=contactRadius,
+        inner_radius=innerRadius,
+        outer_radius=outerRadius,
+        friction_coefficient=frictionCoefficient,
+        normal_load=normalLoad,
+        regularisation=regularisation,
+        contact_points=contactPoints,
+        static_ratio=staticRatio,
+        plates=plates,
+        pressure=pressure,
+    )
+
+
+@extends(exu.MainSystem)
+def MainSystemCreateRadialSupport(
+    mbs: Any,
+    bodyNumbers: Sequence[Any],
+    *,
+    stiffness: float,
+    damping: float = 0.0,
+    hardening: float = 0.0,
+    stopGap: float = 0.0,
+    stopStiffness: float = 0.0,
+    offset: Sequence[float] = (0.0, 0.0),
+) -> RadialSupport:
+    """Add springs, a stop and a damper from a base to a disc; return its handle, with the ``item`` of the connector.
+
+    ``bodyNumbers`` are two, each an ObjectIndex or a NodeIndex, of base and disc. The base may be a ground of Exudyn
+    at the global origin, or None. All else is as ``add_radial_support`` has it: N/m, N s/m, N/m³, m. Raises
+    ``ValueError`` as that does, or if there are not two bodies.
+    """
+    base, disc = _two_bodies(mbs, bodyNumbers)
+    return add_radial_support(
+        mbs,
+        base,
+        disc,
+        stiffness=stiffness,
+        damping=damping,
+        hardening=hardening,
+        stop_gap=stopGap,
+        stop_stiffness=stopStiffness,
+        offset=offset,
+    )
+
+
+def _two_bodies(mbs: Any, numbers: Sequence[Any]) -> tuple[Any, Any]:
+    """Return both, the first as None if it is a ground; raise ``ValueError`` if there are not two."""
+    if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
+        raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
+    first, second = numbers
+    if type(first).__name__ != "ObjectIndex" or int(first) not in range(mbs.systemData.NumberOfObjects()):
+        return first, second
+    entry = mbs.GetObject(first)
+    if entry["objectType"] != "Ground":
+        return first, second
+    place = [float(value) for value in entry["referencePosition"]]
+    if any(place):
+        raise ValueError(
+            f"bodyNumbers[0] {int(first)} is an ObjectGround at {place}: it must be at the global origin, through "
+            "which the axis of the ground goes"
+        )
+    return None, second
+
+
+install()  # type: ignore[no-untyped-call]

@@ -1,0 +1,60 @@
+"""Runs that end where a load jumps and go on from there, as if they were one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from reference_model.systems import finite_number
+
+GAP = 1e-13
+"""Of the span of a run, left out on either side of a break, so that no step sees both of its sides."""
+
+
+def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
+    """Return the breaks in s; raise ``ValueError`` if they don't grow, or are not within the run."""
+    start, end = options.startTime, options.endTime
+    result = [finite_number(f"breaks[{i}]", value) for i, value in enumerate(breaks)]
+    for i, (before, value) in enumerate(zip([start, *result], result, strict=False)):
+        if not start < value < end:
+            raise ValueError(
+                f"breaks[{i}] = {value:g} s: it must be within the run, from {start:g} to {end:g} s"
+            )
+        if value <= before:
+            raise ValueError(f"breaks[{i}] = {value:g} s: it must be later than {before:g} s, the one before")
+    return result
+
+
+def parts_of_run(
+    mbs: Any, settings: Any, breaks: Sequence[float], update_initial_values: bool
+) -> Generator[bool, None, None]:
+    """Let the ``settings`` be those of one part of the run after the other; yield how each has to leave the model.
+
+    That is whether its end are the next initial values. Steps are as long as those of the whole run, or shorter.
+    Files and sensors hold all parts. When the last has ended, all settings are as they were, and the initial values
+    are those of before unless ``update_initial_values``.
+    """
+    options, outputs = settings.timeIntegration, settings.solution
+    start, end, steps = options.startTime, options.endTime, options.numberOfSteps
+    kept = outputs.file.append, outputs.sensors.append, outputs.file.writeInitialValues
+    initial = mbs.systemData.GetSystemState(exu.ConfigurationType.Initial) if breaks else None
+    gaps = [max(GAP * (end - start), 4.0 * np.spacing(abs(value))) for value in breaks]
+    starts = [start, *(value + gap for value, gap in zip(breaks, gaps, strict=True))]
+    ends = [*(value - gap for value, gap in zip(breaks, gaps, strict=True)), end]
+    try:
+        for i, (first, last) in enumerate(zip(starts, ends, strict=True)):
+            options.startTime, options.endTime = first, last
+            options.numberOfSteps = max(1, math.ceil((last - first) / (end - start) * steps - 1e-6))
+            if i > 0:
+                outputs.file.append = outputs.sensors.append = True
+                outputs.file.writeInitialValues = False
+            yield update_initial_values or last != end
+    finally:
+        options.startTime, options.endTime, options.numberOfSteps = start, end, steps
+        outputs.file.append, outputs.sensors.append, outputs.file.writeInitialValues = kept
+        if initial is not None and not update_initial_values:
+            mbs.systemData.SetSystemState(initial, exu.ConfigurationType.Initial)

@@ -1,0 +1,128 @@
+"""Coefficients and loads as compiled code asks for them: functions of Python and of numba, and what they raise."""
+
+import math
+
+import exudyn as exu
+import numba
+import numpy as np
+import pytest
+from free_bodies import rotor
+from pairs_of_bodies import DISC, KINDS, MASTER, PAIRS, body
+
+from exudyn_models import add_ring_friction
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
+
+RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
+TABLE = [[0.0, 0.5], [0.05, 0.35], [0.2, 0.3], [1.0, 0.28], [40.0, 0.4]]
+ON_GROUND = [(None, kind) for kind in KINDS]
+
+
+def stribeck(slip_speed):
+    return 0.25 + 0.05 * math.exp(-slip_speed / 0.5)
+
+
+def all_of_them(time, radius, slip_speed, relative_spin):
+    return 2.0 + time + 3.0 * radius + 5.0 * slip_speed + math.sin(relative_spin)
+
+
+def added(kinds, **law):
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = [
+        None if kind is None else body(mbs, kind, *data)
+        for kind, data in zip(kinds, (MASTER, DISC), strict=True)
+    ]
+    return mbs, add_ring_friction(mbs, *nodes, **RING | law)
+
+
+def forces(kinds, **law):
+    """Forces of the user function at ten states, shape (10, n)."""
+    mbs, friction = added(kinds, **law)
+    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
+    size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
+    states = np.random.default_rng(2).normal(size=(10, 2, size)).tolist()
+    return np.array([force(mbs, 0.7, 0, *state) for state in states])
+
+
+@pytest.mark.parametrize("kinds", [*PAIRS, *ON_GROUND], ids=str)
+def test_a_law_that_always_returns_the_same_is_that_number(kinds):
+    expected = forces(kinds)
+    assert np.abs(expected).max() > 0.01
+    for law in (
+        {"friction_coefficient": lambda slip_speed: 0.3},
+        {"normal_load": lambda time, relative_spin: 2.0},
+        {"friction_coefficient": [[0.0, 0.3], [1.0, 0.3], [2.0, 0.3]]},
+        {"normal_load": numba.njit(lambda radius: 2)},
+    ):
+        np.testing.assert_allclose(forces(kinds, **law), expected, rtol=1e-14, atol=1e-17)
+
+
+@pytest.mark.parametrize("kinds", [*PAIRS, *ON_GROUND], ids=str)
+def test_a_function_of_numba_gives_the_force_of_that_of_python(kinds):
+    law = {"friction_coefficient": stribeck, "normal_load": all_of_them}
+    by_python = forces(kinds, **law)
+    by_numba = forces(kinds, **{name: numba.njit(function) for name, function in law.items()})
+    np.testing.assert_allclose(by_numba, by_python, rtol=1e-14, atol=1e-17)
+    constant = forces(kinds)
+    assert np.abs(by_python - constant).max() > 0.1 * np.abs(constant).max()
+
+
+def test_a_contact_says_whether_python_is_asked():
+    of_time = numba.njit(lambda time: 1.0 + time)
+    for law, compiled in (
+        ({}, True),
+        ({"friction_coefficient": TABLE, "normal_load": of_time, "static_ratio": 1.2}, True),
+        ({"friction_coefficient": TABLE, "normal_load": lambda time: 1.0}, False),
+        ({"friction_coefficient": stribeck, "normal_load": of_time}, False),
+    ):
+        _, friction = added(("planar", "planar"), **law)
+        assert friction.compiled is compiled
+        friction.change(friction_coefficient=0.2, normal_load=3.0)
+        assert friction.compiled
+
+
+def test_outer_names_of_a_function_of_python_are_read_when_it_is_called():
+    strength = 1.0
+    mbs, friction = added(("planar", "planar"), normal_load=lambda time: strength)
+    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
+    state = np.random.default_rng(2).normal(size=(2, 6)).tolist()
+    once = np.array(force(mbs, 0.0, 0, *state))
+    strength = 3.0
+    np.testing.assert_allclose(force(mbs, 0.0, 0, *state), 3.0 * once, rtol=1e-14)
+
+
+@numba.njit
+def out_of_range(time):
+    if time > 0.5:
+        raise ZeroDivisionError("a word of its own")
+    return -1.0
+
+
+@pytest.mark.parametrize("function", [out_of_range, out_of_range.py_func], ids=["numba", "python"])
+@pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar"), ("Tait-Bryan", "Tait-Bryan")])
+def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, function):
+    mbs, friction = added(kinds, normal_load=function)
+    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
+    size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
+    state = [0.1] * size, [0.3 * i for i in range(size)]
+    with pytest.raises(ZeroDivisionError, match="a word of its own"):
+        force(mbs, 0.7, 0, *state)
+    with pytest.raises(ValueError, match=r"normal_load\(time = 0.25 s\) = -1 N: it must be >= 0"):
+        force(mbs, 0.25, 0, *state)
+
+
+def test_what_numba_cannot_compile_is_refused_at_the_door():
+    mbs = exu.SystemContainer().AddSystem()
+    with pytest.raises(
+        ValueError, match="normal_load is a function for numba, which can't compile it for floats"
+    ):
+        add_ring_friction(
+            mbs, None, rotor(mbs, 1.0, 0.0), **RING | {"normal_load": numba.njit(lambda time: mbs.unknown)}
+        )
+
+
+def test_a_table_outlives_what_it_was_made_from():
+    contact = (0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12)
+    laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
+    found = [law.friction_force(0.0, 0.0, 0.5, 0.0) for law in laws]
+    np.testing.assert_allclose(found, 0.1 * np.arange(200), rtol=1e-14)
