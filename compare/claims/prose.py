@@ -78,3 +78,12 @@ class Prose:
 def _paragraphs(text: str) -> str:
     """Return paragraphs with a line each, and an empty one between them."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
+
+
+@dataclass(frozen=True)
+class Table:
+    """Words and numbers in rows as long as ``header``, under a ``caption``."""
+
+    caption: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]

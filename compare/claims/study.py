@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -13,9 +14,9 @@ import numpy as np
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
-from compare.claims.prose import Prose
+from compare.claims.prose import Prose, Table
 from compare.engines import Engine, UnsupportedSystemError
-from compare.engines.finer_steps import at_finer_steps
+from compare.engines.finer_steps import decided
 from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ Figures: TypeAlias = "dict[str, Figure]"
 """Of matplotlib, by the names under which ``study.md`` has their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
-
 Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 
@@ -52,15 +52,6 @@ class Findings:
     claims: tuple[Claim, ...] = ()
     data: Data = field(default_factory=dict)
     not_simulated: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Words and numbers in rows as long as ``header``, under a ``caption``."""
-
-    caption: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -147,10 +138,6 @@ def _takes_engine(function: Callable[..., Any]) -> bool:
 
 def _slug(words: str) -> str:
     return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
-
-
-AT_FINER_STEPS = "Asked at a step {:g} times as short as the engine's own, which leaves it open."
-"""What the note of a claim says besides where that is so."""
 
 
 def nothing_drawn(data: ByEngine) -> Figures:
@@ -343,35 +330,28 @@ class Study:
                 if only and not {name, f"{name}/{case}"} & set(only):
                     continue
                 try:
-                    found = self._found(declared, case, arguments, engine, few.get(name, {}))
+                    ask = partial(self._asked, declared, case, arguments, few.get(name, {}))
+                    found, note = decided(engine, ask, _is_open)
                 except UnsupportedSystemError as error:
                     lacking.append(str(error))
                     continue
                 if found is not None:
-                    claims.append(found[0])
+                    claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))
                     data |= found[1]
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
 
-    def _found(
+    def _asked(
         self,
         declared: Declared,
         case: str,
         arguments: tuple[Any, ...],
-        engine: Engine | None,
         few: Mapping[str, Any],
+        engine: Engine | None,
     ) -> tuple[Claim, Data] | None:
-        """Return the claim and its data, at a shorter step than the engine's own if it takes that to decide it."""
-        found = None
-        for asked, shorter in at_finer_steps(engine):
-            measured = declared.function(*(() if asked is None else (asked,)), *arguments, **few)
-            if measured is None:
-                break
-            if shorter > 1.0:
-                measured = replace(measured, note=f"{measured.note} {AT_FINER_STEPS.format(shorter)}".strip())
-            found = self._claim_of(declared, case, measured, engine), _arrays(measured.data)
-            if found[0].verdict is not Verdict.INCONCLUSIVE:
-                break
-        return found
+        measured = declared.function(*(() if engine is None else (engine,)), *arguments, **few)
+        if measured is None:
+            return None
+        return self._claim_of(declared, case, measured, engine), _arrays(measured.data)
 
     def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
         system = measured.system or self.system
@@ -410,6 +390,10 @@ class Study:
             if declared.of_engine
             for case, _ in declared.cases()
         }
+
+
+def _is_open(found: tuple[Claim, Data] | None) -> bool:
+    return found is not None and found[0].verdict is Verdict.INCONCLUSIVE
 
 
 def _arrays(data: Mapping[str, Any]) -> Data:

@@ -1,4 +1,4 @@
-"""Engines whose fixed step is too long for a claim: they are asked again at shorter ones.
+"""Engines whose fixed step is too long for a question: they are asked again at shorter ones.
 
 At a longer step the engine's own error may be larger than what a claim can tell. That says nothing about the engine,
 and a shorter step often decides.
@@ -7,8 +7,9 @@ and a shorter step often decides.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 from compare.engines.engine import Engine
 
@@ -16,18 +17,27 @@ SHORTER = 4.0
 """By which steps become shorter from one time to the next."""
 
 LONGEST = 4.0
-"""Time in s that a claim is expected to take, up to which it is asked at a shorter step."""
+"""Time in s that an answer is expected to take, up to which it is asked for at a shorter step."""
+
+Answer = TypeVar("Answer")
 
 
-def at_finer_steps(engine: Engine | None) -> Iterator[tuple[Engine | None, float]]:
-    """Yield ``engine``, and by which its step is shorter: first 1, then as much more as a claim has time for.
+def decided(
+    engine: Engine | None, ask: Callable[[Engine | None], Answer], is_open: Callable[[Answer], bool]
+) -> tuple[Answer, str]:
+    """Return what ``engine`` answers, at a shorter step than its own if that leaves it open, and a note of that.
 
-    Only the first one where it has no fixed step. The next one is asked for after all was done with the last.
+    What the engine or the question raises at the engine's own step is raised; at a shorter one the note says it.
     """
-    share = 1.0
-    while True:
-        began = time.perf_counter()
-        yield engine, share
-        if engine is None or engine.step is None or SHORTER * (time.perf_counter() - began) > LONGEST:
-            return
-        engine, share = replace(engine, step=engine.step / SHORTER), SHORTER * share
+    began, share, note = time.perf_counter(), 1.0, ""
+    answer = ask(engine)
+    while engine is not None and engine.step is not None and is_open(answer):
+        if SHORTER * (time.perf_counter() - began) > LONGEST:
+            break
+        began, share = time.perf_counter(), SHORTER * share
+        try:
+            answer = ask(replace(engine, step=engine.step / share))
+        except Exception as error:  # whatever the engine may raise: its own step was no failure
+            return answer, f"At a step {share:g} times as short as the engine's own it failed: {error}"
+        note = f"Asked at a step {share:g} times as short as the engine's own, which leaves it open."
+    return answer, note

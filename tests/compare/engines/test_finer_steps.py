@@ -10,7 +10,7 @@ from compare.claims.claim import Verdict
 from compare.claims.measured import Measured
 from compare.claims.study import Study
 from compare.engines import Engine
-from compare.engines.finer_steps import LONGEST, SHORTER, at_finer_steps
+from compare.engines.finer_steps import LONGEST, SHORTER, decided
 from reference_model import PinOnDisc, Trajectory
 
 STEP = 0.1
@@ -78,17 +78,31 @@ def test_a_wrong_engine_is_found_out_at_a_shorter_step():
 
 
 def test_only_a_fixed_step_becomes_shorter_and_as_long_as_there_is_time(monkeypatch):
-    clock = itertools.count(0.0, 0.4 * LONGEST / SHORTER)  # each look at it finds the time of 0.4 claims gone
-    monkeypatch.setattr("compare.engines.finer_steps.time.perf_counter", lambda: next(clock))
-    free = Engine("free", euler)
-    assert list(at_finer_steps(free)) == [(free, 1.0)]
-    assert list(at_finer_steps(None)) == [(None, 1.0)]
-    shorter = itertools.islice(at_finer_steps(engine_of(euler)), 4)
-    assert [(engine.step, share) for engine, share in shorter] == [
-        (pytest.approx(STEP / share), share) for share in (1.0, 4.0, 16.0, 64.0)
-    ]
-    monkeypatch.setattr(
-        "compare.engines.finer_steps.time.perf_counter",
-        itertools.count(0.0, 1.1 * LONGEST / SHORTER).__next__,
+    def asked(engine, seconds):
+        """Return at which steps an engine is asked that leaves all open, and takes ``seconds`` for an answer."""
+        clock, steps = itertools.count(0.0, seconds), []
+        monkeypatch.setattr("compare.engines.finer_steps.time.perf_counter", lambda: next(clock))
+        decided(
+            engine, lambda engine: steps.append(engine and engine.step) or "open", lambda _: len(steps) < 4
+        )
+        return steps
+
+    assert asked(Engine("free", euler), 0.0) == [None]
+    assert asked(None, 0.0) == [None]
+    assert asked(engine_of(euler), 0.9 * LONGEST / SHORTER) == pytest.approx(
+        [STEP / 4.0**i for i in range(4)]
     )
-    assert len(list(at_finer_steps(engine_of(euler)))) == 1
+    assert asked(engine_of(euler), 1.1 * LONGEST / SHORTER) == [STEP]
+
+
+def fails_below(system, state, times, *, step):
+    """Swing, but not at steps below that of the engine."""
+    if step < 0.5 * STEP:
+        raise RuntimeError("out of memory")
+    return euler(system, state, times, step=step)
+
+
+def test_an_engine_that_fails_at_a_shorter_step_leaves_open_what_it_did():
+    (claim,) = study_of(2e-2).measure(engine_of(fails_below)).claims
+    assert claim.verdict is Verdict.INCONCLUSIVE
+    assert claim.note == "At a step 4 times as short as the engine's own it failed: out of memory"

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from compare.claims.error_estimates import COARSENING
-from compare.claims.study import Table
+from compare.claims.prose import Table
 from compare.foreign.cases import CASES
 from compare.foreign.records import ERROR, SECONDS, STEPS, Recording, estimate
 from compare.studies.engines.foreign_engines.ladders import recorded
