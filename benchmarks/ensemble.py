@@ -43,7 +43,7 @@ from rich.table import Table
 from compare.claims.paper_parameters import FIG5
 from reference_model.ensemble import simulate_ensemble
 from reference_model.ensemble.chunks import CHUNK
-from reference_model.ensemble.core.runge_kutta import LOCAL
+from reference_model.ensemble.core.stepping.runge_kutta import LOCAL
 from reference_model.systems import FloatArray
 
 STARTS = 20_000

@@ -33,7 +33,7 @@ from rich.table import Table
 
 from compare.claims.paper_parameters import FIG8, FIG9, FIG11
 from reference_model.ensemble import simulate_ensemble
-from reference_model.ensemble.core.runge_kutta import LOCAL
+from reference_model.ensemble.core.stepping.runge_kutta import LOCAL
 from reference_model.ensemble.disc.kernel import PARAMETERS
 from reference_model.systems import DiscOnDisc, FloatArray
 

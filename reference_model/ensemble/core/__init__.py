@@ -1,1 +1,1 @@
-"""What pins and discs share in the kernels: lanes, the step, the motion inside of it."""
+"""What pins and discs share in the kernels: lanes and laws, what is asked of them, what shows an end."""

@@ -11,7 +11,9 @@ import math
 
 import numpy as np
 
-from reference_model.ensemble.core.implicit import (
+from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.stepping.implicit import (
     INTEGRAL,
     PLACES,
     SERIES,
@@ -19,9 +21,7 @@ from reference_model.ensemble.core.implicit import (
     length_of,
     place_after,
 )
-from reference_model.ensemble.core.jit import scalar
-from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.linear import zeros
+from reference_model.ensemble.core.stepping.linear import zeros
 from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
 from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray

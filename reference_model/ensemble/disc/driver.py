@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from reference_model.ensemble.checkpoints import Checkpoints, from_the_start, room_for
 from reference_model.ensemble.chunks import in_chunks
-from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
+from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import PARAMETERS, DiscTask, run_points, run_rings
 from reference_model.ensemble.disc.memory import DiscAims
 from reference_model.ensemble.disc.trapping import known_regions, no_regions

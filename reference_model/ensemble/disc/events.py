@@ -22,16 +22,16 @@ from collections.abc import Callable
 
 from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import ACCURACY
-from reference_model.ensemble.core.dense_output import (
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.records import fill
+from reference_model.ensemble.core.stepping.dense_output import (
     outward,
     place_on,
     velocity_on,
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.jit import inlined, scalar, written_out
-from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.records import fill
 from reference_model.ensemble.core.window import NO_WINDOW, Measures, measured, open_window, see_radius
 from reference_model.ensemble.disc.lanes import (
     AT_END,

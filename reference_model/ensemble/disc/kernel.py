@@ -10,13 +10,13 @@ import numpy as np
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
 from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.jit import outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
-from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.ensemble.core.stepping.implicit import collocate_points, collocate_ring
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.disc.events import Slow, attend_with
 from reference_model.ensemble.disc.lanes import RADII, TURNS, DiscLanes, advance_with, idle
 from reference_model.ensemble.disc.memory import (

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from reference_model.ensemble.core.contact_shares import LEAST
-from reference_model.ensemble.core.dense_output import DenseOutput, Motion, dense_output
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import Record, Row, Rows, at, put
-from reference_model.ensemble.core.runge_kutta import Tuple, factor_of, moved, step
+from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple, factor_of, moved, step
 from reference_model.ensemble.disc.breakaway import grown
 from reference_model.ensemble.disc.slip import direction
 

@@ -12,7 +12,7 @@ from reference_model.ensemble.core.asked import passes_asked
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.records import Record
-from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.core.window import Measures, Window
 from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
 from reference_model.systems import FloatArray

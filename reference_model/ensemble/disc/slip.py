@@ -20,7 +20,7 @@ from reference_model.ensemble.core.laws import (
     release_delay,
     ring_friction,
 )
-from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 
 HALVINGS = 60
 """Of an interval of order one: what is left is rounding."""

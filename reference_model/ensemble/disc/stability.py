@@ -11,7 +11,7 @@ import numpy as np
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
-from reference_model.ensemble.core.linear import powers_vanish, solve, zeros
+from reference_model.ensemble.core.stepping.linear import powers_vanish, solve, zeros
 from reference_model.systems import FloatArray
 
 APART = 1e-5

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference_model.ensemble.core.implicit import (
+from reference_model.ensemble.core.jit import written_out
+from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.records import put
+from reference_model.ensemble.core.stepping.implicit import (
     WORTH,
     Collocation,
     failed,
@@ -12,9 +15,6 @@ from reference_model.ensemble.core.implicit import (
     patience,
     stride_with,
 )
-from reference_model.ensemble.core.jit import written_out
-from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.records import put
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     NEAR_REST,

@@ -8,7 +8,7 @@ import numpy as np
 
 from reference_model.ensemble.checkpoints import Checkpoints, from_the_start, room_for
 from reference_model.ensemble.chunks import in_chunks
-from reference_model.ensemble.core.runge_kutta import tolerance_of_steps
+from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Ensemble, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins

@@ -7,7 +7,9 @@ import math
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
 from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import converged
-from reference_model.ensemble.core.dense_output import (
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.laws import PinLaw, pull, release_delay
+from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
     place_on,
     velocity_on,
@@ -15,8 +17,6 @@ from reference_model.ensemble.core.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.laws import PinLaw, pull, release_delay
 from reference_model.ensemble.core.window import NO_WINDOW, open_window, see_radius
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
 from reference_model.ensemble.pin.end_states import Well, depth

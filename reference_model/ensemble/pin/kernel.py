@@ -13,9 +13,9 @@ from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.jit import inlined, outermost, scalar
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
-from reference_model.ensemble.core.linear import complex_zeros
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
+from reference_model.ensemble.core.stepping.linear import complex_zeros
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
 from reference_model.ensemble.pin.end_states import well_of
 from reference_model.ensemble.pin.events import attend, rest

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from reference_model.ensemble.core.dense_output import DenseOutput, Motion, dense_output, size_of
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import LANES, Record, Row, Rows, at, put
-from reference_model.ensemble.core.runge_kutta import error_of, factor_of, moved, step
+from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output, size_of
+from reference_model.ensemble.core.stepping.runge_kutta import error_of, factor_of, moved, step
 from reference_model.ensemble.pin.slip import pin_rates
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw, pull
-from reference_model.ensemble.core.runge_kutta import Tuple
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.systems import FloatArray
 
 Number = TypeVar("Number", np.float64, np.complex128)

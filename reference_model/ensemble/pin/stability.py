@@ -11,10 +11,10 @@ x is largest, are followed for one turn together with the motion itself by the c
 from __future__ import annotations
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.core.dense_output import size_of
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import PinLaw
-from reference_model.ensemble.core.linear import complex_zeros, powers_vanish, zeros
+from reference_model.ensemble.core.stepping.dense_output import size_of
+from reference_model.ensemble.core.stepping.linear import complex_zeros, powers_vanish, zeros
 from reference_model.systems import FloatArray
 
 STRIDE, STABLE = 0.5, 1.5

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference_model.ensemble.core.implicit import (
+from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.laws import DiscLaw, PinLaw, pull
+from reference_model.ensemble.core.stepping.implicit import (
     WORTH,
     collocate_pin,
     failed,
@@ -12,8 +14,6 @@ from reference_model.ensemble.core.implicit import (
     patience,
     stride_with,
 )
-from reference_model.ensemble.core.jit import scalar
-from reference_model.ensemble.core.laws import DiscLaw, PinLaw, pull
 from reference_model.ensemble.pin.lanes import (
     PinLanes,
     place_at,

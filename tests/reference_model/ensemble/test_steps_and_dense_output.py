@@ -4,7 +4,7 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.ensemble.core.dense_output import (
+from reference_model.ensemble.core.stepping.dense_output import (
     Motion,
     dense_output,
     place_on,
@@ -13,7 +13,7 @@ from reference_model.ensemble.core.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.runge_kutta import (
+from reference_model.ensemble.core.stepping.runge_kutta import (
     CAUTION,
     LARGEST_FACTOR,
     SMALLEST_FACTOR,

@@ -20,7 +20,7 @@ import numpy as np
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
-from reference_model.ensemble.core.linear import complex_zeros, solve, zeros
+from reference_model.ensemble.core.stepping.linear import complex_zeros, solve, zeros
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES

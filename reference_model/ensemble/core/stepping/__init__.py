@@ -1,0 +1,1 @@
+"""A step of a lane: explicit or by collocation, and the motion inside of it."""
