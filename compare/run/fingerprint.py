@@ -176,8 +176,9 @@ class _Contents:
         if isinstance(reduced, str):  # the name of something that every process has
             module = getattr(thing, "__module__", None) or kind.__module__
             self.written.append(("name", module, reduced))
-            self._code.add(module)
-            self._add_all("around", (getattr(thing, "__wrapped__", None), getattr(thing, "__dict__", None)))
+            if self._code.add(module):  # to what is installed, other packages may attach things of their own
+                around = (getattr(thing, "__wrapped__", None), getattr(thing, "__dict__", None))
+                self._add_all("around", around)
             return
         make, arguments, state, items, pairs = (*reduced, None, None, None)[:5]
         parts = (make, arguments, state, list(items or ()), list(pairs or ()))

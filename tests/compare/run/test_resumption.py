@@ -2,6 +2,7 @@
 
 import functools
 import importlib
+import inspect
 import json
 import re
 import subprocess
@@ -10,6 +11,7 @@ import types
 from importlib.machinery import EXTENSION_SUFFIXES
 
 import fake_studies
+import numpy as np
 import pytest
 from processes import environment
 
@@ -343,6 +345,14 @@ def test_a_compiled_function_is_known_by_its_code_in_every_process(module, tmp_p
     for factor, shift in ((3.0, 1.0), (2.0, 2.0)):
         other = module(mine=COMPILED.format(factor=factor, shift=shift))
         assert {printed(other.simulate), printed(other.INSTANCE)}.isdisjoint(here)
+
+
+def test_what_another_package_attaches_to_an_installed_function_makes_no_difference(module, monkeypatch):
+    mine = module(mine=COMPILED.format(factor=2.0, shift=1.0))
+    before = printed(mine.simulate)
+    attached = inspect.Signature()  # as libraries of arrays do
+    monkeypatch.setattr(np.hypot, "__signature__", attached, raising=False)
+    assert printed(mine.simulate) == before
 
 
 def printed(thing):
