@@ -231,7 +231,7 @@ def test_errors_that_stay_differ_from_first_order(monkeypatch):
     monkeypatch.setattr(recorded, "recorded", ladders.recorded)
     found = verdicts(STUDY.measure_theory().claims)
     agreeing = {name for name, said in found.items() if said is Verdict.AGREES}
-    assert agreeing == {"axes-stay-off", "bullet-stays-off", "holds-longer"}
+    assert agreeing == {"axes-stay-off", "disc-stays-off", "holds-longer"}
     assert all(set(said.values()) == {Verdict.DIFFERS} for said in recorded_verdicts().values())
 
 
@@ -239,7 +239,7 @@ def test_errors_that_fall_differ_from_another_law(monkeypatch):
     halving = lambda error: error[0] * 0.5 ** np.arange(len(error))  # noqa: E731
     monkeypatch.setattr(ladders, "recorded", lambda: spoilt(halving))
     found = verdicts(STUDY.measure_theory().claims)
-    assert found["axes-stay-off"] is found["bullet-stays-off"] is Verdict.DIFFERS
+    assert found["axes-stay-off"] is found["disc-stays-off"] is Verdict.DIFFERS
 
 
 def test_creep_other_than_along_tangents_differs(monkeypatch):
