@@ -95,15 +95,7 @@ class _Plant:
         spring = (none, none, np.full(3, system.stiffness), none)
         self.plant.AddForceElement(LinearBushingRollPitchYaw(rest, body.body_frame(), *spring))
         if not scheme.our_force and system.friction_force > 0.0:
-            material, arms = ProximityProperties(), contact_arms("Drake", system)
-            in_series = 2.0 * system.friction_force / len(arms) / DEPTH
-            AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
-            material.AddProperty("material", "relaxation_time", 0.0)
-            place = RigidTransform([0.0, 0.0, -0.5 * PLATE])
-            self.plant.RegisterCollisionGeometry(master, place, Box(PLATE, PLATE, PLATE), "plate", material)
-            for i, arm in enumerate(arms):
-                place = RigidTransform([arm.real, arm.imag, RADIUS - DEPTH])
-                self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
+            self._touch(body, master)
         if scheme.driven and step:
             motor = self.plant.AddJointActuator("motor", self.master)
             motor.set_controller_gains(PdControllerGains(p=0.0, d=1e9 * inertia * fastest))
@@ -118,10 +110,9 @@ class _Plant:
             builder.Connect(friction.get_output_port(), forces)
         self.simulator = Simulator(builder.Build())
         if scheme.integrator:
+            accuracy = max(0.1 * tolerance, 1e-13)
             how = SimulatorConfig(
-                integration_scheme=scheme.integrator,
-                accuracy=max(0.1 * tolerance, 1e-13),
-                max_step_size=1.0 / fastest,
+                integration_scheme=scheme.integrator, max_step_size=1.0 / fastest, accuracy=accuracy
             )
             ApplySimulatorConfig(how, self.simulator)
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
@@ -130,6 +121,18 @@ class _Plant:
             speed.FixValue(self.context, [0.0, system.disc_speed])
         if not scheme.our_force:
             forces.FixValue(self.context, steady)
+
+    def _touch(self, body: Any, master: Any) -> None:
+        """Put the contact points below ``body``, and a plate on ``master``."""
+        material, arms = ProximityProperties(), contact_arms("Drake", self.system)
+        in_series = 2.0 * self.system.friction_force / len(arms) / DEPTH
+        AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
+        material.AddProperty("material", "relaxation_time", 0.0)
+        place = RigidTransform([0.0, 0.0, -0.5 * PLATE])
+        self.plant.RegisterCollisionGeometry(master, place, Box(PLATE, PLATE, PLATE), "plate", material)
+        for i, arm in enumerate(arms):
+            place = RigidTransform([arm.real, arm.imag, RADIUS - DEPTH])
+            self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
 
     def start(self, state: FloatArray) -> None:
         """Set the state that the next ``advance`` starts from."""
