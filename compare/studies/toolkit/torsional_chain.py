@@ -123,48 +123,39 @@ class Chain:
     def motion(self, speeds: Sequence[float], until: float) -> Motion:
         """Return the motion from ``breaks[0]`` to ``until`` in s, from angles of 0 and ``speeds`` in rad/s."""
         begin, state = self.breaks[0], (np.zeros(len(speeds)), np.asarray(speeds, dtype=float))
-        slip, phases = self._differences @ state[1], []
-        undecided, released = slip == 0.0, np.zeros(len(slip), dtype=bool)
+        signs, phases = np.sign(self._differences @ state[1]), []
         while begin < until:
-            modes = self._modes(begin, np.sign(slip), undecided, released)
-            end = min([time for time in self.breaks if time > begin], default=until)
-            phase = Phase(self, begin, tuple(modes), *state)
-            end, happened = phase.first_event(min(end, until))
+            phase = Phase(self, begin, self._modes(begin, signs), *state)
+            end, happened = phase.first_event(min([until, *(time for time in self.breaks if time > begin)]))
             phases.append(phase)
-            state = tuple(values[0] for values in phase.states(np.array([end])))
-            slip = self._differences @ state[1]
-            sticks = np.array([mode == STUCK for mode in modes])
-            released = happened & sticks
-            slip[sticks | happened] = 0.0
-            undecided, begin = slip == 0.0, end
+            at_end = np.array([end])
+            state = tuple(values[0] for values in phase.states(at_end))
+            signs = np.sign(self._differences @ state[1])
+            for i, mode in enumerate(phase.modes):
+                if mode == STUCK:  # what lets go slips against what has held it
+                    signs[i] = -np.sign(phase.transmitted(at_end)[0, i]) if happened[i] else 0.0
+                elif happened[i]:
+                    signs[i] = 0.0
+            begin = end
         return Motion(self, tuple(phases), until)
 
-    def _modes(
-        self, t: float, signs: FloatArray, undecided: NDArray[np.bool_], released: NDArray[np.bool_]
-    ) -> list[int]:
-        """Return the modes from ``t`` on: by the sign of a slip, and of the others what contradicts nothing."""
-        harmonics = self.in_force(t)
+    def _modes(self, t: float, signs: FloatArray) -> tuple[int, ...]:
+        """Return the modes from ``t`` on: by the sign of a slip, and where that is 0 what contradicts nothing."""
+        harmonics, n = self.in_force(t), len(self.inertias)
         values = np.array([float(f(np.asarray(t))) for f in harmonics])
-        clutches = harmonics[len(self.inertias) :]
-        choices: list[tuple[int, ...]] = []
-        for i, capacity in enumerate(clutches):
-            if capacity.amplitude == 0.0:
-                choices.append((OPEN,))
-            elif not undecided[i]:
-                choices.append((int(signs[i]),))
-            else:
-                choices.append((FORWARD, BACKWARD) if released[i] else (STUCK, FORWARD, BACKWARD))
+        choices = [
+            (OPEN,) if capacity.amplitude == 0.0 else (int(sign),) if sign else (STUCK, FORWARD, BACKWARD)
+            for capacity, sign in zip(harmonics[n:], signs, strict=True)
+        ]
         for modes in itertools.product(*choices):
             held = np.abs(self.transmitted(modes) @ values)
-            can_hold = self.static_ratio * values[len(self.inertias) :]
             begins = self._differences @ self.accelerations(modes) @ values
             if all(
-                held[i] <= can_hold[i]
-                if mode == STUCK
-                else mode == OPEN or not undecided[i] or mode * begins[i] > 0.0
+                held[i] <= self.static_ratio * values[n + i] if mode == STUCK else mode * begins[i] > 0.0
                 for i, mode in enumerate(modes)
+                if signs[i] == 0.0 and mode != OPEN
             ):
-                return list(modes)
+                return modes
         raise ValueError(f"no combination of modes goes on from t = {t:g} s")
 
 
@@ -195,7 +186,7 @@ class Phase:
         return np.asarray((self.chain.transmitted(self.modes) @ values).T)
 
     def first_event(self, end: float) -> tuple[float, NDArray[np.bool_]]:
-        """Return when the first mode ends, at ``end`` (s) at the latest, and which ones do then."""
+        """Return when the first mode ends, at ``end`` in s at the latest, and which ones do then."""
         fastest = max(f.rate for f in self._harmonics)
         number = max(LEAST_SAMPLES, math.ceil(PER_PERIOD * fastest * (end - self.begin) / (2.0 * math.pi)))
         times = np.linspace(self.begin, end, number + 1)

@@ -52,29 +52,24 @@ class _Rotors:
 
     def __init__(self) -> None:
         import exudyn as exu
-        from exudyn.itemInterface import (
-            LoadCoordinate,
-            MarkerNodeCoordinate,
-            Node1D,
-            ObjectRotationalMass1D,
-            SensorNode,
-        )
+        import exudyn.itemInterface
 
+        items: Any = exudyn.itemInterface
         self.container = exu.SystemContainer()  # lives as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.markers, self.sensors = [], [], []
         for inertia, speed in zip(INERTIAS, (SPEED, 0.0, 0.0, 0.0), strict=True):
-            node = self.mbs.AddNode(Node1D(initialVelocities=[speed]))
-            self.mbs.AddObject(ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+            node = self.mbs.AddNode(items.Node1D(initialVelocities=[speed]))
+            self.mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
             self.nodes.append(node)
-            self.markers.append(self.mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0)))
+            self.markers.append(self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)))
             of_speed = exu.OutputVariableType.Coordinates_t
             self.sensors.append(
                 self.mbs.AddSensor(
-                    SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
+                    items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
                 )
             )
-        drive = LoadCoordinate(
+        drive = items.LoadCoordinate(
             markerNumber=self.markers[0], load=1.0, loadUserFunction=lambda mbs, t, load: torque(t)
         )
         self.mbs.AddLoad(drive)
@@ -137,18 +132,21 @@ def with_bristles(step: float, stiffness: float) -> Run:
     without load is switched off, since its bristle would go on to hold on to where it stuck last.
     """
     import exudyn as exu
-    from exudyn.itemInterface import NodeGenericData, ObjectConnectorCoordinateSpringDamperExt
+    import exudyn.itemInterface
 
     from exudyn_models import solve_dynamic
 
+    items: Any = exudyn.itemInterface
     rotors = _Rotors()
     mbs, sliding = rotors.mbs, COEFFICIENT * RADIUS
     clutches = []
     for *markers, begins in zip(rotors.markers, rotors.markers[1:], (0.0, *ENGAGED_FROM), strict=False):
         slipping = [-sliding * LOAD, 0.0, 0.0]  # backward
-        connector = ObjectConnectorCoordinateSpringDamperExt(
+        connector = items.ObjectConnectorCoordinateSpringDamperExt(
             markerNumbers=markers,
-            nodeNumber=mbs.AddNode(NodeGenericData(initialCoordinates=slipping, numberOfDataCoordinates=3)),
+            nodeNumber=mbs.AddNode(
+                items.NodeGenericData(initialCoordinates=slipping, numberOfDataCoordinates=3)
+            ),
             stickingStiffness=stiffness,
             stickingDamping=2.0 * math.sqrt(stiffness),
             exponentialDecayStatic=DECAY,

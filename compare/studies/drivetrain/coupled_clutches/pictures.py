@@ -42,9 +42,8 @@ def _draw(data: ByEngine) -> Figure:
             zip((BLUE, ORANGE, GREEN, PURPLE), theory["speeds"].T, strict=True), 1
         ):
             speeds.plot(theory["t"], speed, color=colour, linewidth=1.6, label=f"rotor {number}")
-        _error(
-            errors, theory["published t"], theory["published"], "published by the Modelica Association", GREY
-        )
+        speeds.legend(loc="upper right")
+        _error(errors, theory["published t"], theory["published"], "Modelica, as published", GREY)
     for engine in engines_in(data):
         found = data[engine]
         if "run t" in found:
@@ -55,7 +54,6 @@ def _draw(data: ByEngine) -> Figure:
         words = f"{clutch + 1} {'holds' if mode == STUCK else 'lets go'}"
         speeds.annotate(words, (time, 10.6), rotation=90, ha="right", va="top", fontsize=8.0, color="0.3")
     speeds.set(ylabel="speed in rad/s", ylim=(-0.3, 10.8))
-    speeds.legend(loc="upper right")
     errors.set(
         xlabel=axis("t", "s"),
         ylabel="largest error of a speed\nin rad/s",
@@ -63,7 +61,8 @@ def _draw(data: ByEngine) -> Figure:
         ylim=(EXACT, 0.1),
         xlim=(0.0, 1.5),
     )
-    errors.legend(loc="upper left", ncols=3, fontsize=9.0)
+    if errors.get_legend_handles_labels()[0]:
+        errors.legend(loc="upper left", ncols=3, fontsize=9.0)
     return figure
 
 
