@@ -145,7 +145,7 @@ def _onset(found: FloatArray) -> float:
 
 
 @STUDY.claim(
-    "Judder that has grown ends in stick: once in a period the disc is as fast as the drive, and never faster",
+    "Judder that grows slowly ends in stick: once in a period the disc is as fast as the drive, and never faster",
     unit="rad/s",
     resolution=0.01,
     note=f"The largest speed of the disc from {0.5 * GROWN_UNTIL:g} to {GROWN_UNTIL:g} s, where μ falls "

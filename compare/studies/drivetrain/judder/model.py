@@ -26,7 +26,7 @@ from reference_model.systems import FloatArray
 
 
 class Judder:
-    """The model; the coefficient of friction falls by ``gradient`` in s/m, the disc starts with ``pushed`` in rad/s."""
+    """The model: the coefficient of friction falls by ``gradient`` in s/m, the disc starts at ``pushed`` in rad/s."""
 
     def __init__(self, gradient: float, pushed: float = PERTURBED) -> None:
         import exudyn as exu

@@ -32,8 +32,8 @@ def _draw(data: ByEngine) -> Figure:
             speed.plot(found["grown t"], found["grown speed"], color=colour, linewidth=0.8, label="disc")
     speed.axhline(SPEED, color=BLACK, linewidth=0.8, linestyle="--", label="drive")
     growth.set(xlabel="fall of μ with the slip, over that of onset", ylabel="growth in 1/s")
-    speed.set(xlabel=axis("t", "s"), ylabel="speed in rad/s", xlim=(0.0, GROWN_UNTIL))
+    speed.set(xlabel=axis("t", "s"), ylabel="speed in rad/s", xlim=(0.0, GROWN_UNTIL), ylim=(-90.0, 60.0))
     if growth.get_legend_handles_labels()[0]:
         growth.legend(loc="upper left")
-    speed.legend(loc="lower left")
+    speed.legend(loc="lower left", ncols=2)
     return figure
