@@ -14,6 +14,7 @@ from compare.studies.disc.free_ring import STUDY as FREE_RING
 from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
 from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
+from compare.studies.drivetrain.dual_clutch import STUDY as DUAL_CLUTCH
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
 from compare.studies.drivetrain.judder import STUDY as JUDDER
 from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
@@ -63,6 +64,7 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_MOMENTUM,
     COUPLED_CLUTCHES,
     JUDDER,
+    DUAL_CLUTCH,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
