@@ -23,6 +23,7 @@ from exudyn_models.forces.slip_kinematics import (
     slip_jacobian,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
 
@@ -202,6 +203,7 @@ class RingFriction:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
             return [self.power(mbs, t)]
 
+        watch_powers(rate, ["heat"])
         node = self.mbs.AddNode(
             items.NodeGenericODE1(
                 referenceCoordinates=[0.0], initialCoordinates=[0.0], numberOfODE1Coordinates=1

@@ -66,12 +66,13 @@ def add_ring_friction(
     annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure`` over its radius. The law is that of
     ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
 
-    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
-    ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The ground is a master that rests, whose axis is the z-axis
-    through the global origin: a brake, or friction of a bearing. The plane of contact goes through the disc's node
-    across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load
-    presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False,
-    because the nodes are shared with their bodies; Exudyn says so.
+    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, or
+    one of a rigid body in space: ``NodeRigidBodyRotVecLG``, ``NodeRigidBodyRxyz`` or, for implicit solvers,
+    ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. The ground is a master that rests, whose axis is
+    the z-axis through the global origin: a brake, or friction of a bearing. The plane of contact goes through the
+    disc's node across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is.
+    The load presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay
+    False, because the nodes are shared with their bodies; Exudyn says so.
 
     Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
 
