@@ -23,6 +23,7 @@ from exudyn_models.forces.slip_kinematics import (
     slip_jacobian,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
@@ -70,6 +71,7 @@ class RingFriction:
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
     _functions: dict[str, Any] = field(repr=False)
+    _thermal: ThermalNode | None = field(default=None, repr=False)
 
     @property
     def compiled(self) -> bool:
@@ -101,6 +103,8 @@ class RingFriction:
 
         """
         factors = self._factors
+        if self._thermal is not None and friction_coefficient is not None:
+            friction_coefficient = self._thermal.with_temperature(friction_coefficient)
         factors.change(
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,

@@ -18,6 +18,7 @@ from exudyn_models.forces.slip_kinematics import GROUND, KINDS, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
+from exudyn_models.parts.thermal_node import ThermalNode
 from reference_model.systems import finite_number
 
 ALL = tuple(KINDS.values())
@@ -57,6 +58,7 @@ def add_ring_friction(
     static_ratio: float = 1.0,
     plates: int = 1,
     pressure: Pressure = "uniform",
+    thermal_node: ThermalNode | None = None,
     held: int | None = None,
 ) -> RingFriction:
     """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
@@ -118,6 +120,9 @@ def add_ring_friction(
     pressure : {"uniform", "wear"} or callable
         Of an annulus: alike everywhere; ∝ 1/r, as it comes to be where linings wear evenly; or a smooth function of
         the radius in m that returns it >= 0 in any unit, because the load says how large it is.
+    thermal_node : ThermalNode, optional
+        What friction heats, of ``add_thermal_node``. The coefficient may then be a function of ``temperature`` too,
+        which goes by way of Python.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
@@ -132,13 +137,19 @@ def add_ring_friction(
     contact = _checked_geometry(
         contact_radius, inner_radius, outer_radius, regularisation, contact_points, held, pressure
     )
-    factors = LoadAndCoefficient(contact, friction_coefficient, normal_load, static_ratio, plates)
+    coefficient = friction_coefficient
+    if thermal_node is not None:
+        coefficient = thermal_node.with_temperature(coefficient)
+    factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     force, jacobian = force_and_jacobian(kinds, reference, factors)
     item = add_connector(mbs, nodes, force, jacobian)
     functions = {"force": force, "jacobian": jacobian}
-    return RingFriction(mbs, item, nodes, kinds, reference, factors, functions)
+    friction = RingFriction(mbs, item, nodes, kinds, reference, factors, functions, thermal_node)
+    if thermal_node is not None:
+        thermal_node.heated_by(friction.power)
+    return friction
 
 
 def checked_pair(
