@@ -11,6 +11,7 @@ import exudyn as exu
 
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.jumps import JumpCheck
+from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.step_limit import StepCheck
@@ -112,6 +113,10 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
         if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
             raise error.__cause__ from None
         if isinstance(error, (exu.SolverError, exu.InternalError)):
+            if massless := _singular(mbs, reached == start):
+                raise SimulationError(
+                    f"Exudyn's {solver.name} failed 0 s after the start: {massless}; give the body some"
+                ) from error
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error
         raise
@@ -119,6 +124,16 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
         raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
     if jumps is not None:
         jumps.warn()
+
+
+def _singular(mbs: Any, at_start: bool) -> str:
+    """Return in words that the mass matrix is singular, if a run has failed at its start for that."""
+    if not at_start:
+        return ""
+    try:
+        return singular_mass(mbs)
+    except exu.ExudynError:  # the run's own error is the one to tell
+        return ""
 
 
 def _check_constraints(mbs: Any, solver: Any) -> None:
