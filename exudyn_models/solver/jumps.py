@@ -8,7 +8,6 @@ the steps don't resolve; either way the step across it is wrong by a share of th
 from __future__ import annotations
 
 import warnings
-from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -33,6 +32,10 @@ def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 
     setattr(rates, _NAMES, tuple((name, unit) for name in names))
 
 
+TOGETHER = 4096
+"""Steps that are looked at together, which costs next to nothing."""
+
+
 class JumpCheck:
     """Looks at the powers of an assembled model after every step of an implicit run, and warns at its end.
 
@@ -45,7 +48,8 @@ class JumpCheck:
 
     def __init__(self, mbs: Any) -> None:
         self._names, self._units, self._places = _powers(mbs)
-        self._steps: deque[tuple[float, FloatArray]] = deque(maxlen=2 * NEIGHBOURS + 2)
+        self._times: list[float] = []
+        self._rates: list[FloatArray] = []
         self._largest = np.zeros(len(self._names))
         self._jumps: list[tuple[float, float, int, float]] = []
 
@@ -53,24 +57,38 @@ class JumpCheck:
         """Take note of all ``rates`` of the model after a step, or at the start, at the time t (s)."""
         if not self._names:
             return
-        self._steps.append((t, self._units * np.array(rates)[self._places]))
-        self._largest = np.maximum(self._largest, np.abs(self._steps[-1][1]))
-        if len(self._steps) < self._steps.maxlen:  # type: ignore[operator]
+        self._times.append(t)
+        self._rates.append(rates)
+        if len(self._times) == TOGETHER:
+            self._find()
+
+    def _find(self) -> None:
+        """Look for jumps in the steps noted, all but the last ones, which the next look begins with."""
+        times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
+        del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
+        self._largest = np.maximum(self._largest, np.abs(powers).max(axis=0))
+        if len(times) < 2 * NEIGHBOURS + 2:
             return
-        times, powers = np.array([time for time, _ in self._steps]), np.array([row for _, row in self._steps])
-        changes, spans = np.abs(np.diff(powers, axis=0)), np.diff(times)[:, None]
-        if not np.all(spans > 0.0):
-            return
-        others = np.arange(len(changes)) != NEIGHBOURS
-        jumps = np.ones(len(self._names), dtype=bool)
+        changes, spans = (
+            np.abs(np.diff(powers, axis=0)),
+            np.maximum(np.diff(times), np.spacing(times[1:]))[:, None],
+        )
+        middle = slice(NEIGHBOURS, len(changes) - NEIGHBOURS)
+        jumps = changes[middle] > LEAST * self._largest
         for measured in (changes, changes / spans):
-            jumps &= measured[NEIGHBOURS] > STEEPER * measured[others].max(axis=0)
-        for i in np.flatnonzero(jumps & (changes[NEIGHBOURS] > LEAST * self._largest)):
-            start, end = times[NEIGHBOURS : NEIGHBOURS + 2]
-            self._jumps.append((float(start), float(end), int(i), float(changes[NEIGHBOURS, i])))
+            for k in range(2 * NEIGHBOURS + 1):
+                if k != NEIGHBOURS:
+                    jumps &= measured[middle] > STEEPER * measured[k : k + len(jumps)]
+        for step, i in np.argwhere(jumps):
+            first = step + NEIGHBOURS
+            self._jumps.append(
+                (float(times[first]), float(times[first + 1]), int(i), float(changes[first, i]))
+            )
 
     def warn(self) -> None:
         """Warn of the largest jump that has been seen, if there is any."""
+        if self._times:
+            self._find()
         jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest[jump[2]]]
         if not jumps:
             return

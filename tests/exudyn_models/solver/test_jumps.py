@@ -88,3 +88,11 @@ def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance)
 def test_no_jump_is_told_of_a_load_that_the_steps_resolve_nor_of_the_end_of_slip(solver, load):
     mbs, _ = brake(load)
     assert told(lambda: solve_dynamic(mbs, settings(100), solver)) == []
+
+
+@pytest.mark.parametrize("step", range(5, 14))
+def test_a_jump_is_told_once_wherever_the_steps_looked_at_together_end(step, monkeypatch):
+    monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
+    mbs, _ = brake(lambda time: 0.0 if time < (step + 0.5) * 5e-3 else 800.0)
+    (message,) = told(lambda: solve_dynamic(mbs, settings(50), SOLVERS[1]))
+    assert f"between t = {step * 5e-3:.9g} s and {(step + 1) * 5e-3:.9g} s: the energy" in message
