@@ -13,7 +13,7 @@ from exudyn_models import PASSENGER_CAR
 from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
 
 ROOT = Path(__file__).parents[1]
-DOCUMENTS = ["README.md", "docs/friction-in-your-own-model.md"]
+DOCUMENTS = ["README.md", "docs/friction-in-your-own-model.md", "docs/from-modelica.md"]
 
 VALUE = re.compile(r"True|False|-?\d+(?:\.(\d+))?")
 """In a comment; digits after the point say to how many it is rounded."""

@@ -13,6 +13,7 @@ from compare.studies.disc.fig11 import STUDY as FIG11
 from compare.studies.disc.free_ring import STUDY as FREE_RING
 from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
+from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
 from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
@@ -59,6 +60,7 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_LAUNCH,
     DRIVETRAIN_REDUCED,
     DRIVETRAIN_MOMENTUM,
+    COUPLED_CLUTCHES,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,

@@ -109,6 +109,7 @@ def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
         "trajectories",
         "power-balance",
         "connector",
+        "coupled-clutches",
         "block",
         "thrown-disc",
     }

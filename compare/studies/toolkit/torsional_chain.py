@@ -1,0 +1,249 @@
+"""Rotors in a row with a clutch between any two neighbours: their exact motion under Coulomb friction.
+
+Torques and capacities are harmonic from break to break, so that speeds and angles are closed forms between events: a
+clutch whose slip comes to nothing, or that is asked to hold more than it can. What follows an event is the one
+combination of modes that contradicts nothing, found by trying all. Roots are to rounding; nothing is integrated.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from reference_model.systems import FloatArray
+
+FORWARD, STUCK, BACKWARD, OPEN = 1, 0, -1, 2
+"""Modes of a clutch, numbered as Modelica's clutches are: forward where the rotor behind it is the faster one."""
+
+PER_PERIOD = 400
+"""Samples in a period of the fastest harmonic, between which events are looked for; two in one interval go unseen."""
+
+LEAST_SAMPLES = 200
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """The torque amplitude·sin(rate·t + phase) in N m; a constant where the rate is 0.
+
+    Parameters
+    ----------
+    amplitude : float
+        In N m.
+    rate : float
+        In rad/s, >= 0.
+    phase : float
+        In rad.
+
+    """
+
+    amplitude: float = 0.0
+    rate: float = 0.0
+    phase: float = math.pi / 2.0
+
+    def __call__(self, t: FloatArray) -> FloatArray:
+        """Return the torque in N m at times in s."""
+        return np.asarray(self.amplitude * np.sin(self.rate * t + self.phase))
+
+    def integrals(self, begin: float, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the first and the second integral over time from ``begin`` to ``t``, in N m s and N m s²."""
+        tau, value, a, w = t - begin, self.phase + self.rate * begin, self.amplitude, self.rate
+        if w == 0.0:
+            return a * math.sin(value) * tau, 0.5 * a * math.sin(value) * tau**2
+        # the difference of two cosines as a product, which loses no digits over short times
+        once = 2.0 * a / w * np.sin(value + 0.5 * w * tau) * np.sin(0.5 * w * tau)
+        twice = a / w * (math.cos(value) * tau - (np.sin(w * t + self.phase) - math.sin(value)) / w)
+        return np.asarray(once), np.asarray(twice)
+
+
+Pieces = Sequence[tuple[float, Harmonic]]
+"""The times in s from which each harmonic is in force; the first is where the motion starts."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Rotors and clutches in a row.
+
+    Parameters
+    ----------
+    inertias : sequence of n floats
+        In kg m².
+    torques : sequence of n Pieces
+        What acts on each rotor from outside.
+    capacities : sequence of n - 1 Pieces
+        What each clutch transmits while it slips, >= 0; it is open where the amplitude is 0.
+    static_ratio : float
+        Of what it can hold to that, >= 1.
+
+    """
+
+    inertias: Sequence[float]
+    torques: Sequence[Pieces]
+    capacities: Sequence[Pieces]
+    static_ratio: float = 1.0
+
+    @cached_property
+    def breaks(self) -> list[float]:
+        """When a piece begins, in s."""
+        return sorted({begin for pieces in (*self.torques, *self.capacities) for begin, _ in pieces})
+
+    @cached_property
+    def _differences(self) -> FloatArray:
+        """Of neighbours, shape (n - 1, n): the slip from the speeds."""
+        return np.diff(np.eye(len(self.inertias)), axis=0)
+
+    def in_force(self, t: float) -> list[Harmonic]:
+        """Return torques on rotors and capacities of clutches from the time ``t`` in s on."""
+        return [[f for begin, f in pieces if begin <= t][-1] for pieces in (*self.torques, *self.capacities)]
+
+    def transmitted(self, modes: Sequence[int]) -> FloatArray:
+        """Return what the clutches put on the rotors behind them, as a matrix over ``in_force``."""
+        n, d = len(self.inertias), self._differences
+        by_inertia = d / np.asarray(self.inertias)
+        equations, given = np.eye(n - 1), np.zeros((n - 1, 2 * n - 1))
+        for i, mode in enumerate(modes):
+            if mode == STUCK:
+                equations[i], given[i, :n] = by_inertia[i] @ d.T, -by_inertia[i]
+            elif mode != OPEN:
+                given[i, n + i] = -mode
+        return np.asarray(np.linalg.solve(equations, given))
+
+    def accelerations(self, modes: Sequence[int]) -> FloatArray:
+        """Return the rotors' accelerations as a matrix over ``in_force``, shape (n, 2n - 1)."""
+        n = len(self.inertias)
+        torques = np.hstack((np.eye(n), np.zeros((n, n - 1)))) + self._differences.T @ self.transmitted(modes)
+        return np.asarray(torques / np.asarray(self.inertias)[:, np.newaxis])
+
+    def motion(self, speeds: Sequence[float], until: float) -> Motion:
+        """Return the motion from ``breaks[0]`` to ``until`` in s, from angles of 0 and ``speeds`` in rad/s."""
+        begin, state = self.breaks[0], (np.zeros(len(speeds)), np.asarray(speeds, dtype=float))
+        signs, phases = np.sign(self._differences @ state[1]), []
+        while begin < until:
+            phase = Phase(self, begin, self._modes(begin, signs), *state)
+            end, happened = phase.first_event(min([until, *(time for time in self.breaks if time > begin)]))
+            phases.append(phase)
+            at_end = np.array([end])
+            state = tuple(values[0] for values in phase.states(at_end))
+            signs = np.sign(self._differences @ state[1])
+            for i, mode in enumerate(phase.modes):
+                if mode == STUCK:  # what lets go slips against what has held it
+                    signs[i] = -np.sign(phase.transmitted(at_end)[0, i]) if happened[i] else 0.0
+                elif happened[i]:
+                    signs[i] = 0.0
+            begin = end
+        return Motion(self, tuple(phases), until)
+
+    def _modes(self, t: float, signs: FloatArray) -> tuple[int, ...]:
+        """Return the modes from ``t`` on: by the sign of a slip, and where that is 0 what contradicts nothing."""
+        harmonics, n = self.in_force(t), len(self.inertias)
+        values = np.array([float(f(np.asarray(t))) for f in harmonics])
+        choices = [
+            (OPEN,) if capacity.amplitude == 0.0 else (int(sign),) if sign else (STUCK, FORWARD, BACKWARD)
+            for capacity, sign in zip(harmonics[n:], signs, strict=True)
+        ]
+        for modes in itertools.product(*choices):
+            held = np.abs(self.transmitted(modes) @ values)
+            begins = self._differences @ self.accelerations(modes) @ values
+            if all(
+                held[i] <= self.static_ratio * values[n + i] if mode == STUCK else mode * begins[i] > 0.0
+                for i, mode in enumerate(modes)
+                if signs[i] == 0.0 and mode != OPEN
+            ):
+                return modes
+        raise ValueError(f"no combination of modes goes on from t = {t:g} s")
+
+
+@dataclass(frozen=True)
+class Phase:
+    """The motion of a chain from ``begin`` in s on without a change of modes, from angles in rad, speeds in rad/s."""
+
+    chain: Chain
+    begin: float
+    modes: tuple[int, ...]
+    angles: FloatArray
+    speeds: FloatArray
+
+    @cached_property
+    def _harmonics(self) -> list[Harmonic]:
+        return self.chain.in_force(self.begin)
+
+    def states(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return angles and speeds at times in s, each of shape (len(t), n)."""
+        once, twice = np.swapaxes([f.integrals(self.begin, t) for f in self._harmonics], 0, 1)
+        matrix = self.chain.accelerations(self.modes)
+        gone = (t - self.begin)[:, np.newaxis]
+        return self.angles + gone * self.speeds + (matrix @ twice).T, self.speeds + (matrix @ once).T
+
+    def transmitted(self, t: FloatArray) -> FloatArray:
+        """Return what the clutches put on the rotors behind them in N m, shape (len(t), n - 1)."""
+        values = np.array([f(t) for f in self._harmonics])
+        return np.asarray((self.chain.transmitted(self.modes) @ values).T)
+
+    def first_event(self, end: float) -> tuple[float, NDArray[np.bool_]]:
+        """Return when the first mode ends, at ``end`` in s at the latest, and which ones do then."""
+        fastest = max(f.rate for f in self._harmonics)
+        number = max(LEAST_SAMPLES, math.ceil(PER_PERIOD * fastest * (end - self.begin) / (2.0 * math.pi)))
+        times = np.linspace(self.begin, end, number + 1)
+        first, which = end, np.zeros(len(self.modes), dtype=bool)
+        for i, mode in enumerate(self.modes):
+            if mode == OPEN:
+                continue
+            margin = self._hold(i) if mode == STUCK else self._slip(i, mode)
+            values = margin(times)
+            ends = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
+            if ends.size == 0:
+                continue
+            k = int(ends[0])
+            time = float(
+                brentq(lambda t, margin=margin: margin(np.array([t]))[0], times[k], times[k + 1], xtol=1e-16)
+            )
+            if time < first:
+                first, which = time, np.zeros(len(self.modes), dtype=bool)
+            which[i] |= time == first
+        return first, which
+
+    def _slip(self, i: int, mode: int) -> Callable[[FloatArray], FloatArray]:
+        return lambda t: mode * np.diff(self.states(t)[1], axis=1)[:, i]
+
+    def _hold(self, i: int) -> Callable[[FloatArray], FloatArray]:
+        capacity = self._harmonics[len(self.chain.inertias) + i]
+        return lambda t: self.chain.static_ratio * capacity(t) - np.abs(self.transmitted(t)[:, i])
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The exact motion of a chain up to ``until`` in s."""
+
+    chain: Chain
+    phases: tuple[Phase, ...]
+    until: float
+
+    def _each(self, t: FloatArray) -> list[tuple[NDArray[np.bool_], Phase]]:
+        begins = np.array([phase.begin for phase in self.phases])
+        number = np.searchsorted(begins, t, side="right") - 1
+        return [(number == k, phase) for k, phase in enumerate(self.phases)]
+
+    def states(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return angles in rad and speeds in rad/s at times in s, each of shape (len(t), n)."""
+        angles, speeds = np.empty((2, len(t), len(self.chain.inertias)))
+        for at, phase in self._each(t):
+            angles[at], speeds[at] = phase.states(t[at])
+        return angles, speeds
+
+    def modes(self, t: FloatArray) -> NDArray[np.int_]:
+        """Return the modes at times in s, shape (len(t), n - 1)."""
+        found = np.empty((len(t), len(self.chain.inertias) - 1), dtype=int)
+        for at, phase in self._each(t):
+            found[at] = phase.modes
+        return found
+
+    def switches(self, clutch: int) -> list[tuple[float, int]]:
+        """Return when the mode of a clutch changes, in s, and to which."""
+        modes = [(phase.begin, phase.modes[clutch]) for phase in self.phases]
+        return [later for earlier, later in itertools.pairwise(modes) if later[1] != earlier[1]]
