@@ -108,7 +108,7 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     Raises
     ------
     ValueError
-        For any other solver, or a model whose mass matrix is singular.
+        For any other solver, or a model with constraints or a singular mass matrix.
 
     """
     if solver_type.name not in INTERVALS:
@@ -117,6 +117,11 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
         )
     if not mbs.systemIsConsistent:
         mbs.Assemble()
+    if constraints := mbs.systemData.AEsize():
+        raise ValueError(
+            f"this model has {constraints} constraint equations, which an explicit solver would ignore; a "
+            "NodeRigidBodyEP has one"
+        )
     model = ModelInStick.of(mbs, 0.0)
     if model is None:
         return math.inf

@@ -7,7 +7,13 @@ import pytest
 from free_bodies import spatial_momenta
 from pairs_of_bodies import DISC, EULER, MASTER, body, conserved, momenta_and_energy
 
-from exudyn_models import add_energy_balance, add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models import (
+    add_energy_balance,
+    add_radial_support,
+    add_ring_friction,
+    largest_stable_step,
+    solve_dynamic,
+)
 
 PAIRS = [(EULER, EULER), ("rotor", EULER), (EULER, "planar")]
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
@@ -100,3 +106,5 @@ def test_an_explicit_solver_is_refused_with_the_node_that_serves():
         ValueError, match=r"explicit and would ignore 2 constraint.*NodeRigidBodyEP.*RotVecLG"
     ):
         solve_dynamic(mbs, settings(10), exu.DynamicSolverType.RK44)
+    with pytest.raises(ValueError, match="2 constraint equations, which an explicit solver would ignore"):
+        largest_stable_step(mbs, exu.DynamicSolverType.RK44)

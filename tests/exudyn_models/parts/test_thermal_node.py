@@ -109,6 +109,15 @@ def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
     assert thermal.temperature(mbs) > 30.0
 
 
+def test_another_source_heats_it_too():
+    mbs = exu.SystemContainer().AddSystem()
+    mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
+    thermal = add_thermal_node(mbs, heat_capacity=8.0)
+    thermal.heated_by(lambda mbs, t: 3.0 + t)
+    run(mbs, end=1.0, steps=10)
+    assert thermal.temperature(mbs) == pytest.approx(20.0 + 3.5 / 8.0, rel=1e-13)
+
+
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
