@@ -15,6 +15,7 @@ from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
 from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
+from compare.studies.drivetrain.judder import STUDY as JUDDER
 from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
 from compare.studies.drivetrain.reduced import STUDY as DRIVETRAIN_REDUCED
@@ -61,6 +62,7 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_REDUCED,
     DRIVETRAIN_MOMENTUM,
     COUPLED_CLUTCHES,
+    JUDDER,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
