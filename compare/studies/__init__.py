@@ -21,6 +21,7 @@ from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
 from compare.studies.drivetrain.reduced import STUDY as DRIVETRAIN_REDUCED
 from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
+from compare.studies.drivetrain.warm_clutch import STUDY as WARM_CLUTCH
 from compare.studies.engines.clutch_scale import STUDY as CLUTCH_SCALE
 from compare.studies.engines.connector import STUDY as CONNECTOR
 from compare.studies.engines.engine_convergence import STUDY as ENGINE_CONVERGENCE
@@ -65,6 +66,7 @@ STUDIES: tuple[Study, ...] = (
     COUPLED_CLUTCHES,
     JUDDER,
     DUAL_CLUTCH,
+    WARM_CLUTCH,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
