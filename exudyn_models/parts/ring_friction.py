@@ -139,6 +139,8 @@ def add_ring_friction(
     )
     coefficient = friction_coefficient
     if thermal_node is not None:
+        if not isinstance(thermal_node, ThermalNode):
+            raise ValueError(f"thermal_node = {thermal_node!r}: it must be what add_thermal_node returned")
         coefficient = thermal_node.with_temperature(coefficient)
     factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)

@@ -145,3 +145,11 @@ def test_a_coefficient_that_needs_a_temperature_is_refused_without_a_thermal_nod
             normal_load=LOAD,
             regularisation=1e-1,
         )
+
+
+def test_a_contact_takes_no_number_for_a_thermal_node():
+    mbs = exu.SystemContainer().AddSystem()
+    wheel = mbs.AddNode(items.Node1D())
+    options = {"contact_radius": RADIUS, "friction_coefficient": MU, "normal_load": LOAD}
+    with pytest.raises(ValueError, match=r"thermal_node = 3: it must be what add_thermal_node returned"):
+        add_ring_friction(mbs, None, wheel, **options, regularisation=1e-2, thermal_node=3)
