@@ -1,6 +1,7 @@
 """The numbers of README and docs are those of a report, and a report that says something else is noticed."""
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -54,6 +55,37 @@ def root(tmp_path):
 def test_the_texts_have_the_numbers_that_are_kept():
     assert unlike() == []
     assert len(kept()) > 20
+
+
+def prose(text):
+    """Return a page without code, marked numbers, links, and numbers that are names, as of equations."""
+    for pattern in (
+        r"```.*?```",
+        readme.MARKED.pattern,
+        r"`[^`]*`",
+        r"\]\([^)]*\)",
+        r"^> .*$",  # the paper as one cites it
+        r"\b(?:Figs?\.|Equations?|Python ≥) [\d.]+(?: and \d+)?",
+        r"\(\d+\)",
+        r"[kX]0",
+    ):
+        text = re.sub(
+            pattern, " ", text, flags=re.DOTALL if pattern.startswith(("```", "(<")) else re.MULTILINE
+        )
+    return text
+
+
+def test_every_number_of_the_readme_is_from_a_report():
+    text = (readme.ROOT / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r".*\d.*", prose(text)) == []
+    assert re.findall(r"\d+", prose(f"{text}\nAnd 17 more.")) == ["17"]
+
+
+def test_the_readme_is_short_and_has_the_engines_on_its_first_screen():
+    lines = (readme.ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= 120
+    first = "\n".join(lines[:25])
+    assert [word in first for word in ("make report", "make test", "(docs/engines.png)")] == [True] * 3
 
 
 def test_every_number_of_the_texts_names_a_study_or_counts():
