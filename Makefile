@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: report readme test lint dist benchmarks clean
+.PHONY: report readme test lint docs dist benchmarks clean
 
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
@@ -20,6 +20,10 @@ lint: $(VENV)/for-tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# The site: site/index.html, with the last report if there is one. A warning is an error.
+docs: $(VENV)/for-docs
+	$(BIN)/python docs/site/build.py
 
 # Wheel and source archive, and a check that each holds what it should.
 dist: $(VENV)/installed
@@ -38,7 +42,7 @@ benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:
-	rm -rf $(VENV) report build dist *.egg-info
+	rm -rf $(VENV) report site build dist *.egg-info
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -48,4 +52,8 @@ $(VENV)/installed: pyproject.toml
 # Whoever only wants a report does not wait for what tests need.
 $(VENV)/for-tests: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
+	touch $@
+
+$(VENV)/for-docs: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	touch $@

@@ -1,7 +1,7 @@
 """Draw the matrix of engines, the README's first picture, from what is recorded.
 
-Run as ``python docs/draw_engines.py``. ``engines.png`` says in its metadata what it was drawn from, so that a test can
-tell when it is out of date.
+Run as ``python docs/draw_engines.py``. ``engines.png`` says in its metadata what it was drawn from, so that a test
+can tell when it is out of date.
 """
 
 import json

@@ -81,6 +81,12 @@ def test_every_number_of_the_readme_is_from_a_report():
     assert re.findall(r"\d+", prose(f"{text}\nAnd 17 more.")) == ["17"]
 
 
+def test_no_line_of_a_page_begins_with_a_marked_number():
+    """A comment at the beginning of a line ends the paragraph, for GitHub and for the site alike."""
+    for path, text in readme.texts().items():
+        assert re.findall(r"^\s*<!--=.*", text, re.MULTILINE) == [], path
+
+
 def test_the_readme_is_short_and_has_the_engines_on_its_first_screen():
     lines = (readme.ROOT / "README.md").read_text(encoding="utf-8").splitlines()
     assert len(lines) <= 120
