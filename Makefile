@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: report readme test lint docs dist benchmarks clean
+.PHONY: report readme test lint docs paper dist benchmarks clean
 
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
@@ -25,6 +25,10 @@ lint: $(VENV)/for-tests
 docs: $(VENV)/for-docs
 	$(BIN)/python docs/site/build.py
 
+# The paper about the findings, docs/paper/paper.pdf, with the figures of the last report.
+paper: $(VENV)/for-docs
+	$(BIN)/python docs/paper/build.py
+
 # Wheel and source archive, and a check that each holds what it should.
 dist: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[release]'
@@ -42,7 +46,7 @@ benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:
-	rm -rf $(VENV) report site build dist *.egg-info
+	rm -rf $(VENV) report site docs/paper/paper.pdf build dist *.egg-info
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -94,6 +94,17 @@ def test_the_readme_is_short_and_has_the_engines_on_its_first_screen():
     assert [word in first for word in ("make report", "make test", "(docs/engines.png)")] == [True] * 3
 
 
+def test_a_number_of_the_paper_is_kept_and_one_that_was_never_measured_is_noticed(root):
+    (root / "docs" / "paper").mkdir()
+    paper = root / "docs" / "paper" / "paper.typ"
+    paper.write_text('#n("fig05: place, error, good") and #n("claims")', encoding="utf-8")
+    write(results(), root)
+    assert "fig05: place, error, good" in kept(root)
+    assert unlike(root) == []
+    paper.write_text('#n("fig05: place, error, other")', encoding="utf-8")
+    assert unlike(root) == ["the paper: fig05: place, error, other: never measured"]
+
+
 def test_every_number_of_the_texts_names_a_study_or_counts():
     names = {study.name for study in STUDIES} | {"claims", "verdicts"}
     assert {words.partition(":")[0] for words in readme.wanted()} <= names
