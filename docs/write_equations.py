@@ -127,8 +127,8 @@ def text():
         "",
         "Which function and which claim has each equation of the paper. `python docs/write_equations.py` writes this",
         "page from docstrings and declared claims. A claim is measured by `friction-discs report STUDY`, where STUDY",
-        "stands before the stroke; *corrected* are equations that are wrong or incomplete as printed, see",
-        "`friction-discs errata`. (2), (24) and (25) define coordinates and abbreviations: no claim is about them.",
+        "stands before the stroke. What is wrong or incomplete as printed is [corrected](#corrected) below. (2),",
+        "(24) and (25) define coordinates and abbreviations: no claim is about them.",
         "",
         "| | about | functions | claims |",
         "|---|---|---|---|",
@@ -142,10 +142,19 @@ def text():
             claimed.append(
                 ", ".join(f"`{each}`" for each in identities[:MOST]) + (f" and {more} more" * (more > 0))
             )
-        corrected = ", *corrected*" * (number in wrong)
+        corrected = ", [corrected](#corrected)" * (number in wrong)
         lines.append(
             f"| ({number}) | {about}{corrected} | {', '.join(named) or '–'} | {'; '.join(claimed) or '–'} |"
         )
+    lines += [
+        "",
+        "## Corrected",
+        "",
+        "`friction-discs errata` shows each of these with the numbers that prove it.",
+    ]
+    for erratum in ERRATA:
+        lines += ["", f"**{erratum.heading}.** {erratum.explanation}", "", f"- as printed: {erratum.printed}"]
+        lines += [f"- as it has to be: {erratum.correct}"]
     return "\n".join(lines) + "\n"
 
 

@@ -53,6 +53,9 @@ API = {
 }
 """What is public, by page."""
 
+DATA = {"exudyn_models": ("exudyn_models.drivetrain.parameters.PASSENGER_CAR",)}
+"""What is public, is no function, and has its words where it comes from."""
+
 
 def gather(folder: Path) -> None:
     """Write all pages into a folder, ready for Sphinx."""
@@ -142,6 +145,7 @@ def _reference(modules: tuple[str, ...]) -> str:
         if len(modules) > 1:
             lines += [module, "-" * len(module), ""]
         lines += [f".. automodule:: {module}", "   :imported-members:" * (len(modules) == 1), ""]
+        lines += [f".. autodata:: {name}\n   :no-value:\n" for name in DATA.get(module, ())]
     return "\n".join(lines)
 
 
