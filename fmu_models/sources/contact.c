@@ -159,17 +159,21 @@ double friction_tangent(const Contact *contact, const double slip[3], const doub
     return dP;
 }
 
-double friction_needed(const Contact *contact, double force, double moment) {
+double friction_needed(const Contact *contact, double force, double moment, double by[2]) {
     /* The largest (F U + M S)/P(U, S): its level sets are convex, so that it has one hump between U and S alone. */
-    double ratio = 0.61803398874989484820, low = 0.0, high = 1.57079632679489661923, best = 0.0, slope[2];
-    double unit = contact->outer > 0.0 ? contact->outer : 1.0, at[2], value[2];
+    double golden = 0.61803398874989484820, low = 0.0, high = 1.57079632679489661923, best = -1.0, slope[2];
+    by[0] = 1.0, by[1] = 0.0;
     if (contact->outer == 0.0) return force;
     for (int turn = 0; turn < 50; turn++) {
-        at[0] = high - ratio * (high - low), at[1] = low + ratio * (high - low);
+        double at[2] = {high - golden * (high - low), low + golden * (high - low)}, value[2];
         for (int i = 0; i < 2; i++) {
-            double U = cos(at[i]), S = sin(at[i]) / unit;
-            value[i] = (force * U + fabs(moment) * S) / slip_potential(contact, U, S, slope);
-            best = fmax(best, value[i]);
+            double U = cos(at[i]), S = sin(at[i]) / contact->outer, P = slip_potential(contact, U, S, slope);
+            value[i] = (force * U + fabs(moment) * S) / P;
+            if (value[i] > best) {
+                best = value[i];
+                by[0] = U / P;
+                by[1] = moment < 0.0 ? -S / P : S / P;
+            }
         }
         if (value[0] > value[1]) high = at[1];
         else low = at[0];

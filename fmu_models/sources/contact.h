@@ -28,7 +28,8 @@ double friction(const Contact *contact, const double slip[3], double force[3]);
 double friction_tangent(const Contact *contact, const double slip[3], const double d[3], double d_friction,
                         double d_force[3]);
 
-/* The least mu N in N with which the contact at rest holds a force of this size (N) and a moment (N m). */
-double friction_needed(const Contact *contact, double force, double moment);
+/* The least mu N in N with which the contact at rest holds a force of this size (N) and a moment (N m), and its
+   derivatives by both. */
+double friction_needed(const Contact *contact, double force, double moment, double by[2]);
 
 #endif

@@ -29,8 +29,9 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) {
     Unit *unit = calloc(1, sizeof(Unit));
-    (void)type, (void)resources, (void)visible;
+    (void)resources, (void)visible;
     if (!unit) return 0;
+    unit->exchange = type == fmi2ModelExchange;
     strncpy(unit->name, name ? name : "", sizeof unit->name - 1);
     unit->say = say;
     unit->logging = logging;

@@ -42,6 +42,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
     Unit *unit = calloc(1, sizeof(Unit));
     (void)resources, (void)visible;
     if (!unit) return 0;
+    unit->exchange = 1;
     strncpy(unit->name, name ? name : "", sizeof unit->name - 1);
     unit->say = say;
     unit->logging = logging;
@@ -63,6 +64,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3IntermediateUpdateCallback update) {
     Unit *unit = fmi3InstantiateModelExchange(name, token, resources, visible, logging, environment, logger);
     (void)event_mode, (void)required, (void)n_required;
+    if (unit) unit->exchange = 0;
     if (unit && update) {
         unit->update = (void (*)(void))update;
         unit->between = between;

@@ -50,8 +50,8 @@ void model_scales(const State *s, double *length, double *speed) {
     if (*speed == 0.0) *speed = *length;
 }
 
-/* Forces and moment that hold the contact at rest on the disc below. */
-static double held_by(const State *s, double force[3]) {
+/* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */
+static double held_by(const State *s, double force[3], double by[2]) {
     const double *v = s->v;
     Contact contact = contact_of(s);
     Support support = support_of(v);
@@ -64,41 +64,74 @@ static double held_by(const State *s, double force[3]) {
 #else
     force[2] = 0.0;
 #endif
-    return friction_needed(&contact, hypot(force[0], force[1]), force[2]);
+    return friction_needed(&contact, hypot(force[0], force[1]), force[2], by);
+}
+
+/* The same along dz. */
+static double held_tangent(const State *s, const double dz[2], const double force[3], const double by[2],
+                           double d_force[3]) {
+    const double *v = s->v;
+    Support support = support_of(v);
+    double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, turning[2] = {-w * dz[1], w * dz[0]}, elastic[2];
+    double size = hypot(force[0], force[1]);
+    support_tangent(&support, z, dz, turning, elastic);
+    for (int i = 0; i < 2; i++) d_force[i] = -v[V_mass] * w * w * dz[i] - elastic[i];
+    d_force[2] = 0.0;
+    return size > 0.0 ? by[0] * (force[0] * d_force[0] + force[1] * d_force[1]) / size : 0.0;
+}
+
+static void slips(State *s, const double force[3]) {
+    double *v = s->v, z[2] = {v[V_x], v[V_y]}, velocity[2] = {v[V_vx], v[V_vy]}, elastic[2];
+    Support support = support_of(v);
+    support_force(&support, z, velocity, elastic);
+    v[V_der_x] = v[V_vx];
+    v[V_der_y] = v[V_vy];
+    v[V_der_vx] = (force[0] + elastic[0]) / v[V_mass];
+    v[V_der_vy] = (force[1] + elastic[1]) / v[V_mass];
+#ifdef V_spin
+    v[V_der_angle] = v[V_spin];
+    v[V_der_spin] = (force[2] - v[V_shaft_damping] * (v[V_spin] - v[V_shaft_speed])) / v[V_polar_inertia];
+#endif
+}
+
+static void rests(State *s) {
+    double *v = s->v, w = v[V_disc_speed];
+    v[V_der_x] = -w * v[V_y];
+    v[V_der_y] = w * v[V_x];
+    v[V_der_vx] = -w * w * v[V_x];
+    v[V_der_vy] = -w * w * v[V_y];
+#ifdef V_spin
+    v[V_der_angle] = w;
+    v[V_der_spin] = 0.0;
+#endif
 }
 
 void model_evaluate(State *s) {
-    double *v = s->v, slip[3], force[3], elastic[2], w = v[V_disc_speed];
+    double *v = s->v, slip[3], force[3], by[2], slope[2];
     Contact contact = contact_of(s);
-    Support support = support_of(v);
-    if (s->sticks) {
-        double needed = held_by(s, force);
-        v[V_slip_speed] = 0.0;
-        v[V_indicator] = v[V_friction_force] - needed;
-        v[V_der_x] = -w * v[V_y];
-        v[V_der_y] = w * v[V_x];
-        v[V_der_vx] = -w * w * v[V_x];
-        v[V_der_vy] = -w * w * v[V_y];
-#ifdef V_spin
-        v[V_der_angle] = w;
-        v[V_der_spin] = 0.0;
-#endif
-    } else {
-        double z[2] = {v[V_x], v[V_y]}, velocity[2] = {v[V_vx], v[V_vy]};
-        slip_of(v, slip);
+    slip_of(v, slip);
+    if (s->mode == SLIPS) {
         v[V_slip_speed] = friction(&contact, slip, force);
-        support_force(&support, z, velocity, elastic);
         v[V_indicator] = v[V_slip_speed] - s->epsilon;
-        v[V_der_x] = v[V_vx];
-        v[V_der_y] = v[V_vy];
-        v[V_der_vx] = (force[0] + elastic[0]) / v[V_mass];
-        v[V_der_vy] = (force[1] + elastic[1]) / v[V_mass];
-#ifdef V_spin
-        v[V_der_angle] = v[V_spin];
-        v[V_der_spin] = (force[2] - v[V_shaft_damping] * (v[V_spin] - v[V_shaft_speed])) / v[V_polar_inertia];
-#endif
+        slips(s, force);
+    } else {
+        double needed = held_by(s, force, by);
+        if (s->mode == STICKS) {
+            v[V_slip_speed] = 0.0;
+            v[V_indicator] = v[V_friction_force] - needed;
+            rests(s);
+        } else { /* it ends where the slip is fast enough, or turns back */
+            double along = 0.0;
+            for (int i = 0; i < 3; i++) {
+                along += force[i] / needed * slip[i];
+                force[i] *= v[V_friction_force] / needed;
+            }
+            v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+            v[V_indicator] = fmin(s->leaving - v[V_slip_speed], s->epsilon - along);
+            slips(s, force);
+        }
     }
-    v[V_sticks] = s->sticks;
+    v[V_sticks] = s->mode == STICKS;
     v[V_friction_x] = force[0];
     v[V_friction_y] = force[1];
 #ifdef V_spin
@@ -110,60 +143,71 @@ void model_tangent(const State *s, double d[]) {
     const double *v = s->v;
     Contact contact = contact_of(s);
     Support support = support_of(v);
-    double w = v[V_disc_speed], dz[2] = {d[V_x], d[V_y]}, z[2] = {v[V_x], v[V_y]}, force[3], elastic[2];
-    d[V_sticks] = 0.0;
-    if (s->sticks) {
-        double turning[2] = {-w * dz[1], w * dz[0]};
-        support_tangent(&support, z, dz, turning, elastic);
-        force[0] = -v[V_mass] * w * w * dz[0] - elastic[0];
-        force[1] = -v[V_mass] * w * w * dz[1] - elastic[1];
-        force[2] = 0.0;
+    double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, dz[2] = {d[V_x], d[V_y]}, dv[2] = {d[V_vx], d[V_vy]};
+    double slip[3], d_slip[3] = {dv[0] + w * dz[1], dv[1] - w * dz[0], 0.0}, force[3], d_force[3], by[2], elastic[2];
+#ifdef V_spin
+    d_slip[2] = d[V_spin];
+#endif
+    slip_of(v, slip);
+    if (s->mode == SLIPS) {
+        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_force);
+    } else {
+        double needed = held_by(s, force, by), d_needed = held_tangent(s, dz, force, by, d_force), slope[2];
         d[V_slip_speed] = 0.0;
-        d[V_der_x] = turning[0];
-        d[V_der_y] = turning[1];
+        if (s->mode == LEAVES) {
+            double U = hypot(slip[0], slip[1]);
+            for (int i = 0; i < 3; i++)
+                d_force[i] = v[V_friction_force] * (d_force[i] - force[i] * d_needed / needed) / needed;
+            if (slip_potential(&contact, U, slip[2], slope) > 0.0)
+                d[V_slip_speed] = (U > 0.0 ? slope[0] * (slip[0] * d_slip[0] + slip[1] * d_slip[1]) / U : 0.0) +
+                                  (slip[2] < 0.0 ? -slope[1] : slope[1]) * d_slip[2];
+        }
+    }
+    if (s->mode == STICKS) {
+        d[V_der_x] = -w * dz[1];
+        d[V_der_y] = w * dz[0];
         d[V_der_vx] = -w * w * dz[0];
         d[V_der_vy] = -w * w * dz[1];
 #ifdef V_spin
         d[V_der_angle] = d[V_der_spin] = 0.0;
 #endif
     } else {
-        double dv[2] = {d[V_vx], d[V_vy]}, slip[3], d_slip[3] = {dv[0] + w * dz[1], dv[1] - w * dz[0], 0.0};
-#ifdef V_spin
-        d_slip[2] = d[V_spin];
-#endif
-        slip_of(v, slip);
-        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, force);
         support_tangent(&support, z, dz, dv, elastic);
         d[V_der_x] = dv[0];
         d[V_der_y] = dv[1];
-        d[V_der_vx] = (force[0] + elastic[0]) / v[V_mass];
-        d[V_der_vy] = (force[1] + elastic[1]) / v[V_mass];
+        d[V_der_vx] = (d_force[0] + elastic[0]) / v[V_mass];
+        d[V_der_vy] = (d_force[1] + elastic[1]) / v[V_mass];
 #ifdef V_spin
         d[V_der_angle] = d[V_spin];
-        d[V_der_spin] = (force[2] - v[V_shaft_damping] * d[V_spin]) / v[V_polar_inertia];
+        d[V_der_spin] = (d_force[2] - v[V_shaft_damping] * d[V_spin]) / v[V_polar_inertia];
 #endif
     }
-    d[V_friction_x] = force[0];
-    d[V_friction_y] = force[1];
+    d[V_sticks] = d[V_indicator] = 0.0;
+    d[V_friction_x] = d_force[0];
+    d[V_friction_y] = d_force[1];
 #ifdef V_spin
-    d[V_friction_moment] = force[2];
+    d[V_friction_moment] = d_force[2];
 #endif
 }
 
 int model_change(State *s) {
-    double *v = s->v, force[3], slip[3], slope[2], w = v[V_disc_speed], needed;
+    double *v = s->v, force[3], slip[3], slope[2], by[2], w = v[V_disc_speed], needed, speed;
     Contact contact = contact_of(s);
     if (v[V_exact] == 0.0) return 0;
-    needed = held_by(s, force);
-    if (s->sticks) {
+    needed = held_by(s, force, by);
+    if (s->mode == STICKS) {
         if (needed < v[V_friction_force] * (1.0 - 1e-12)) return 0;
-        s->sticks = 0;
+        s->mode = LEAVES;
         return 1;
     }
     slip_of(v, slip);
-    if (slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope) > 1.01 * s->epsilon) return 0;
-    if (needed >= v[V_friction_force] * (1.0 - 1e-9)) return 0;
-    s->sticks = 1;
+    speed = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+    if (s->mode == LEAVES && speed >= 0.99 * s->leaving) {
+        s->mode = SLIPS;
+        return 1;
+    }
+    if (speed > 1.01 * s->epsilon || needed >= v[V_friction_force] * (1.0 - 1e-9)) return 0;
+    s->mode = STICKS;
     v[V_vx] = -w * v[V_y];
     v[V_vy] = w * v[V_x];
 #ifdef V_spin

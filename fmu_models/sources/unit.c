@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CLOSEST 1e-10 /* of the speed, below which no slip counts as rest: what lets go turns as fast as it is slow */
+/* Share of the speed below which slip counts as rest where the solver is the importer's, whose errors are larger. */
+#define AS_REST 1e-9
 
 void unit_reset(Unit *unit) {
     memset(&unit->state, 0, sizeof unit->state);
@@ -51,10 +52,12 @@ int unit_initialise(Unit *unit, double time) {
     }
     s->epsilon = s->v[V_regularisation];
 #ifdef V_exact
-    if (s->v[V_exact] != 0.0) s->epsilon = fmax(s->tolerance, CLOSEST) * speed;
+    if (s->v[V_exact] != 0.0) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
 #endif
+    /* what is missed then falls like its power 3/2, with the tolerance */
+    s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;
-    s->sticks = 0;
+    s->mode = SLIPS;
     s->initialised = 1;
     model_change(s);
     s->stale = 1;
@@ -98,8 +101,8 @@ int unit_set(Unit *unit, size_t variable, char type, double value) {
     if (!unit_has(unit, variable, type)) return 1;
     if (one->causality != 'i' && (one->causality == 'o' || one->causality == 'd' || one->causality == 't' ||
                                   unit->state.initialised)) {
-        snprintf(sentence, sizeof sentence, "%s can%s be set", one->name,
-                 one->causality == 'p' || one->causality == 's' ? " only before the start" : "not");
+        snprintf(sentence, sizeof sentence, "%s can %s be set", one->name,
+                 one->causality == 'p' || one->causality == 's' ? "only before the start" : "never");
         return refuse(unit, sentence);
     }
     unit->state.v[variable] = value;

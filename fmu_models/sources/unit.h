@@ -13,10 +13,15 @@ typedef struct {
     double nominal[N_STATES + 1];
     double step;       /* with which the integrator goes on, in s */
     double tolerance;  /* of the integrator */
-    int sticks;        /* whether the contact rests as a whole; of an exact one only */
+    double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
+    int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
     int initialised;
 } State;
+
+/* STICKS: it rests as a whole. LEAVES: it was let go, and is so slow that friction turns faster than steps can follow;
+   its direction is then that of what would hold the contact, which the slip follows but for the square of the time. */
+enum { SLIPS, STICKS, LEAVES };
 
 typedef struct Unit Unit;
 
@@ -31,6 +36,7 @@ struct Unit {
     int (*between)(Unit *unit, double time);
     void (*update)(void);
     int early;
+    int exchange; /* whether the solver is the importer's */
 };
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */

@@ -2,11 +2,16 @@
 
 import ctypes
 import functools
+import shutil
+from pathlib import Path
 
 import pytest
+from units_in_c import Instance
 
 from fmu_models import MODELS, export
 from fmu_models.archive import compile_library, compiler, write_sources
+
+DRIVER = Path(__file__).with_name("driver.c")
 
 
 @pytest.fixture(scope="session")
@@ -17,12 +22,13 @@ def needs_compiler():
 
 @pytest.fixture(scope="session")
 def library(tmp_path_factory, needs_compiler):
-    """Compiles the sources of a model without those of a standard: no header of others is needed."""
+    """Compiles the sources of a model with a driver in place of a standard: no header of others is needed."""
 
     @functools.cache
     def of(name):
         folder = tmp_path_factory.mktemp(name)
         write_sources(MODELS[name], folder)
+        shutil.copyfile(DRIVER, folder / DRIVER.name)
         compile_library(sorted(folder.glob("*.c")), folder / "model.so", "-Wall", "-Wextra", "-Werror")
         return ctypes.CDLL(str(folder / "model.so"))
 
@@ -41,3 +47,9 @@ def unit(tmp_path_factory, needs_compiler):
         return folder / f"{name}{fmi}.fmu"
 
     return of
+
+
+@pytest.fixture
+def instance(library):
+    """Makes instances of a model, which have not started."""
+    return lambda name, **values: Instance(library(name), MODELS[name], **values)

@@ -134,8 +134,11 @@ def test_friction_is_of_first_degree_below_epsilon_and_at_its_peak_there(law):
 
 @pytest.mark.parametrize("contact", [RING, ANNULUS], ids=["ring", "annulus"])
 def test_what_holds_is_on_the_limit_surface(law, contact):
-    for slip in ((0.3, 0.0, 1.0), (0.02, 0.0, 5.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):
-        (fx, _, moment), _ = force(law, contact, slip)
-        needed = law.friction_needed(ctypes.byref(contact), *floats(abs(fx), moment))
+    for slip in ((0.3, 0.0, 1.0), (0.02, 0.0, -5.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):
+        ((fx, _, moment), potential), by = force(law, contact, slip), (ctypes.c_double * 2)()
+        needed = law.friction_needed(ctypes.byref(contact), *floats(abs(fx), -moment), by)
         assert needed == pytest.approx(contact.friction, rel=1e-9)
-    assert law.friction_needed(ctypes.byref(PIN), *floats(math.pi, 0.0)) == math.pi
+        np.testing.assert_allclose(
+            by, [slip[0] / potential, slip[2] / potential], atol=2e-6 / potential
+        )  # flow
+    assert law.friction_needed(ctypes.byref(PIN), *floats(math.pi, 0.0), (ctypes.c_double * 2)()) == math.pi
