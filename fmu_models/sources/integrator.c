@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define MOST_STEPS 20000000L /* between two communication points */
 #define SAMPLES 8 /* of a step, between which an event is looked for */
 #define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
 #define N (N_STATES)
@@ -111,6 +112,7 @@ int unit_advance(Unit *unit, double until) {
     State *s = &unit->state;
     Step one;
     char sentence[INTERNAL_DIGITS];
+    long tried = 0;
     double begin = s->v[V_time], least = 1e-15 * (1.0 + fabs(begin) + fabs(until));
     one.t = begin;
     for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
@@ -120,8 +122,15 @@ int unit_advance(Unit *unit, double until) {
     while (until - one.t > least) {
         double error, factor, left = until - one.t;
         int last, happens;
-        one.h = s->step < 0.999999 * left ? s->step : left;
-        last = one.h == left;
+        one.h = fmin(s->step, s->longest);
+        last = one.h >= 0.999999 * left;
+        if (last) one.h = left;
+        if (tried++ == MOST_STEPS) {
+            snprintf(sentence, sizeof sentence, "at t = %.9g s there were %ld steps already, the last one of %.3g s",
+                     one.t, tried - 1, one.h);
+            unit->say(unit, 1, sentence);
+            return 1;
+        }
         error = attempt(s, &one);
         factor = error > 0.0 ? 0.9 * pow(error, -0.2) : 5.0;
         if (!(error <= 1.0)) { /* or no number */

@@ -39,7 +39,7 @@ const char *model_refusal(const double v[]) {
     return 0;
 }
 
-void model_scales(const State *s, double *length, double *speed) {
+void model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
     double slip[3];
     slip_of(v, slip);
@@ -48,6 +48,7 @@ void model_scales(const State *s, double *length, double *speed) {
     *speed = fmax(hypot(v[V_vx], v[V_vy]), fabs(v[V_disc_speed]) * *length);
     *speed = fmax(*speed, RADIUS * fabs(slip[2]));
     if (*speed == 0.0) *speed = *length;
+    *rate = fmax(sqrt(v[V_stiffness] / v[V_mass]), fmax(fabs(v[V_disc_speed]), v[V_damping] / v[V_mass]));
 }
 
 /* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */

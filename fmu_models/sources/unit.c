@@ -21,7 +21,7 @@ int unit_initialise(Unit *unit, double time) {
     State *s = &unit->state;
     char sentence[INTERNAL_DIGITS];
     const char *reason;
-    double length, speed;
+    double length, speed, rate;
     for (int i = 0; i < N_VARIABLES; i++) {
         const Variable *one = &VARIABLES[i];
         double value = s->v[i];
@@ -45,7 +45,9 @@ int unit_initialise(Unit *unit, double time) {
     if (reason) return refuse(unit, reason);
     s->v[V_time] = time;
     s->tolerance = s->v[V_tolerance];
-    model_scales(s, &length, &speed);
+    model_scales(s, &length, &speed, &rate);
+    /* Errors are to fall with the tolerance also where communication steps are shorter than it needs. */
+    s->longest = rate > 0.0 ? pow(s->tolerance, 0.2) / rate : HUGE_VAL;
     for (int i = 0; i < N_STATES; i++) {
         char kind = STATE_KINDS[i];
         s->nominal[i] = kind == 'x' ? length : kind == 'v' ? speed : 1.0;
@@ -83,13 +85,7 @@ int unit_has(Unit *unit, size_t variable, char type) {
 double unit_get(Unit *unit, size_t variable) {
     char causality = VARIABLES[variable].causality;
     if (causality == 'o' || causality == 'd') {
-        /* before all parameters are there nothing follows from them */
-        if (!unit->state.initialised) {
-            double length, speed;
-            model_scales(&unit->state, &length, &speed);
-            unit->state.epsilon = unit->state.v[V_regularisation];
-            unit->state.stale = 1;
-        }
+        if (!unit->state.initialised) unit->state.epsilon = unit->state.v[V_regularisation];
         unit_refresh(unit);
     }
     return unit->state.v[variable];

@@ -12,6 +12,7 @@ typedef struct {
     double epsilon;        /* of the contact in m/s */
     double nominal[N_STATES + 1];
     double step;       /* with which the integrator goes on, in s */
+    double longest;    /* of its steps, in s */
     double tolerance;  /* of the integrator */
     double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
     int mode;          /* of the contact; but SLIPS of an exact one only */
@@ -41,7 +42,8 @@ struct Unit {
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */
 const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
-void model_scales(const State *state, double *length, double *speed);
+/* By which errors are measured: a length, a speed, and a rate in 1/s, 0 where inputs may have any. */
+void model_scales(const State *state, double *length, double *speed, double *rate);
 void model_evaluate(State *state); /* derivatives and outputs from states and inputs */
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
