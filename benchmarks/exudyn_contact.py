@@ -25,7 +25,13 @@ import numpy as np
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
-from exudyn_models import add_energy_balance, add_ring_friction, build_pin_on_disc, simulate
+from exudyn_models import (
+    add_energy_balance,
+    add_ring_friction,
+    add_thermal_node,
+    build_pin_on_disc,
+    simulate,
+)
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
@@ -72,13 +78,18 @@ def native(connector: str, marker: str, count: int) -> AddContact:
     return add
 
 
-def with_force(force: Callable[..., Any]) -> AddContact:
-    """Add the connector between rotor and disc with another force function."""
+def with_force(force: Callable[..., Any], coordinates: int = 4) -> AddContact:
+    """Add the connector between both bodies with another force function."""
     return lambda mbs, master, disc: mbs.AddObject(
         items.ObjectGenericODE2(
-            nodeNumbers=[master, disc], massMatrix=np.zeros((4, 4)), forceUserFunction=force
+            nodeNumbers=[master, disc],
+            massMatrix=np.zeros((coordinates, coordinates)),
+            forceUserFunction=force,
         )
     )
+
+
+NOTHING = [0.0] * 12
 
 
 def constant(*arguments: Any) -> list[float]:
@@ -176,6 +187,7 @@ PLANAR: dict[str, AddContact] = {
 
 SPATIAL: dict[str, AddContact] = {
     "two spatial bodies, no friction": lambda mbs, master, disc: None,
+    "a user function of twelve coordinates": with_force(lambda *arguments: NOTHING, coordinates=12),
     "the same with a ring": ours(RING),
     "the same under a load of the radius": ours(RING, lambda radius: FIG5.friction_force),
 }
@@ -189,6 +201,18 @@ def stribeck(slip_speed: float) -> float:
 def balanced(mbs: Any, *nodes: Any) -> None:
     """Add a ring with an energy balance."""
     add_energy_balance(mbs, gains={}, losses={"friction": ours(RING)(mbs, *nodes).power})
+
+
+def warming(coefficient: Any, mbs: Any, *nodes: Any) -> None:
+    """Add a ring that heats a thermal node."""
+    thermal = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0)
+    contact = SECTION | RING | {"friction_coefficient": coefficient, "thermal_node": thermal}
+    add_ring_friction(mbs, *nodes, **contact)
+
+
+def fading(temperature: float) -> float:
+    """Return a coefficient that falls over the temperature (°C)."""
+    return 0.3 * (1.0 - 1e-3 * (temperature - 20.0))
 
 
 def load_of_time(time: float) -> float:
@@ -210,6 +234,8 @@ AXIAL: dict[str, AddContact] = {
     "static over sliding friction": ours(RING | {"static_ratio": 1.1}),
     "with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "with an energy balance": balanced,
+    "heating a thermal node": lambda *nodes: warming(0.3, *nodes),
+    "with a coefficient of its temperature": lambda *nodes: warming(fading, *nodes),
 }
 
 
