@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("reference_model", "exudyn_models", "compare")
+PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 REPOSITORY_ONLY = (".ci", ".github", ".gitignore")
 
 

@@ -21,17 +21,29 @@ else:
 
 ROOT = Path(__file__).parents[1]
 PICTURE = Path(__file__).with_name("floors.svg")
-PLACES = {"compare": (0.0, 2.4), "exudyn_models": (8.0, 0.0), "reference_model": (13.8, 0.0)}
+PLACES = {
+    "compare": (0.0, 2.4),
+    "exudyn_models": (8.0, 0.0),
+    "fmu_models": (8.0, 6.9),
+    "reference_model": (13.8, 0.0),
+}
 """Left lower corner of each package, which imports from those to its right only."""
 
-COLOURS = {"compare": "tab:blue", "exudyn_models": "tab:orange", "reference_model": "tab:green"}
+COLOURS = {
+    "compare": "tab:blue",
+    "exudyn_models": "tab:orange",
+    "fmu_models": "tab:red",
+    "reference_model": "tab:green",
+}
 WIDTH, HEIGHT, LINE, GAP = 2.0, 0.6, 1.2, 0.25
 """Of a room; from floor to floor; between rooms."""
 
 
 BETWEEN = {
     ("compare", "exudyn_models"): ((7.0, 3.4), (8.3, 3.4), 0.2),
-    ("compare", "reference_model"): ((7.0, 7.8), (14.9, 7.8), 0.2),
+    ("compare", "fmu_models"): ((7.0, 9.9), (9.0, 9.9), 0.2),
+    ("compare", "reference_model"): ((7.0, 6.1), (14.9, 6.1), 0.2),
+    ("fmu_models", "reference_model"): ((12.3, 7.5), (14.9, 7.5), 0.2),
     ("exudyn_models", "reference_model"): ((12.3, 1.8), (13.7, 1.8), 0.2),
 }
 """Start and end of the arrows between packages, and how far above them their words stand."""

@@ -254,6 +254,12 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
 }
 """Name and unit of each state of a system."""
 
+PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
+    kind: tuple((name, kind._units[name], least) for name, least in kind._least)
+    for kind in (PinOnDisc, DiscOnDisc)
+}
+"""Name and unit of each parameter of a system, and how small it may be; the number of points stands apart."""
+
 SMALLEST_TOLERANCE = 1e-14
 """What double precision can reach."""
 

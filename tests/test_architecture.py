@@ -16,7 +16,7 @@ PLACEHOLDER = re.compile(r"[A-Z]{3,}")
 """Stands for a name of one's own, as in compare/studies/GROUP/NAME/."""
 
 PLACE = re.compile(r"(?:\.\w+|[\w.]+)(?:/[\w.]*)+|[A-Z]+\.md|pyproject\.toml")
-DOTTED = re.compile(r"(?:reference_model|exudyn_models|compare)(?:\.\w+)+(?::\w+)?")
+DOTTED = re.compile(r"(?:reference_model|exudyn_models|fmu_models|compare)(?:\.\w+)+(?::\w+)?")
 
 
 def spans(page):

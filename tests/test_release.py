@@ -17,7 +17,7 @@ else:
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-PACKAGES = ("reference_model", "exudyn_models", "compare")
+PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 
 
 def tracked():

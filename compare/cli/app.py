@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | matrix | plan | judge | simulate | sweep | errata | compile``.
+"""The command line: ``friction-discs list | report | matrix | judge | simulate | sweep | export-fmu`` and more.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -28,6 +28,7 @@ try:
         printing,
         say,
     )
+    from compare.cli.export_fmu import export_fmu
     from compare.cli.listing import errata, list_studies
     from compare.cli.measure.judge import judge
     from compare.cli.measure.matrix import matrix
@@ -53,6 +54,7 @@ app.command("list", cls=Command)(list_studies)
 app.command("compile", cls=Command)(compile_kernels)
 for command in (report, matrix, plan, judge, errata):
     app.command(cls=Command)(command)
+app.add_typer(export_fmu, name="export-fmu")
 app.add_typer(simulate, name="simulate")
 app.add_typer(sweep, name="sweep")
 
@@ -115,6 +117,7 @@ def friction_discs(
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs sweep basin pin
+      friction-discs export-fmu clutch --set plates=4 --output clutch.fmu
       friction-discs errata
       friction-discs compile
     """

@@ -30,10 +30,16 @@ LANGUAGES = {".py": "python", ".c": "c", ".js": "javascript"}
 SECTIONS = {
     "Tutorials": ("tutorial-judge", "tutorial-model", "tutorial-motions"),
     "Engines": ("judge-your-engine", "foreign-engines", "verdicts", "tolerance-tubes"),
-    "Models": ("friction-in-your-own-model", "from-modelica"),
+    "Models": ("friction-in-your-own-model", "from-modelica", "fmu"),
     "Motions": ("findings", "equations", "sweeps"),
     "Look up": ("glossary", "gallery", "latest-report"),
-    "Reference": ("api/reference-model", "api/ensemble", "api/exudyn-models", "api/compare"),
+    "Reference": (
+        "api/reference-model",
+        "api/ensemble",
+        "api/exudyn-models",
+        "api/fmu-models",
+        "api/compare",
+    ),
     "Development": ("architecture", "contributing", "changelog"),
 }
 """Pages in the order of the navigation."""
@@ -42,6 +48,7 @@ API = {
     "reference-model": ("reference_model",),
     "ensemble": ("reference_model.ensemble",),
     "exudyn-models": ("exudyn_models",),
+    "fmu-models": ("fmu_models",),
     "compare": (
         "compare.engines.engine",
         "compare.claims.claim",

@@ -168,10 +168,17 @@ def taking(
 
 def changed(system: System, settings: Sequence[str]) -> System:
     """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
+    changes: dict[str, Any] = dict(changes_of(settings, [field.name for field in fields(system)]))
+    if str(changes.get("contact_points", "")).strip().lower() == "none":
+        changes["contact_points"] = None
+    return replace(system, **changes)
+
+
+def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
+    """Return the values by name of settings "name=value"; raise ``ValueError`` for what is none of ``names``."""
     from compare.engines import one_of
 
-    names = [field.name for field in fields(system)]
-    changes: dict[str, Any] = {}
+    changes: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
@@ -179,9 +186,8 @@ def changed(system: System, settings: Sequence[str]) -> System:
         name = one_of("parameter", name.strip(), names)
         if name in changes:
             raise ValueError(f"--set {name}: it is there more than once")
-        ring = name == "contact_points" and value.strip().lower() == "none"
-        changes[name] = None if ring else value
-    return replace(system, **changes)
+        changes[name] = value
+    return changes
 
 
 def studies_of(context: typer.Context, names: Sequence[str], level: str = "full") -> tuple[Study, ...]:

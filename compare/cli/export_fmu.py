@@ -1,0 +1,124 @@
+"""``friction-discs export-fmu pin | disc | clutch``: the contact as a functional mock-up unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, cast
+
+import typer
+
+from compare.cli.door.command import BadInputError, Command, EngineFailedError, refused
+from compare.cli.door.options import Settings, changes_of, taking, whole
+from compare.output.text_files import check_writable
+
+export_fmu = typer.Typer(rich_markup_mode=None)
+
+File = Annotated[Path, typer.Option("--output", metavar="FILE", help="File to write, .fmu.")]
+Standard = Annotated[
+    int,
+    typer.Option(
+        "--fmi",
+        metavar="2|3",
+        help="Version of the standard: 2 is what every importer reads, 3 has intermediate updates.",
+        parser=whole("fmi", 2, 3),
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Unit:
+    """What all units take from the command line."""
+
+    output: File
+    settings: Settings = None
+    fmi: Standard = 2
+
+
+@export_fmu.callback()
+def export() -> None:
+    """Write the contact as a functional mock-up unit, in C, for Simulink, Dymola and all that imports FMI.
+
+    It is one for model exchange and co-simulation, with its sources and a library for this machine. Parameters that
+    are set are what the unit starts with; an importer may set them anew.
+
+    \b
+    Examples:
+      friction-discs export-fmu clutch --set plates=4 --set static_ratio=1.1 --output clutch.fmu
+      friction-discs export-fmu pin --fmi 3 --set disc_speed=2 --output pin.fmu
+    """
+
+
+@export_fmu.command("pin", cls=Command)
+@taking(Unit)
+def export_pin(unit: Unit) -> None:
+    """Write the pin on a disc that turns; what is not set is the second case of Fig. 5.
+
+    \b
+    Parameters are those of `friction-discs simulate pin`, the start x, y, vx, vy, and:
+      exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
+    \b
+    Example:
+      friction-discs export-fmu pin --set disc_speed=2 --set vx=0 --output pin.fmu
+    """
+    _export("pin", unit)
+
+
+@export_fmu.command("disc", cls=Command)
+@taking(Unit)
+def export_disc(unit: Unit) -> None:
+    """Write the friction disc on a continuous ring; what is not set is Fig. 11 with X0 = 0.
+
+    \b
+    Parameters are those of `friction-discs simulate disc`, the start x, y, angle, vx, vy, spin, and:
+      exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
+    \b
+    Example:
+      friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu
+    """
+    _export("disc", unit)
+
+
+@export_fmu.command("clutch", cls=Command)
+@taking(Unit)
+def export_clutch(unit: Unit) -> None:
+    """Write a clutch between two flanges: speeds, load, coefficient and engagement in, torques and forces out.
+
+    \b
+    Parameters:
+      inner_radius=0.1 outer_radius=0.1 wear=0 plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
+      mass=1 stiffness=1e6 damping=100 offset=0 hardening=0 stop_gap=0 stop_stiffness=0
+    \b
+    Example:
+      friction-discs export-fmu clutch --set inner_radius=0.08 --set outer_radius=0.12 --output clutch.fmu
+    """
+    _export("clutch", unit)
+
+
+def _export(name: str, unit: Unit) -> None:
+    import fmu_models
+
+    with refused():
+        model = fmu_models.MODELS[name]
+        known = [one.name for one in model.variables if one.settable]
+        model = model.starting(**_numbers(changes_of(unit.settings or [], known)))
+        try:
+            check_writable(unit.output)
+        except OSError as error:
+            raise BadInputError(f"can't write the file {str(unit.output)!r}: {error.strerror}") from None
+        try:
+            made = fmu_models.export(model, unit.output, cast(Literal[2, 3], unit.fmi))
+        except RuntimeError as error:
+            raise EngineFailedError(str(error)) from None
+    what = f"with its sources and a library for {made.platform}" if made.platform else made.remark
+    print(f"{made.file}: {name} by FMI {unit.fmi}, {what}.")
+
+
+def _numbers(changes: dict[str, str]) -> dict[str, float]:
+    """Return values as numbers; the unit's own checks follow."""
+    from reference_model.systems import finite_number
+
+    words = {"true": "1", "false": "0"}
+    return {
+        name: finite_number(name, words.get(value.strip().lower(), value)) for name, value in changes.items()
+    }

@@ -1,0 +1,145 @@
+"""Units as files: sources, headers of the standard, descriptions, and a library where there is a compiler."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from fmu_models.description import build_description, description, token_of
+from fmu_models.header import header, tables
+from fmu_models.variables import Model
+
+FOLDER = Path(__file__).parent / "sources"
+
+SHARED = ("contact.c", "unit.c", "integrator.c")
+
+MADE = "variables.c"
+
+OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
+
+Fmi = Literal[2, 3]
+
+NO_COMPILER = "there is no C compiler here: the unit has its sources alone, which an importer may compile"
+
+
+class HeadersMissingError(ValueError):
+    """FMPy, which brings the headers of the standard, is not installed."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A unit that was written.
+
+    Parameters
+    ----------
+    file : Path
+        Where it is.
+    platform : str
+        What its library is for, "" if it has none.
+    remark : str
+        Why it has none, "" if it has one.
+
+    """
+
+    file: Path
+    platform: str
+    remark: str
+
+
+def sources_of(model: Model, fmi: Fmi) -> tuple[str, ...]:
+    """Return the names of the C files that a library is compiled from."""
+    return (model.source, *SHARED, MADE, f"fmi{fmi}.c")
+
+
+def write_sources(model: Model, folder: Path) -> None:
+    """Write all that a compiler needs but for the functions of a standard into ``folder``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in (*FOLDER.glob("*.h"), *(FOLDER / name for name in (model.source, *SHARED))):
+        shutil.copyfile(path, folder / path.name)
+    (folder / "variables.h").write_text(header(model, token_of(model)), "utf-8")
+    (folder / MADE).write_text(tables(model), "utf-8")
+
+
+def write_standard(folder: Path, fmi: Fmi) -> None:
+    """Write those functions and their headers into ``folder``; raise ``HeadersMissingError`` without FMPy."""
+    for path in (*standard_headers().glob(f"fmi{fmi}*.h"), FOLDER / f"fmi{fmi}.c"):
+        shutil.copyfile(path, folder / path.name)
+
+
+def standard_headers() -> Path:
+    """Return the folder of FMPy with the headers of the standard; raise ``HeadersMissingError`` if there is none."""
+    found = importlib.util.find_spec("fmpy")
+    if found is None or found.origin is None:
+        raise HeadersMissingError(
+            "a unit needs the headers of FMI, which FMPy brings: pip install 'friction-discs[fmu]'"
+        )
+    return Path(found.origin).parent / "c-code"
+
+
+def compiler() -> str | None:
+    """Return the C compiler: that of the environment variable CC, or one of the usual names, or None."""
+    return next(filter(None, map(shutil.which, (os.environ.get("CC") or "cc", "gcc", "clang"))), None)
+
+
+def compile_library(sources: Sequence[Path], library: Path, *more: str) -> None:
+    """Compile C files with the ``compiler``; raise ``RuntimeError`` with what it says."""
+    library.parent.mkdir(parents=True, exist_ok=True)
+    command = [str(compiler()), *OPTIONS, *more, "-o", str(library), *map(str, sources), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"the compiler failed: {done.stderr.strip()}")
+
+
+def platform(fmi: Fmi) -> tuple[str, str]:
+    """Return what the standard calls this machine, and how names of libraries end."""
+    machine = sysconfig.get_platform().rsplit("-", 1)[-1].lower()
+    system, ending = {"win32": ("windows", ".dll"), "darwin": ("darwin", ".dylib")}.get(
+        sys.platform, ("linux", ".so")
+    )
+    if fmi == 2:
+        bits = "64" if sys.maxsize > 2**32 else "32"
+        return {"windows": "win"}.get(system, system) + bits, ending
+    return f"{ {'amd64': 'x86_64', 'arm64': 'aarch64'}.get(machine, machine) }-{system}", ending
+
+
+def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
+    """Write a model as a unit; return what it holds.
+
+    Raises
+    ------
+    HeadersMissingError
+        If FMPy is not installed.
+    RuntimeError
+        If there is a compiler, and it fails.
+    OSError
+        If the file can't be written.
+
+    """
+    sources = sources_of(model, fmi)
+    with tempfile.TemporaryDirectory(prefix="friction-discs-") as name:
+        folder = Path(name)
+        write_sources(model, folder / "sources")
+        write_standard(folder / "sources", fmi)
+        (folder / "modelDescription.xml").write_bytes(description(model, fmi, sources))
+        if fmi == 3:
+            (folder / "sources" / "buildDescription.xml").write_bytes(build_description(model, sources))
+        machine, ending = platform(fmi)
+        remark = "" if compiler() else NO_COMPILER
+        if not remark:
+            library = folder / "binaries" / machine / f"{model.name}{ending}"
+            compile_library([folder / "sources" / one for one in sources], library)
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path in sorted(folder.rglob("*")):
+                if path.is_file():
+                    archive.write(path, path.relative_to(folder).as_posix())
+    return Exported(file, "" if remark else machine, remark)

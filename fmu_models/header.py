@@ -1,0 +1,83 @@
+"""The C header of a model and its tables: variables, and the rule of quadrature over an annulus."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fmu_models.variables import Model, Variable
+
+RINGS = 12
+"""Of an annulus, on either side of where one of its points may rest."""
+
+CAUSALITY = {
+    "time": "t",
+    "parameter": "p",
+    "state": "s",
+    "derivative": "d",
+    "input": "i",
+    "output": "o",
+    "local": "d",
+}
+TYPE = {"real": "r", "whole": "n", "boolean": "b"}
+
+
+def header(model: Model, token: str) -> str:
+    """Return the text of ``variables.h``; ``token`` is that of the description."""
+    return "\n".join(
+        [
+            "/* Made from the table of variables: the value reference of each. */",
+            "#ifndef VARIABLES_H",
+            "#define VARIABLES_H",
+            *(f"#define V_{one.name} {i}" for i, one in enumerate(model.variables)),
+            f"#define N_VARIABLES {len(model.variables)}",
+            f"#define N_STATES {len(model.states)}",
+            f"#define N_GAUSS {RINGS}",
+            f'#define TOKEN "{token}"',
+            "typedef struct {",
+            "    const char *name, *unit;",
+            "    char type, causality;",
+            "    int above; /* whether the least value itself is not allowed */",
+            "    double start, least, most;",
+            "} Variable;",
+            *(f"extern const {array};" for array in _arrays(model)),
+            "#endif",
+            "",
+        ]
+    )
+
+
+def tables(model: Model) -> str:
+    """Return the text of ``variables.c``: what the header declares."""
+    lines = [f"const {array} = {{{values}}};" for array, values in _arrays(model).items()]
+    return "\n".join(['#include "variables.h"', "#include <math.h>", *lines, ""])
+
+
+def _arrays(model: Model) -> dict[str, str]:
+    """Return the values of each array by its declaration."""
+    places, weights = np.polynomial.legendre.leggauss(RINGS)
+    return {
+        "Variable VARIABLES[N_VARIABLES]": ",\n".join(_row(one) for one in model.variables),
+        "int STATES[N_STATES]": ", ".join(f"V_{one.name}" for one in model.states),
+        "int DERIVATIVES[N_STATES]": ", ".join(f"V_{one.name}" for one in model.derivatives),
+        "char STATE_KINDS[N_STATES]": ", ".join(repr(one.scale) for one in model.states),
+        "double GAUSS_PLACES[N_GAUSS]": _numbers(0.5 + 0.5 * places),
+        "double GAUSS_WEIGHTS[N_GAUSS]": _numbers(0.5 * weights),
+    }
+
+
+def _numbers(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    return ", ".join(repr(float(value)) for value in values)
+
+
+def _row(one: Variable) -> str:
+    start = 0.0 if one.start is None else one.start
+    bounds = ", ".join(_number(value) for value in (start, one.least, one.most))
+    return f'{{"{one.name}", "{one.unit}", {TYPE[one.type]!r}, {CAUSALITY[one.role]!r}, {int(one.above)}, {bounds}}}'
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
+    return repr(float(value))

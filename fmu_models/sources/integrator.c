@@ -1,0 +1,162 @@
+/* Dormand and Prince's pair of orders 5 and 4 with error control, and the events of exact Coulomb friction by its
+   continuous extension of order 4 (Hairer, Norsett, Wanner, Solving ODE I, II.5 and II.6). */
+#include "unit.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MOST_STEPS 20000000L /* between two communication points */
+#define SAMPLES 8 /* of a step, between which an event is looked for */
+#define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
+#define N (N_STATES)
+
+static const double A[6][6] = {
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+};
+static const double C[6] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
+static const double E[7] = {71.0 / 57600,      0.0,          -71.0 / 16695, 71.0 / 1920,
+                            -17253.0 / 339200, 22.0 / 525,   -1.0 / 40};
+typedef struct {
+    double t, h, y[N], k[7][N], end[N], slip; /* its speed where the step begins */
+} Step;
+
+static void rates(State *s, double t, const double y[N], double f[N]) {
+    s->v[V_time] = t;
+    for (int i = 0; i < N; i++) s->v[STATES[i]] = y[i];
+    model_evaluate(s);
+    for (int i = 0; i < N; i++) f[i] = s->v[DERIVATIVES[i]];
+}
+
+/* Fills k[1..6] and the end of a step of which t, h, y and k[0] are there; returns its error over what is allowed. */
+static double attempt(State *s, Step *one) {
+    double worst = 0.0;
+    for (int stage = 0; stage < 6; stage++) {
+        for (int i = 0; i < N; i++) {
+            double sum = 0.0;
+            for (int j = 0; j <= stage; j++) sum += A[stage][j] * one->k[j][i];
+            one->end[i] = one->y[i] + one->h * sum;
+        }
+        rates(s, one->t + C[stage] * one->h, one->end, one->k[stage + 1]);
+    }
+    for (int i = 0; i < N; i++) {
+        double error = 0.0, size = s->nominal[i] + fmax(fabs(one->y[i]), fabs(one->end[i]));
+        for (int j = 0; j < 7; j++) error += E[j] * one->k[j][i];
+        size *= s->tolerance;
+        if (STATE_KINDS[i] == 'v') size = fmin(size, DIRECTION * fmax(one->slip, s->epsilon));
+        error = fabs(one->h * error) / size;
+        if (!(error <= worst)) worst = error; /* what is no number, too */
+    }
+    return worst;
+}
+
+#ifdef V_indicator
+static const double D[7] = {-12715105075.0 / 11282082432, 0.0, 87487479700.0 / 32700410799,
+                            -10690763975.0 / 1880347072,  701980252875.0 / 199316789632,
+                            -1453857185.0 / 822651844,    69997945.0 / 29380423};
+
+/* The state at the share x of a step. */
+static void within(const Step *one, double x, double y[N]) {
+    for (int i = 0; i < N; i++) {
+        double rise = one->end[i] - one->y[i], first = one->h * one->k[0][i] - rise, last = 0.0;
+        for (int j = 0; j < 7; j++) last += D[j] * one->k[j][i];
+        y[i] = one->y[i] + x * (rise + (1.0 - x) * (first + x * (rise - one->h * one->k[6][i] - first +
+                                                                 (1.0 - x) * one->h * last)));
+    }
+}
+
+static double indicator(State *s, const Step *one, double x) {
+    double y[N], f[N];
+    within(one, x, y);
+    rates(s, one->t + x * one->h, y, f);
+    return s->v[V_indicator];
+}
+
+/* Whether the sign of the indicator changes in a step, which then ends just behind that. */
+static int event(State *s, Step *one) {
+    double before = indicator(s, one, 0.0);
+    if (s->v[V_exact] == 0.0) return 0;
+    for (int i = 1; i <= SAMPLES; i++) {
+        double low = (i - 1.0) / SAMPLES, high = i / (double)SAMPLES;
+        if ((indicator(s, one, high) > 0.0) == (before > 0.0)) continue;
+        for (int turn = 0; turn < 60; turn++) {
+            double middle = 0.5 * (low + high);
+            if ((indicator(s, one, middle) > 0.0) == (before > 0.0)) low = middle;
+            else high = middle;
+        }
+        within(one, high, one->end);
+        one->h *= high;
+        return 1;
+    }
+    return 0;
+}
+#else
+static int event(State *s, Step *one) {
+    (void)s, (void)one;
+    return 0;
+}
+#endif
+
+static double first_step(const State *s, const double y[N], const double f[N], double longest) {
+    double h = longest;
+    for (int i = 0; i < N; i++)
+        if (f[i] != 0.0) h = fmin(h, 0.01 * (s->nominal[i] + fabs(y[i])) / fabs(f[i]));
+    return h;
+}
+
+int unit_advance(Unit *unit, double until) {
+    State *s = &unit->state;
+    Step one;
+    char sentence[INTERNAL_DIGITS];
+    long tried = 0;
+    double begin = s->v[V_time], least = 1e-15 * (1.0 + fabs(begin) + fabs(until));
+    one.t = begin;
+    for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
+    rates(s, one.t, one.y, one.k[0]);
+    one.slip = s->v[V_slip_speed];
+    if (!(s->step > 0.0)) s->step = first_step(s, one.y, one.k[0], until - begin);
+    while (until - one.t > least) {
+        double error, factor, left = until - one.t;
+        int last, happens;
+        one.h = fmin(s->step, s->longest);
+        last = one.h >= 0.999999 * left;
+        if (last) one.h = left;
+        if (tried++ == MOST_STEPS) {
+            snprintf(sentence, sizeof sentence, "at t = %.9g s there were %ld steps already, the last one of %.3g s",
+                     one.t, tried - 1, one.h);
+            unit->say(unit, 1, sentence);
+            return 1;
+        }
+        error = attempt(s, &one);
+        factor = error > 0.0 ? 0.9 * pow(error, -0.2) : 5.0;
+        if (!(error <= 1.0)) { /* or no number */
+            s->step = one.h * (factor > 0.1 ? fmin(factor, 0.9) : 0.1);
+            if (s->step < least) {
+                snprintf(sentence, sizeof sentence, "at t = %.9g s the steps became too short: %.3g s", one.t,
+                         s->step);
+                unit->say(unit, 1, sentence);
+                return 1;
+            }
+            continue;
+        }
+        if (!last || factor < 1.0) s->step = one.h * fmin(fmax(factor, 0.2), 5.0);
+        else s->step = fmax(s->step, one.h * fmin(factor, 5.0));
+        happens = event(s, &one);
+        one.t = last && !happens ? until : one.t + one.h;
+        memcpy(one.y, one.end, sizeof one.y);
+        s->v[V_time] = one.t;
+        for (int i = 0; i < N; i++) s->v[STATES[i]] = one.y[i];
+        if (happens && model_change(s)) /* it jumps onto what holds it, or away */
+            for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
+        rates(s, one.t, one.y, one.k[0]);
+        one.slip = s->v[V_slip_speed];
+        if (unit->between && unit->between(unit, one.t) && until - one.t > least) return 2;
+    }
+    s->v[V_time] = until;
+    s->stale = 1;
+    return 0;
+}

@@ -1,0 +1,218 @@
+/* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
+   takes more than friction has. */
+#include "contact.h"
+#include "support.h"
+#include "unit.h"
+
+#ifdef V_spin
+#define SPIN v[V_spin]
+#define RADIUS v[V_contact_radius]
+#else
+#define SPIN 0.0
+#define RADIUS 0.0
+#endif
+
+static Contact contact_of(const State *s) {
+    const double *v = s->v;
+    Contact contact = {RADIUS, RADIUS, 0, v[V_friction_force], 1.0, s->epsilon};
+    return contact;
+}
+
+static Support support_of(const double v[]) {
+    Support support = {v[V_stiffness], v[V_damping],  v[V_offset],
+                       v[V_hardening], v[V_stop_gap], v[V_stop_stiffness]};
+    return support;
+}
+
+static void slip_of(const double v[], double slip[3]) {
+    slip[0] = v[V_vx] + v[V_disc_speed] * v[V_y];
+    slip[1] = v[V_vy] - v[V_disc_speed] * v[V_x];
+#ifdef V_spin
+    slip[2] = v[V_spin] - v[V_disc_speed];
+#else
+    slip[2] = 0.0;
+#endif
+}
+
+const char *model_refusal(const double v[]) {
+    (void)v;
+    return 0;
+}
+
+void model_scales(const State *s, double *length, double *speed, double *rate) {
+    const double *v = s->v;
+    double slip[3];
+    slip_of(v, slip);
+    *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), RADIUS);
+    if (*length == 0.0) *length = 1.0;
+    *speed = fmax(hypot(v[V_vx], v[V_vy]), fabs(v[V_disc_speed]) * *length);
+    *speed = fmax(*speed, RADIUS * fabs(slip[2]));
+    if (*speed == 0.0) *speed = *length;
+    *rate = fmax(sqrt(v[V_stiffness] / v[V_mass]), fmax(fabs(v[V_disc_speed]), v[V_damping] / v[V_mass]));
+}
+
+/* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */
+static double held_by(const State *s, double force[3], double by[2]) {
+    const double *v = s->v;
+    Contact contact = contact_of(s);
+    Support support = support_of(v);
+    double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, turning[2] = {-w * v[V_y], w * v[V_x]}, elastic[2];
+    support_force(&support, z, turning, elastic);
+    force[0] = -v[V_mass] * w * w * v[V_x] - elastic[0];
+    force[1] = -v[V_mass] * w * w * v[V_y] - elastic[1];
+#ifdef V_spin
+    force[2] = v[V_shaft_damping] * (w - v[V_shaft_speed]);
+#else
+    force[2] = 0.0;
+#endif
+    return friction_needed(&contact, hypot(force[0], force[1]), force[2], by);
+}
+
+/* The same along dz. */
+static double held_tangent(const State *s, const double dz[2], const double force[3], const double by[2],
+                           double d_force[3]) {
+    const double *v = s->v;
+    Support support = support_of(v);
+    double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, turning[2] = {-w * dz[1], w * dz[0]}, elastic[2];
+    double size = hypot(force[0], force[1]);
+    support_tangent(&support, z, dz, turning, elastic);
+    for (int i = 0; i < 2; i++) d_force[i] = -v[V_mass] * w * w * dz[i] - elastic[i];
+    d_force[2] = 0.0;
+    return size > 0.0 ? by[0] * (force[0] * d_force[0] + force[1] * d_force[1]) / size : 0.0;
+}
+
+static void slips(State *s, const double force[3]) {
+    double *v = s->v, z[2] = {v[V_x], v[V_y]}, velocity[2] = {v[V_vx], v[V_vy]}, elastic[2];
+    Support support = support_of(v);
+    support_force(&support, z, velocity, elastic);
+    v[V_der_x] = v[V_vx];
+    v[V_der_y] = v[V_vy];
+    v[V_der_vx] = (force[0] + elastic[0]) / v[V_mass];
+    v[V_der_vy] = (force[1] + elastic[1]) / v[V_mass];
+#ifdef V_spin
+    v[V_der_angle] = v[V_spin];
+    v[V_der_spin] = (force[2] - v[V_shaft_damping] * (v[V_spin] - v[V_shaft_speed])) / v[V_polar_inertia];
+#endif
+}
+
+static void rests(State *s) {
+    double *v = s->v, w = v[V_disc_speed];
+    v[V_der_x] = -w * v[V_y];
+    v[V_der_y] = w * v[V_x];
+    v[V_der_vx] = -w * w * v[V_x];
+    v[V_der_vy] = -w * w * v[V_y];
+#ifdef V_spin
+    v[V_der_angle] = w;
+    v[V_der_spin] = 0.0;
+#endif
+}
+
+void model_evaluate(State *s) {
+    double *v = s->v, slip[3], force[3], by[2], slope[2];
+    Contact contact = contact_of(s);
+    slip_of(v, slip);
+    if (s->mode == SLIPS) {
+        v[V_slip_speed] = friction(&contact, slip, force);
+        v[V_indicator] = v[V_slip_speed] - s->epsilon;
+        slips(s, force);
+    } else {
+        double needed = held_by(s, force, by);
+        if (s->mode == STICKS) {
+            v[V_slip_speed] = 0.0;
+            v[V_indicator] = v[V_friction_force] - needed;
+            rests(s);
+        } else { /* it ends where the slip is fast enough, or turns back */
+            double along = 0.0;
+            for (int i = 0; i < 3; i++) {
+                along += force[i] / needed * slip[i];
+                force[i] *= v[V_friction_force] / needed;
+            }
+            v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+            v[V_indicator] = fmin(s->leaving - v[V_slip_speed], s->epsilon - along);
+            slips(s, force);
+        }
+    }
+    v[V_sticks] = s->mode == STICKS;
+    v[V_friction_x] = force[0];
+    v[V_friction_y] = force[1];
+#ifdef V_spin
+    v[V_friction_moment] = force[2];
+#endif
+}
+
+void model_tangent(const State *s, double d[]) {
+    const double *v = s->v;
+    Contact contact = contact_of(s);
+    Support support = support_of(v);
+    double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, dz[2] = {d[V_x], d[V_y]}, dv[2] = {d[V_vx], d[V_vy]};
+    double slip[3], d_slip[3] = {dv[0] + w * dz[1], dv[1] - w * dz[0], 0.0}, force[3], d_force[3], by[2], elastic[2];
+#ifdef V_spin
+    d_slip[2] = d[V_spin];
+#endif
+    slip_of(v, slip);
+    if (s->mode == SLIPS) {
+        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_force);
+    } else {
+        double needed = held_by(s, force, by), d_needed = held_tangent(s, dz, force, by, d_force), slope[2];
+        d[V_slip_speed] = 0.0;
+        if (s->mode == LEAVES) {
+            double U = hypot(slip[0], slip[1]);
+            for (int i = 0; i < 3; i++)
+                d_force[i] = v[V_friction_force] * (d_force[i] - force[i] * d_needed / needed) / needed;
+            if (slip_potential(&contact, U, slip[2], slope) > 0.0)
+                d[V_slip_speed] = (U > 0.0 ? slope[0] * (slip[0] * d_slip[0] + slip[1] * d_slip[1]) / U : 0.0) +
+                                  (slip[2] < 0.0 ? -slope[1] : slope[1]) * d_slip[2];
+        }
+    }
+    if (s->mode == STICKS) {
+        d[V_der_x] = -w * dz[1];
+        d[V_der_y] = w * dz[0];
+        d[V_der_vx] = -w * w * dz[0];
+        d[V_der_vy] = -w * w * dz[1];
+#ifdef V_spin
+        d[V_der_angle] = d[V_der_spin] = 0.0;
+#endif
+    } else {
+        support_tangent(&support, z, dz, dv, elastic);
+        d[V_der_x] = dv[0];
+        d[V_der_y] = dv[1];
+        d[V_der_vx] = (d_force[0] + elastic[0]) / v[V_mass];
+        d[V_der_vy] = (d_force[1] + elastic[1]) / v[V_mass];
+#ifdef V_spin
+        d[V_der_angle] = d[V_spin];
+        d[V_der_spin] = (d_force[2] - v[V_shaft_damping] * d[V_spin]) / v[V_polar_inertia];
+#endif
+    }
+    d[V_sticks] = d[V_indicator] = 0.0;
+    d[V_friction_x] = d_force[0];
+    d[V_friction_y] = d_force[1];
+#ifdef V_spin
+    d[V_friction_moment] = d_force[2];
+#endif
+}
+
+int model_change(State *s) {
+    double *v = s->v, force[3], slip[3], slope[2], by[2], w = v[V_disc_speed], needed, speed;
+    Contact contact = contact_of(s);
+    if (v[V_exact] == 0.0) return 0;
+    needed = held_by(s, force, by);
+    if (s->mode == STICKS) {
+        if (needed < v[V_friction_force] * (1.0 - 1e-12)) return 0;
+        s->mode = LEAVES;
+        return 1;
+    }
+    slip_of(v, slip);
+    speed = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+    if (s->mode == LEAVES && speed >= 0.99 * s->leaving) {
+        s->mode = SLIPS;
+        return 1;
+    }
+    if (speed > 1.01 * s->epsilon || needed >= v[V_friction_force] * (1.0 - 1e-9)) return 0;
+    s->mode = STICKS;
+    v[V_vx] = -w * v[V_y];
+    v[V_vy] = w * v[V_x];
+#ifdef V_spin
+    v[V_spin] = w;
+#endif
+    return 1;
+}

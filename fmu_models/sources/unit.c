@@ -1,0 +1,112 @@
+#include "unit.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Share of the speed below which slip counts as rest where the solver is the importer's, whose errors are larger. */
+#define AS_REST 1e-9
+
+void unit_reset(Unit *unit) {
+    memset(&unit->state, 0, sizeof unit->state);
+    for (int i = 0; i < N_VARIABLES; i++) unit->state.v[i] = VARIABLES[i].start;
+    unit->state.stale = 1;
+}
+
+static int refuse(Unit *unit, const char *sentence) {
+    unit->say(unit, 1, sentence);
+    return 1;
+}
+
+int unit_initialise(Unit *unit, double time) {
+    State *s = &unit->state;
+    char sentence[INTERNAL_DIGITS];
+    const char *reason;
+    double length, speed, rate;
+    for (int i = 0; i < N_VARIABLES; i++) {
+        const Variable *one = &VARIABLES[i];
+        double value = s->v[i];
+        if (one->causality != 'p' && one->causality != 's' && one->causality != 'i') continue;
+        if (!isfinite(value)) {
+            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be finite", one->name, value, one->unit);
+            return refuse(unit, sentence);
+        }
+        if (value < one->least || (one->above && value == one->least)) {
+            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be %s %g", one->name, value, one->unit,
+                     one->above ? ">" : ">=", one->least);
+            return refuse(unit, sentence);
+        }
+        if (value > one->most) {
+            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be <= %g", one->name, value, one->unit,
+                     one->most);
+            return refuse(unit, sentence);
+        }
+    }
+    reason = model_refusal(s->v);
+    if (reason) return refuse(unit, reason);
+    s->v[V_time] = time;
+    s->tolerance = s->v[V_tolerance];
+    model_scales(s, &length, &speed, &rate);
+    /* Errors are to fall with the tolerance also where communication steps are shorter than it needs. */
+    s->longest = rate > 0.0 ? pow(s->tolerance, 0.2) / rate : HUGE_VAL;
+    for (int i = 0; i < N_STATES; i++) {
+        char kind = STATE_KINDS[i];
+        s->nominal[i] = kind == 'x' ? length : kind == 'v' ? speed : 1.0;
+    }
+    s->epsilon = s->v[V_regularisation];
+#ifdef V_exact
+    if (s->v[V_exact] != 0.0) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
+#endif
+    /* what is missed then falls like its power 3/2, with the tolerance */
+    s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
+    s->step = 0.0;
+    s->mode = SLIPS;
+    s->initialised = 1;
+    model_change(s);
+    s->stale = 1;
+    return 0;
+}
+
+void unit_refresh(Unit *unit) {
+    if (unit->state.stale) {
+        model_evaluate(&unit->state);
+        unit->state.stale = 0;
+    }
+}
+
+int unit_has(Unit *unit, size_t variable, char type) {
+    char sentence[INTERNAL_DIGITS];
+    if (variable < N_VARIABLES && VARIABLES[variable].type == type) return 1;
+    snprintf(sentence, sizeof sentence, "value reference %lu: there is no variable of this type with it",
+             (unsigned long)variable);
+    unit->say(unit, 1, sentence);
+    return 0;
+}
+
+double unit_get(Unit *unit, size_t variable) {
+    char causality = VARIABLES[variable].causality;
+    if (causality == 'o' || causality == 'd') {
+        if (!unit->state.initialised) unit->state.epsilon = unit->state.v[V_regularisation];
+        unit_refresh(unit);
+    }
+    return unit->state.v[variable];
+}
+
+int unit_set(Unit *unit, size_t variable, char type, double value) {
+    const Variable *one = &VARIABLES[variable];
+    char sentence[INTERNAL_DIGITS];
+    if (!unit_has(unit, variable, type)) return 1;
+    if (one->causality != 'i' && (one->causality == 'o' || one->causality == 'd' || one->causality == 't' ||
+                                  unit->state.initialised)) {
+        snprintf(sentence, sizeof sentence, "%s can %s be set", one->name,
+                 one->causality == 'p' || one->causality == 's' ? "only before the start" : "never");
+        return refuse(unit, sentence);
+    }
+    unit->state.v[variable] = value;
+    unit->state.stale = 1;
+    return 0;
+}
+
+void unit_tangent(Unit *unit, double d[N_VARIABLES]) {
+    unit_refresh(unit);
+    model_tangent(&unit->state, d);
+}

@@ -1,0 +1,60 @@
+/* One instance of a model, whatever the version of the standard that it is asked by. */
+#ifndef UNIT_H
+#define UNIT_H
+#include "variables.h"
+#include <stddef.h>
+
+#define INTERNAL_DIGITS 256
+
+/* All that moves: what is rolled back. */
+typedef struct {
+    double v[N_VARIABLES]; /* by value reference */
+    double epsilon;        /* of the contact in m/s */
+    double nominal[N_STATES + 1];
+    double step;       /* with which the integrator goes on, in s */
+    double longest;    /* of its steps, in s */
+    double tolerance;  /* of the integrator */
+    double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
+    int mode;          /* of the contact; but SLIPS of an exact one only */
+    int stale;         /* whether what follows from states and inputs is to be found yet */
+    int initialised;
+} State;
+
+/* STICKS: it rests as a whole. LEAVES: it was let go, and is so slow that friction turns faster than steps can follow;
+   its direction is then that of what would hold the contact, which the slip follows but for the square of the time. */
+enum { SLIPS, STICKS, LEAVES };
+
+typedef struct Unit Unit;
+
+struct Unit {
+    State state;
+    char name[INTERNAL_DIGITS];
+    void (*say)(Unit *unit, int failed, const char *sentence); /* through the logger of the importer */
+    void (*logger)(void);
+    void *environment;
+    int logging;
+    /* Called after each step of the integrator; returns whether the importer wants to stop there. */
+    int (*between)(Unit *unit, double time);
+    void (*update)(void);
+    int early;
+    int exchange; /* whether the solver is the importer's */
+};
+
+/* What a model is: pin.c, disc.c and clutch.c each define these. */
+const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
+/* By which errors are measured: a length, a speed, and a rate in 1/s, 0 where inputs may have any. */
+void model_scales(const State *state, double *length, double *speed, double *rate);
+void model_evaluate(State *state); /* derivatives and outputs from states and inputs */
+void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
+int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
+
+void unit_reset(Unit *unit);
+int unit_initialise(Unit *unit, double time); /* 0, or 1 if parameters were refused */
+void unit_refresh(Unit *unit);
+double unit_get(Unit *unit, size_t variable);
+int unit_set(Unit *unit, size_t variable, char type, double value);
+int unit_has(Unit *unit, size_t variable, char type);
+void unit_tangent(Unit *unit, double d[N_VARIABLES]);
+int unit_advance(Unit *unit, double until); /* by co-simulation; 0, 1 if it failed, 2 if it stopped early */
+
+#endif

@@ -1,0 +1,297 @@
+"""The variables of the units: one table for each model, of which description files and the C header are made.
+
+Parameters and states of pin and disc have the names, units and bounds that ``reference_model.systems`` gives them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from reference_model.systems import COLUMNS, PARAMETERS, DiscOnDisc, PinOnDisc, System
+
+MOST_PLATES = 1000
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of a model.
+
+    Parameters
+    ----------
+    name : str
+        By which importers know it; its place in the table is its value reference.
+    unit : str
+        One of ``description.UNITS``, or "" for none.
+    about : str
+        What it is.
+    role : str
+        "time", "parameter", "state", "derivative", "input", "output" or "local".
+    start : float, optional
+        Value before initialisation; None where it follows from others.
+    least, most : float
+        What the unit allows.
+    above : bool
+        Whether the least value itself is not allowed.
+    type : str
+        "real", "whole" or "boolean".
+    derivative_of : str
+        The state of which it is the derivative, "" if of none.
+    scale : str
+        What a state is measured by: "x" as lengths, "v" as speeds, or "1".
+
+    """
+
+    name: str
+    unit: str
+    about: str
+    role: str
+    start: float | None = None
+    least: float = -math.inf
+    most: float = math.inf
+    above: bool = False
+    type: str = "real"
+    derivative_of: str = ""
+    scale: str = ""
+
+    @property
+    def settable(self) -> bool:
+        """Whether it has a start value that an importer may change."""
+        return self.role in ("parameter", "state", "input")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model: its name, what it is, the C source of its own, and its variables in the order of value references."""
+
+    name: str
+    about: str
+    source: str
+    variables: tuple[Variable, ...]
+
+    @property
+    def states(self) -> tuple[Variable, ...]:
+        """The continuous states."""
+        return self.having("state")
+
+    @property
+    def derivatives(self) -> tuple[Variable, ...]:
+        """Their derivatives, in the same order."""
+        by_state = {one.derivative_of: one for one in self.having("derivative")}
+        return tuple(by_state[one.name] for one in self.states)
+
+    def having(self, *roles: str) -> tuple[Variable, ...]:
+        """Return the variables of some roles, in their order."""
+        return tuple(one for one in self.variables if one.role in roles)
+
+    def starting(self, **values: float) -> Model:
+        """Return the model with other start values; raise ``ValueError`` for one that it can't have."""
+        known = {one.name: one for one in self.variables if one.settable}
+        for name, value in values.items():
+            if name not in known:
+                raise ValueError(f"{name}: it must be one of {', '.join(known)}")
+            known[name] = replace(known[name], start=_checked(known[name], value))
+        return replace(self, variables=tuple(known.get(one.name, one) for one in self.variables))
+
+
+def _checked(variable: Variable, value: float) -> float:
+    number = float(value)
+    told = f"{variable.name} = {number:g} {variable.unit}".rstrip()
+    if not math.isfinite(number):
+        raise ValueError(f"{told}: it must be finite")
+    if number < variable.least or (variable.above and number == variable.least):
+        raise ValueError(f"{told}: it must be {'>' if variable.above else '>='} {variable.least:g}")
+    if number > variable.most:
+        raise ValueError(f"{told}: it must be <= {variable.most:g}")
+    if variable.type != "real" and number != int(number):
+        raise ValueError(f"{told}: it must be a whole number")
+    return number
+
+
+ABOUT = {
+    "mass": "mass of what moves in the plane of contact",
+    "stiffness": "stiffness of the radial support, the same in every direction",
+    "damping": "damping of the radial support",
+    "friction_force": "friction while all slips, coefficient times normal load",
+    "disc_speed": "speed of the disc below",
+    "offset": "where on the x-axis the springs are relaxed; the disc below turns about 0",
+    "hardening": "stiffness that grows with the square of the deflection",
+    "stop_gap": "play before the stop of the support",
+    "stop_stiffness": "stiffness of the stop, 0 for none",
+    "polar_inertia": "moment of inertia about the axis",
+    "contact_radius": "radius of the ring of contact",
+    "shaft_damping": "torsional damper between disc and shaft",
+    "shaft_speed": "speed of the shaft",
+    "x": "position",
+    "y": "position",
+    "angle": "angle that the disc has turned",
+    "vx": "velocity",
+    "vy": "velocity",
+    "spin": "speed of the disc",
+    "heat": "what friction has turned into heat",
+}
+
+MEASURED_BY = {"x": "x", "y": "x", "angle": "1", "vx": "v", "vy": "v", "spin": "1", "heat": "1"}
+
+DERIVED_UNITS = {"m": "m/s", "m/s": "m/s2", "rad": "rad/s", "rad/s": "rad/s2", "J": "W"}
+
+REFERENCE_UNITS = {"N s/m": "N.s/m", "N/m³": "N/m3", "kg m²": "kg.m2", "N m s/rad": "N.m.s/rad"}
+"""Units of the reference in the spelling that the standard recommends."""
+
+TIME = Variable("time", "s", "time", "time")
+TOLERANCE = Variable(
+    "tolerance", "", "relative, of the integrator of co-simulation", "parameter", 1e-11, 1e-14, 1e-2
+)
+REGULARISATION = Variable(
+    "regularisation",
+    "m/s",
+    "mean slip speed below which the contact is viscous",
+    "parameter",
+    1e-6,
+    0.0,
+    above=True,
+)
+EXACT = Variable(
+    "exact",
+    "",
+    "whether the contact sticks by state events; otherwise it creeps below regularisation",
+    "parameter",
+    1.0,
+    0.0,
+    1.0,
+    type="boolean",
+)
+FRICTION = (
+    Variable("slip_speed", "m/s", "mean slip speed of the contact", "output"),
+    Variable("friction_x", "N", "friction on the mass", "output"),
+    Variable("friction_y", "N", "friction on the mass", "output"),
+)
+
+
+def _states(names: Sequence[tuple[str, str]], start: Sequence[float]) -> tuple[Variable, ...]:
+    states = tuple(
+        Variable(name, unit, ABOUT[name], "state", value, scale=MEASURED_BY[name])
+        for (name, unit), value in zip(names, start, strict=True)
+    )
+    return states + tuple(_derivative(one) for one in states)
+
+
+def _derivative(state: Variable) -> Variable:
+    about = f"derivative of {state.name}"
+    return Variable(
+        f"der_{state.name}", DERIVED_UNITS[state.unit], about, "derivative", derivative_of=state.name
+    )
+
+
+def _parameters(kind: type[System], values: Sequence[float]) -> tuple[Variable, ...]:
+    return tuple(
+        Variable(
+            name, REFERENCE_UNITS.get(unit, unit), ABOUT[name], "parameter", value, least, above=least > 0.0
+        )
+        for (name, unit, least), value in zip(PARAMETERS[kind], values, strict=True)
+    )
+
+
+def _supported(kind: type[System], values: Sequence[float], start: Sequence[float]) -> tuple[Variable, ...]:
+    return (
+        TIME,
+        *_parameters(kind, values),
+        REGULARISATION,
+        EXACT,
+        TOLERANCE,
+        *_states(COLUMNS[kind], start),
+        *FRICTION,
+        Variable("sticks", "", "whether the contact rests as a whole", "output", type="boolean"),
+        Variable("indicator", "", "changes its sign where the contact begins or ends to stick", "local"),
+    )
+
+
+PIN = Model(
+    "pin",
+    "A pin on springs and dampers, pressed on a disc that turns at constant speed",
+    "supported.c",
+    _supported(PinOnDisc, (1.0, 1.0, 0.1, 0.09, 1.5, 0.1, 0.0, 0.0, 0.0), (0.1, 0.0, 0.03, 0.0)),
+)
+
+DISC = Model(
+    "disc",
+    "A friction disc on springs and dampers that a ring of contact couples to a turning master disc",
+    "supported.c",
+    (
+        *_supported(
+            DiscOnDisc,
+            (1.0, 1.0, 0.5, 0.0225, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.12, 0.015, 1.25),
+            (0.02, 0.0, 0.0, 0.0, 0.0, 1.3),
+        ),
+        Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
+    ),
+)
+
+
+def _clutch() -> tuple[Variable, ...]:
+    supports = {name: (unit, least) for name, unit, least in PARAMETERS[PinOnDisc]}
+    support = tuple(
+        Variable(
+            name,
+            REFERENCE_UNITS.get(supports[name][0], supports[name][0]),
+            ABOUT[name],
+            "parameter",
+            value,
+            supports[name][1],
+            above=supports[name][1] > 0.0,
+        )
+        for name, value in (
+            ("mass", 1.0),
+            ("stiffness", 1e6),
+            ("damping", 100.0),
+            ("offset", 0.0),
+            ("hardening", 0.0),
+            ("stop_gap", 0.0),
+            ("stop_stiffness", 0.0),
+        )
+    )
+    return (
+        TIME,
+        *support,
+        Variable("inner_radius", "m", "of the contact; that of a ring is the outer", "parameter", 0.1, 0.0),
+        Variable("outer_radius", "m", "of the contact; 0 for a pin", "parameter", 0.1, 0.0),
+        Variable(
+            "wear",
+            "",
+            "whether pressure is as linings wear, alike with 1/r, or uniform",
+            "parameter",
+            0.0,
+            0.0,
+            1.0,
+            type="boolean",
+        ),
+        Variable("plates", "", "pairs of faces in contact", "parameter", 1.0, 1.0, MOST_PLATES, type="whole"),
+        Variable("static_ratio", "", "of static to sliding friction", "parameter", 1.0, 1.0),
+        REGULARISATION,
+        TOLERANCE,
+        Variable("angle_a", "rad", "angle of flange a", "input", 0.0),
+        Variable("speed_a", "rad/s", "speed of flange a", "input", 0.0),
+        Variable("angle_b", "rad", "angle of flange b, with which the disc turns", "input", 0.0),
+        Variable("speed_b", "rad/s", "speed of flange b", "input", 0.0),
+        Variable("normal_load", "N", "force along the axis", "input", 1000.0, 0.0),
+        Variable("friction_coefficient", "", "of sliding", "input", 0.3, 0.0),
+        Variable("engagement", "", "share of the normal load that presses", "input", 1.0, 0.0, 1.0),
+        *_states(
+            (*((name, unit) for name, unit in COLUMNS[PinOnDisc]), ("heat", "J")),
+            (0.0, 0.0, 0.0, 0.0, 0.0),
+        ),
+        Variable("torque_a", "N.m", "on flange a about its axis", "output"),
+        Variable("torque_b", "N.m", "on flange b", "output"),
+        *FRICTION,
+        Variable("radial_force_x", "N", "of the support on its ground", "output"),
+        Variable("radial_force_y", "N", "of the support on its ground", "output"),
+        Variable("heat_rate", "W", "what friction turns into heat", "output"),
+    )
+
+
+CLUTCH = Model(
+    "clutch", "A dry clutch between two flanges, with the radial support of its disc", "clutch.c", _clutch()
+)
+
+MODELS = {model.name: model for model in (PIN, DISC, CLUTCH)}

@@ -1,0 +1,180 @@
+"""Units as files: by both standards, with FMPy for an importer, judged as an engine, and without a compiler."""
+
+import zipfile
+
+import numpy as np
+import pytest
+
+from compare.claims.claim import Verdict
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.cli import app as cli
+from compare.engines import engines
+from compare.studies.engines.trajectories import STUDY
+from fmu_models import CLUTCH, MODELS, PIN, HeadersMissingError, archive, export
+from fmu_models.archive import FOLDER, sources_of
+
+fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed")
+pytest.importorskip("fmpy.fmi3")
+
+from fmpy.validation import validate_fmu  # noqa: E402
+
+import reference_model  # noqa: E402
+
+BOTH = pytest.mark.parametrize("fmi", [2, 3])
+NAMES = {"pin": ["x", "y", "vx", "vy"], "disc": ["x", "y", "angle", "vx", "vy", "spin"]}
+
+
+@BOTH
+@pytest.mark.parametrize("name", ["pin", "disc", "clutch"])
+def test_the_validator_finds_nothing(unit, name, fmi):
+    assert validate_fmu(str(unit(name, fmi))) == []
+
+
+def simulated(file, kind, names, **more):
+    outputs = [*names, "sticks"] if "vx" in names else list(names)
+    return fmpy.simulate_fmu(str(file), fmi_type=kind, output=outputs, set_stop_time=False, **more)
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("name", "system", "start"),
+    [("pin", FIG5, (0.9, 0.0, 0.0, 0.9)), ("disc", FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3))],
+)
+def test_slip_by_a_solver_of_others_is_that_of_the_reference(unit, name, system, start, fmi):
+    run = simulated(
+        unit(name, fmi), "ModelExchange", NAMES[name], stop_time=100.0, output_interval=1.0, solver="CVode",
+        relative_tolerance=1e-12, start_values=dict(zip(NAMES[name], start, strict=True)),
+    )  # fmt: skip
+    reference = reference_model.simulate(system, start, [0.0, 100.0], tolerance=1e-13)
+    found = [run[one][-1] for one in NAMES[name]]
+    np.testing.assert_allclose(found, reference.states[-1], rtol=0.0, atol=1e-8)
+
+
+@BOTH
+def test_a_solver_of_others_finds_when_the_pin_of_fig_5_sticks_and_is_let_go(unit, fmi):
+    start = FIG5_STARTS["whirl"]
+    run = simulated(
+        unit("pin", fmi), "ModelExchange", NAMES["pin"], stop_time=60.0, output_interval=1.0, solver="CVode",
+        relative_tolerance=1e-12, start_values=dict(zip(NAMES["pin"], start, strict=True)),
+    )  # fmt: skip
+    reference = reference_model.simulate(FIG5, start, [0.0, 60.0], tolerance=1e-13)
+    expected = [phase.start for phase in reference.phases[1:]]
+    found = run["time"][1:][np.diff(run["sticks"].astype(int)) != 0]
+    assert len(expected) > 8
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
+
+
+@BOTH
+def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
+    file = str(unit("pin", fmi))
+    description = fmpy.read_model_description(file)
+    folder = fmpy.extract(file)
+    instance = fmpy.instantiate_fmu(folder, description, "CoSimulation")
+    places = {one.name: one.valueReference for one in description.modelVariables}
+    if fmi == 2:
+        instance.setupExperiment()
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    get = instance.getReal if fmi == 2 else instance.getFloat64
+    seen = [places[one] for one in ("x", "vx")]
+    kept, found = instance.getFMUState() if fmi == 3 else instance.getFMUstate(), []
+    for _ in range(2):
+        instance.doStep(0.0, 5.0)
+        found.append(get(seen))
+        (instance.setFMUState if fmi == 3 else instance.setFMUstate)(kept)
+    assert found[0] == found[1]
+    known, unknown = [places["vx"]], [places["der_x"], places["der_vx"]]
+    along = instance.getDirectionalDerivative(unknown, known, [1.0])
+    assert along[0] == 1.0
+    assert along[1] < -0.1
+    instance.terminate()
+    instance.freeInstance()
+
+
+def moves(file):
+    (engine,) = engines([f"fmu:{file}"])
+    kind = "a pin" if "pin" in engine.name else "a disc on the continuous ring"
+    (claim,) = STUDY.measure(engine, only=[f"moves/{kind}"]).claims
+    return claim.verdict
+
+
+@pytest.mark.parametrize("name", ["pin", "disc"])
+def test_a_judge_agrees_with_the_unit(unit, name):
+    assert moves(unit(name)) is Verdict.AGREES
+
+
+MISTAKES = {
+    "damping forgotten along y": ("support.h", "- p->damping * v[1]", ""),
+    "offset to the other side": ("support.h", "z[0] - p->offset", "z[0] + p->offset"),
+    "friction weaker along y": ("contact.c", "along * slip[1]", "0.99 * along * slip[1]"),
+    "friction pushes": (
+        "contact.c",
+        "double factor = -contact->friction",
+        "double factor = contact->friction",
+    ),
+    "a ring as slippery as its peak": ("contact.c", "k * (0.5 - T) / A", "k * (0.5 + T) / A"),
+    "a weight of the pair": ("integrator.c", "500.0 / 1113", "501.0 / 1113"),
+}
+"""Of the C sources: a file, what stands in it, and what takes its place."""
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_judge_sees_a_mistake_in_the_sources(needs_compiler, tmp_path, monkeypatch, mistake):
+    file, right, wrong = MISTAKES[mistake]
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    for path in FOLDER.iterdir():
+        (sources / path.name).write_bytes(path.read_bytes())
+    text = (sources / file).read_text()
+    assert right in text
+    (sources / file).write_text(text.replace(right, wrong))
+    monkeypatch.setattr(archive, "FOLDER", sources)
+    monkeypatch.setattr(archive, "OPTIONS", ("-std=c99", "-O0", "-fPIC", "-shared"))
+    model = "disc" if "ring" in mistake else "pin"
+    unit = export(MODELS[model], tmp_path / f"{model}.fmu").file
+    assert moves(unit) is Verdict.DIFFERS
+
+
+@BOTH
+def test_a_unit_without_a_compiler_has_its_sources_alone_and_says_so(tmp_path, monkeypatch, capsys, fmi):
+    monkeypatch.setattr(archive, "compiler", lambda: None)
+    output = tmp_path / "clutch.fmu"
+    assert cli.status(["export-fmu", "clutch", "--fmi", str(fmi), "--output", str(output)]) == 0
+    assert "there is no C compiler here: the unit has its sources alone" in capsys.readouterr().out
+    names = zipfile.ZipFile(output).namelist()
+    assert {f"sources/{one}" for one in sources_of(CLUTCH, fmi)} <= set(names)
+    assert not any(one.startswith("binaries") for one in names)
+    assert ("sources/buildDescription.xml" in names) == (fmi == 3)
+
+
+def test_what_is_set_is_what_the_unit_starts_with(needs_compiler, tmp_path, capsys):
+    output = tmp_path / "mine.fmu"
+    settings = ["--set", "plates=4", "--set", "wear=true", "--set", "normal_load=50"]
+    assert cli.status(["export-fmu", "clutch", *settings, "--output", str(output)]) == 0
+    starts = {one.name: one.start for one in fmpy.read_model_description(str(output)).modelVariables}
+    assert (starts["plates"], starts["wear"], starts["normal_load"]) == ("4", "true", "50.0")
+    assert "with its sources and a library for" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ("plates=0", "plates = 0: it must be >= 1"),
+        ("plates=1.5", "plates = 1.5: it must be a whole number"),
+        ("wear=2", "wear = 2: it must be <= 1"),
+        ("mass=-1", "mass = -1 kg: it must be > 1e-50"),
+        ("radius=1", "unknown parameter 'radius'"),
+        ("stiffness", "--set 'stiffness': write it as NAME=VALUE"),
+    ],
+)
+def test_what_can_not_be_set_is_refused_in_a_sentence(tmp_path, capsys, setting, sentence):
+    output = tmp_path / "mine.fmu"
+    assert cli.status(["export-fmu", "clutch", "--set", setting, "--output", str(output)]) == 2
+    assert sentence in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_without_the_headers_a_sentence_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(HeadersMissingError, match="pip install 'friction-discs\\[fmu\\]'"):
+        export(PIN, tmp_path / "pin.fmu")
