@@ -129,14 +129,15 @@ class Declared:
     def identity(self, study: str, case: str) -> str:
         """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
         parts = (study, self.function.__name__.strip("_"), case)
-        return "/".join(_slug(part) for part in parts if part)
+        return "/".join(slug(part) for part in parts if part)
 
 
 def _takes_engine(function: Callable[..., Any]) -> bool:
     return next(iter(inspect.signature(function).parameters), "") == "engine"
 
 
-def _slug(words: str) -> str:
+def slug(words: str) -> str:
+    """Return ``words`` as part of a name: small letters and digits, between hyphens."""
     return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -41,10 +40,10 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure or an animation as a data URI."""
+    """A figure or an animation by its path in the report's folder."""
 
     name: str
-    uri: str
+    path: str
     caption: str
     moves: bool = False
 
@@ -248,13 +247,10 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
-    figures = [
-        Picture(name, _data_uri("image/svg+xml", svg), study.figures.get(name, ""))
-        for name, (svg, _) in drawing.figures.items()
-    ]
+    figures = [Picture(name, f"figures/{name}.svg", study.figures.get(name, "")) for name in drawing.figures]
     animations = [
-        Picture(name, _data_uri("image/gif", content), study.figures.get(name, ""), moves=True)
-        for name, content in drawing.animations.items()
+        Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
+        for name in drawing.animations
     ]
     # in the order of the captions where there is one
     order = list(study.figures)
@@ -262,10 +258,6 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
         figures + animations,
         key=lambda picture: order.index(picture.name) if picture.name in order else len(order),
     )
-
-
-def _data_uri(kind: str, content: bytes) -> str:
-    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def _reason(value: object) -> str:

@@ -233,13 +233,10 @@ def test_matrix_and_table_show_one_number(tmp_path):
     assert '<data value="9e-06">' in page
     assert 'largest <data value="2e-05">' in page
     (made,) = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"]
-    assert made["decided_by"] == {
-        "element": 1,
-        "element_name": "no. 2 of 3",
-        "difference": 9e-6,
-        "allowed": 1e-5,
-        "largest_difference": 2e-5,
-    }
+    decisive = made["decided_by"]
+    assert (decisive["element"], decisive["name"], decisive["unit"]) == (1, "no. 2 of 3", "m")
+    assert (decisive["difference"], decisive["allowed"]) == (9e-6, 1e-5)
+    assert made["largest"] == [{"element": 2, "name": "no. 3 of 3", "unit": "m", "difference": 2e-5}]
 
 
 def test_what_implies_a_claim_is_a_claim_of_the_same_study_that_follows_from_none():

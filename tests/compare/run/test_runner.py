@@ -191,7 +191,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
         start_new_session=True,
         preexec_fn=interruptible,
     )
-    wait_for(process, running, output / "data" / "unending--good.json")
+    wait_for(process, running, output / "data" / "unending--good.json.xz")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
     out, err = process.communicate(timeout=PATIENCE)
     assert_that_the_rest_is_missing(process.returncode, out, err, output)

@@ -69,12 +69,13 @@ def _message(claim: Claim) -> str:
     element = worst(claim)
     if claim.answers:
         return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
-    unit = f" {claim.unit}" if claim.unit else ""
+    unit = f" {element.unit}" if element.unit else ""
+    largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
     return (
         f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
         f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
         f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
-        f"largest difference of {element.count}: {error_text(element.largest_difference)}"
+        f"largest difference of {element.count}: {largest}"
     )
 
 
