@@ -25,7 +25,13 @@ import numpy as np
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
-from exudyn_models import add_energy_balance, add_ring_friction, build_pin_on_disc, simulate
+from exudyn_models import (
+    add_energy_balance,
+    add_ring_friction,
+    add_thermal_node,
+    build_pin_on_disc,
+    simulate,
+)
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
@@ -191,6 +197,18 @@ def balanced(mbs: Any, *nodes: Any) -> None:
     add_energy_balance(mbs, gains={}, losses={"friction": ours(RING)(mbs, *nodes).power})
 
 
+def warming(coefficient: Any, mbs: Any, *nodes: Any) -> None:
+    """Add a ring that heats a thermal node."""
+    thermal = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0)
+    contact = SECTION | RING | {"friction_coefficient": coefficient, "thermal_node": thermal}
+    add_ring_friction(mbs, *nodes, **contact)
+
+
+def fading(temperature: float) -> float:
+    """Return a coefficient that falls over the temperature (°C)."""
+    return 0.3 * (1.0 - 1e-3 * (temperature - 20.0))
+
+
 def load_of_time(time: float) -> float:
     """Return a load in N."""
     return FIG5.friction_force
@@ -210,6 +228,8 @@ AXIAL: dict[str, AddContact] = {
     "static over sliding friction": ours(RING | {"static_ratio": 1.1}),
     "with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "with an energy balance": balanced,
+    "heating a thermal node": lambda *nodes: warming(0.3, *nodes),
+    "with a coefficient of its temperature": lambda *nodes: warming(fading, *nodes),
 }
 
 

@@ -4,8 +4,9 @@ All that is public has its name here; where it comes from, and where to change i
 
 - ``parts``: what goes into a model of yours. Friction between two bodies, ``add_ring_friction`` with its handle
   ``RingFriction``, and by Exudyn's own contact ``add_native_friction``; an elastic support, ``add_radial_support``
-  with its ``RadialSupport``; the ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``. Friction
-  and support are ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport`` too, as soon as this package is imported.
+  with its ``RadialSupport``; what friction heats, ``add_thermal_node`` with its ``ThermalNode``; the
+  ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``. Friction and support are
+  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport`` too, as soon as this package is imported.
 - ``solver``: how to run it. ``solve_dynamic`` is ``mbs.SolveDynamic`` that tells what went wrong;
   ``largest_stable_step`` is for explicit solvers with a fixed step.
 - ``drivetrain``: engine, clutch and vehicle, made of these parts. ``Drivetrain`` has the parameters,
@@ -29,6 +30,7 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.step_limit import largest_stable_step
 
@@ -39,10 +41,12 @@ __all__ = [
     "EnergyBalance",
     "RadialSupport",
     "RingFriction",
+    "ThermalNode",
     "add_energy_balance",
     "add_native_friction",
     "add_radial_support",
     "add_ring_friction",
+    "add_thermal_node",
     "build_disc_on_disc",
     "build_drivetrain",
     "build_pin_on_disc",

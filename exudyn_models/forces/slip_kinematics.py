@@ -22,20 +22,23 @@ from numpy.typing import NDArray
 
 from exudyn_models.forces.jit import compiled
 
-ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND = 0, 1, 2, 3, 4
+ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 
 KINDS = {
     "1D": ROTOR,
     "RigidBody2D": PLANAR,
     "RigidBodyRotVecLG": ROTATION_VECTOR,
     "RigidBodyRxyz": TAIT_BRYAN,
+    "RigidBodyEP": EULER_PARAMETERS,
 }
 """The kinds of nodes by the names that Exudyn gives them."""
 
-TRANSLATIONS = (0, 2, 3, 3, 0)
+SPATIAL = (ROTATION_VECTOR, TAIT_BRYAN, EULER_PARAMETERS)
+
+TRANSLATIONS = (0, 2, 3, 3, 0, 3)
 """Coordinates of each kind that are a position; those of the rotation follow."""
 
-SIZES = (1, 3, 6, 6, 0)
+SIZES = (1, 3, 6, 6, 0, 7)
 """Coordinates of each kind; the ground has none."""
 
 IMAGINARY_STEP = 1e-30
@@ -104,7 +107,7 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> Any:
 @compiled
 def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
     """Return position and axes of a body, and the columns that turn rates of its coordinates into ω."""
-    place, axes, turning = np.zeros(3, q.dtype), np.zeros((3, 3), q.dtype), np.zeros((3, 3), q.dtype)
+    place, axes, turning = np.zeros(3, q.dtype), np.zeros((3, 3), q.dtype), np.zeros((3, 4), q.dtype)
     first = TRANSLATIONS[kind]
     for i in range(first):
         place[i] = q[i]
@@ -123,6 +126,8 @@ def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
         turning[1, 1], turning[2, 1] = cx, sx
         for i in range(3):
             turning[i, 2] = axes[i, 2]
+    elif kind == EULER_PARAMETERS:
+        _rotate_by_euler_parameters(q[3:], axes, turning)
     elif kind == GROUND:
         for i in range(3):
             axes[i, i] = 1.0
@@ -150,6 +155,21 @@ def _rotate_by_vector(v: Array, axes: Array) -> None:
         j, k = (i + 1) % 3, (i + 2) % 3
         axes[k, j] += linear * v[i]
         axes[j, k] -= linear * v[i]
+
+
+@compiled
+def _rotate_by_euler_parameters(p: Array, axes: Array, turning: Array) -> None:
+    """Fill ``axes`` and ``turning``, all zero: ω = 2·(p₀·ṗ − ṗ₀·p + p×ṗ), with p₀ and the vector p.
+
+    Both are those of Exudyn, quadratic and linear in parameters whose norm is 1 but for the error of Newton's method.
+    """
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        axes[i, i] = p[0] * p[0] + p[1 + i] * p[1 + i] - p[1 + j] * p[1 + j] - p[1 + k] * p[1 + k]
+        axes[i, j] = 2.0 * (p[1 + i] * p[1 + j] - p[0] * p[1 + k])
+        axes[i, k] = 2.0 * (p[1 + i] * p[1 + k] + p[0] * p[1 + j])
+        turning[i, 0], turning[i, 1 + i] = -2.0 * p[1 + i], 2.0 * p[0]
+        turning[i, 1 + j], turning[i, 1 + k] = -2.0 * p[1 + k], 2.0 * p[1 + j]
 
 
 @compiled

@@ -13,6 +13,7 @@ from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunct
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.thermal_node import ThermalNode
 
 
 @extends(exu.MainSystem)
@@ -30,6 +31,7 @@ def MainSystemCreateRingFriction(
     staticRatio: float = 1.0,
     plates: int = 1,
     pressure: Pressure = "uniform",
+    thermalNode: ThermalNode | None = None,
 ) -> RingFriction:
     """Add friction between two bodies, master and disc; return its handle, with the ``item`` of the connector.
 
@@ -52,6 +54,7 @@ def MainSystemCreateRingFriction(
         static_ratio=staticRatio,
         plates=plates,
         pressure=pressure,
+        thermal_node=thermalNode,
     )
 
 

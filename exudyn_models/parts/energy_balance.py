@@ -15,6 +15,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, finite_number
@@ -99,7 +100,7 @@ def add_energy_balance(
         if name in losses:
             raise ValueError(f"{name!r} is among gains and losses: it must be one of them")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
-    works_sensor = _add_works(mbs, [*gains.values(), *losses.values()], unit)
+    works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)
 
     def read() -> EnergyBalance:
@@ -122,11 +123,14 @@ def _checked_unit(unit: float) -> float:
     return number
 
 
-def _add_works(mbs: Any, powers: Sequence[Power], unit: float) -> Any:
+def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
     """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` of all of them."""
+    powers = list(named.values())
 
     def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
         return [power(mbs, t) / unit for power in powers]
+
+    watch_powers(rates, list(named), unit)
 
     node = mbs.AddNode(
         items.NodeGenericODE1(

@@ -23,6 +23,8 @@ from exudyn_models.forces.slip_kinematics import (
     slip_jacobian,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.parts.thermal_node import ThermalNode
+from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray
 
@@ -42,6 +44,9 @@ Quantity = Literal[
 
 BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
 """Values of the sensor ``"mode"``, those of Modelica's clutches."""
+
+BAND = 0.01
+"""Of the capacity, on either side of it, where the ``"mode"`` stays as it was; a creep of 1 ± ``BAND`` times ε."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,7 @@ class RingFriction:
     _reference: FloatArray = field(repr=False)
     _factors: LoadAndCoefficient = field(repr=False)
     _functions: dict[str, Any] = field(repr=False)
+    _thermal: ThermalNode | None = field(default=None, repr=False)
 
     @property
     def compiled(self) -> bool:
@@ -97,6 +103,8 @@ class RingFriction:
 
         """
         factors = self._factors
+        if self._thermal is not None and friction_coefficient is not None:
+            friction_coefficient = self._thermal.with_temperature(friction_coefficient)
         factors.change(
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
@@ -118,7 +126,8 @@ class RingFriction:
           that, and 0 if friction holds nothing.
         - ``"mode"``: 0 locked, 1 slipping with the disc faster than the master, or sideways, −1 with the disc slower,
           2 open, that is without load. What tells locked from slipping is the capacity, not how small a slip is: a
-          contact that creeps under nearly all that it can hold is locked.
+          contact that creeps under nearly all that it can hold is locked. Within ``BAND`` of all of it the mode stays
+          what it was when the sensor was asked before, so that it does not flicker.
         - ``"power"``: what friction turns into heat, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
@@ -141,7 +150,7 @@ class RingFriction:
         )
 
     def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
-        asked = False
+        asked, mode = False, _Mode()
 
         # Slip is found without the load, so that a load may depend on a sensor of it.
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
@@ -161,8 +170,10 @@ class RingFriction:
             asked = True
             try:
                 if quantity in ("capacity_share", "mode"):
-                    share = self._capacity_share(t, slip, angle, radius)
-                    return [_mode(share, float(slip[2])) if quantity == "mode" else share or 0.0]
+                    creep = self._creep(t, slip, angle, radius)
+                    return [
+                        mode.at(t, creep, float(slip[2])) if quantity == "mode" else min(1.0, creep or 0.0)
+                    ]
                 friction = self._friction(t, slip, angle, radius)
             finally:
                 asked = False
@@ -202,6 +213,7 @@ class RingFriction:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
             return [self.power(mbs, t)]
 
+        watch_powers(rate, ["heat"])
         node = self.mbs.AddNode(
             items.NodeGenericODE1(
                 referenceCoordinates=[0.0], initialCoordinates=[0.0], numberOfODE1Coordinates=1
@@ -241,13 +253,13 @@ class RingFriction:
             places.append(slice(start, self.mbs.GetNodeODE2Index(node) + SIZES[kind]))
         return places
 
-    def _capacity_share(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
-        """Return P/ε, at most 1, or None where friction holds nothing."""
+    def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
+        """Return P/ε, up to 1 the share of the capacity that is used, or None where friction holds nothing."""
         contact, spin = self._factors.geometry, float(slip[2])
         speed = slip_potential_of_contact(float(slip[0]), float(slip[1]), spin, angle, contact)
         if self._factors.friction_force(t, radius, speed, spin) == 0.0:
             return None
-        return min(1.0, speed / contact[3])
+        return speed / contact[3]
 
     def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
@@ -260,10 +272,21 @@ class RingFriction:
         return friction
 
 
-def _mode(share: float | None, spin: float) -> float:
-    """Return the mode of a contact from its ``_capacity_share`` and S (rad/s)."""
-    if share is None:
-        return OPEN
-    if share < 1.0:
-        return LOCKED
-    return BACKWARD if spin < 0.0 else FORWARD
+class _Mode:
+    """The mode of a contact, which remembers what it was at an earlier time of the same run."""
+
+    def __init__(self) -> None:
+        self._time, self._slips = math.inf, False
+
+    def at(self, t: float, creep: float | None, spin: float) -> float:
+        """Return the mode at the time t (s) from P/ε, None where friction holds nothing, and S (rad/s)."""
+        if t < self._time:  # another run
+            self._slips = creep is not None and creep >= 1.0
+        self._time = t
+        if creep is None:
+            self._slips = True  # it is told by its slip when it closes again
+            return OPEN
+        self._slips = creep >= (1.0 - BAND if self._slips else 1.0 + BAND)
+        if not self._slips:
+            return LOCKED
+        return BACKWARD if spin < 0.0 else FORWARD

@@ -31,9 +31,8 @@ from exudyn_models.forces.radial_springs import (
 )
 from exudyn_models.forces.slip_kinematics import (
     PLANAR,
-    ROTATION_VECTOR,
     ROTOR,
-    TAIT_BRYAN,
+    SPATIAL,
     Kinds,
     place_of_disc,
     slip_jacobian,
@@ -153,8 +152,8 @@ def add_radial_support(
         Not yet assembled, with the nodes.
     base_node : NodeIndex or ObjectIndex or None
         None for the ground; an ``ObjectIndex`` is that of a body with such a node. Else a ``Node1D``, which turns
-        about the z-axis through the global origin, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG`` or a
-        ``NodeRigidBodyRxyz``.
+        about the z-axis through the global origin, a ``NodeRigidBody2D``, or one of a rigid body in space:
+        ``NodeRigidBodyRotVecLG``, ``NodeRigidBodyRxyz`` or, for implicit solvers, ``NodeRigidBodyEP``.
     disc_node : NodeIndex or ObjectIndex
         One of those, but not a ``Node1D``.
     stiffness : float
@@ -207,7 +206,7 @@ def _checked_nodes(mbs: Any, base_node: Any, disc_node: Any) -> tuple[Kinds, int
 
     The ground and a rotor count as planar bodies, of which three or two coordinates stay zero.
     """
-    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, ROTATION_VECTOR, TAIT_BRYAN))
+    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, *SPATIAL))
     if base_node is None:
         return (PLANAR, disc), ON_GROUND
     base = checked_kind("base_node", mbs, base_node)

@@ -18,6 +18,7 @@ from exudyn_models.forces.slip_kinematics import GROUND, KINDS, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
+from exudyn_models.parts.thermal_node import ThermalNode
 from reference_model.systems import finite_number
 
 ALL = tuple(KINDS.values())
@@ -57,6 +58,7 @@ def add_ring_friction(
     static_ratio: float = 1.0,
     plates: int = 1,
     pressure: Pressure = "uniform",
+    thermal_node: ThermalNode | None = None,
     held: int | None = None,
 ) -> RingFriction:
     """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
@@ -66,12 +68,13 @@ def add_ring_friction(
     annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure`` over its radius. The law is that of
     ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
 
-    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
-    ``NodeRigidBodyRotVecLG`` or a ``NodeRigidBodyRxyz``. The ground is a master that rests, whose axis is the z-axis
-    through the global origin: a brake, or friction of a bearing. The plane of contact goes through the disc's node
-    across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is. The load
-    presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay False,
-    because the nodes are shared with their bodies; Exudyn says so.
+    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, or
+    one of a rigid body in space: ``NodeRigidBodyRotVecLG``, ``NodeRigidBodyRxyz`` or, for implicit solvers,
+    ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. The ground is a master that rests, whose axis is
+    the z-axis through the global origin: a brake, or friction of a bearing. The plane of contact goes through the
+    disc's node across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is.
+    The load presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay
+    False, because the nodes are shared with their bodies; Exudyn says so.
 
     Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
 
@@ -117,6 +120,9 @@ def add_ring_friction(
     pressure : {"uniform", "wear"} or callable
         Of an annulus: alike everywhere; ∝ 1/r, as it comes to be where linings wear evenly; or a smooth function of
         the radius in m that returns it >= 0 in any unit, because the load says how large it is.
+    thermal_node : ThermalNode, optional
+        What friction heats, of ``add_thermal_node``. The coefficient may then be a function of ``temperature`` too,
+        which goes by way of Python.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
@@ -131,13 +137,21 @@ def add_ring_friction(
     contact = _checked_geometry(
         contact_radius, inner_radius, outer_radius, regularisation, contact_points, held, pressure
     )
-    factors = LoadAndCoefficient(contact, friction_coefficient, normal_load, static_ratio, plates)
+    coefficient = friction_coefficient
+    if thermal_node is not None:
+        if not isinstance(thermal_node, ThermalNode):
+            raise ValueError(f"thermal_node = {thermal_node!r}: it must be what add_thermal_node returned")
+        coefficient = thermal_node.with_temperature(coefficient)
+    factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     force, jacobian = force_and_jacobian(kinds, reference, factors)
     item = add_connector(mbs, nodes, force, jacobian)
     functions = {"force": force, "jacobian": jacobian}
-    return RingFriction(mbs, item, nodes, kinds, reference, factors, functions)
+    friction = RingFriction(mbs, item, nodes, kinds, reference, factors, functions, thermal_node)
+    if thermal_node is not None:
+        thermal_node.heated_by(friction.power)
+    return friction
 
 
 def checked_pair(

@@ -49,3 +49,35 @@ def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray,
         stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
         solver.FinalizeSolver(mbs, settings)
     return mass, stiffness, damping
+
+
+def singular_mass(mbs: Any) -> str:
+    """Return in words which coordinates of an assembled model have no mass, an empty string if all have."""
+    solver: Any = exu.MainSolverStatic()
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = settings.solution.sensors.active = False
+    size = mbs.systemData.ODE2Size()
+    with quiet():
+        solver.InitializeSolver(mbs, settings)
+        solver.ComputeMassMatrix(mbs)
+        mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
+        solver.FinalizeSolver(mbs, settings)
+    massless = np.flatnonzero(~mass.any(axis=1))
+    if not len(massless):
+        return ""
+    told = ", ".join(f"coordinate {place} of node {node}" for node, place in _nodes_of(mbs, massless))
+    return f"the mass matrix is singular: {told} has neither mass nor inertia"
+
+
+def _nodes_of(mbs: Any, coordinates: Any) -> list[tuple[int, int]]:
+    """Return the node of each of a model's coordinates of second order, and which of its own it is."""
+    starts = [
+        (mbs.GetNodeODE2Index(node), node)
+        for node in range(mbs.systemData.NumberOfNodes())
+        if len(mbs.systemData.GetNodeLTGODE2(node))
+    ]
+    found = []
+    for coordinate in coordinates:
+        start, node = max(pair for pair in starts if pair[0] <= coordinate)
+        found.append((int(node), int(coordinate - start)))
+    return found

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import closing
+from contextlib import closing, nullcontext
 from typing import Any
 
 import exudyn as exu
 
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
+from exudyn_models.solver.jumps import JumpCheck
+from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
+from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.step_limit import StepCheck
 from reference_model.trajectory import SimulationError
 
@@ -40,6 +43,10 @@ def solve_dynamic(
     whether they will stick or not, and all dampers at the initial values. Loads and coefficients that are functions
     are looked at at the start and at a hundred times of the run, where the warning may come too: they are never asked
     about a time or a motion that is not the run's.
+
+    An implicit run starts with the rates that heat and works have, which Exudyn takes to be zero. Where a power of
+    ``add_energy_balance`` or of a sensor of heat jumps in it a ``RuntimeWarning`` tells so at the end of the run, see
+    ``jumps``.
 
     Parameters
     ----------
@@ -81,6 +88,9 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
     finite = True
     check = StepCheck(mbs, solver.name, simulationSettings.timeIntegration)
     check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
+    implicit = solver in IMPLICIT
+    jumps = JumpCheck(mbs) if implicit else None
+    rates = starting_rates(mbs, start) if implicit else nullcontext()
 
     def look(mbs: Any, t: float) -> bool:
         nonlocal reached, finite
@@ -89,21 +99,41 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
             check.warn(t, data.GetODE2Coordinates())
         state = (data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE1Coordinates())
         finite = math.isfinite(sum(sum(part.tolist()) for part in state))
+        if jumps is not None:
+            jumps.look(t, data.GetODE1Coordinates_t())
         return finite
 
     try:
-        with after_every_step(mbs, look):
+        with rates, after_every_step(mbs, look):
+            if jumps is not None:
+                jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
             mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
         raise_interrupt(error)
         if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
             raise error.__cause__ from None
         if isinstance(error, (exu.SolverError, exu.InternalError)):
+            if massless := _singular(mbs, reached == start):
+                raise SimulationError(
+                    f"Exudyn's {solver.name} failed 0 s after the start: {massless}; give the body some"
+                ) from error
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error
         raise
     if not finite:
         raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
+    if jumps is not None:
+        jumps.warn()
+
+
+def _singular(mbs: Any, at_start: bool) -> str:
+    """Return in words that the mass matrix is singular, if a run has failed at its start for that."""
+    if not at_start:
+        return ""
+    try:
+        return singular_mass(mbs)
+    except exu.ExudynError:  # the run's own error is the one to tell
+        return ""
 
 
 def _check_constraints(mbs: Any, solver: Any) -> None:
@@ -112,5 +142,6 @@ def _check_constraints(mbs: Any, solver: Any) -> None:
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(
             f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs"
+            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs and any "
+            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG"
         )

@@ -17,7 +17,7 @@ import numpy as np
 
 from exudyn_models.forces.stick_dampers import StickDampers
 from exudyn_models.forces.user_functions import stick_dampers_of
-from exudyn_models.solver.linear_matrices import matrices_of_model
+from exudyn_models.solver.linear_matrices import matrices_of_model, singular_mass
 from exudyn_models.solver.solver_run import raise_interrupt
 from reference_model.systems import FloatArray
 
@@ -108,7 +108,7 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     Raises
     ------
     ValueError
-        For any other solver.
+        For any other solver, or a model with constraints or a singular mass matrix.
 
     """
     if solver_type.name not in INTERVALS:
@@ -117,9 +117,16 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
         )
     if not mbs.systemIsConsistent:
         mbs.Assemble()
+    if constraints := mbs.systemData.AEsize():
+        raise ValueError(
+            f"this model has {constraints} constraint equations, which an explicit solver would ignore; a "
+            "NodeRigidBodyEP has one"
+        )
     model = ModelInStick.of(mbs, 0.0)
     if model is None:
         return math.inf
+    if massless := singular_mass(mbs):
+        raise ValueError(f"{massless}; no explicit solver can run this model")
     decay = model.decay(0.0, mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial))
     return INTERVALS[solver_type.name] / decay if decay > 0.0 else math.inf
 

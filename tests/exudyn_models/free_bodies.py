@@ -4,9 +4,11 @@ from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface
+import exudyn.rigidBodyUtilities
 import numpy as np
 
 items: Any = exudyn.itemInterface
+rotations: Any = exudyn.rigidBodyUtilities
 
 
 def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], velocity: list[float]) -> Any:
@@ -58,6 +60,25 @@ def spatial_body(
     """Add a body with a node of ``kind`` and the principal moments of ``inertia``."""
     half = [value / 2.0 for value in position]
     node = mbs.AddNode(kind(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity))
+    mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0]))
+    return node
+
+
+def euler_body(
+    mbs: Any, mass: float, inertia: list[float], position: list[float], velocity: list[float]
+) -> Any:
+    """Add the body that ``spatial_body`` adds with angles, with Euler parameters."""
+    parameters = rotations.RotationMatrix2EulerParameters(rotations.RotXYZ2RotationMatrix(position[3:]))
+    spin = rotations.RotXYZ2G(position[3:]) @ np.array(velocity[3:])
+    rates = rotations.AngularVelocity2EulerParameters_t(spin, parameters)
+    half, reference = [value / 2.0 for value in position[:3]], [1.0, 0.0, 0.0, 0.0]
+    node = mbs.AddNode(
+        items.NodeRigidBodyEP(
+            referenceCoordinates=[*half, *reference],
+            initialCoordinates=[*half, *(parameters - reference)],
+            initialVelocities=[*velocity[:3], *rates],
+        )
+    )
     mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0]))
     return node
 

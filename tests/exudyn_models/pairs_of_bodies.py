@@ -6,7 +6,15 @@ from typing import Any
 import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
-from free_bodies import planar_body, rotor, run_explicitly, spatial_body, spatial_energy, spatial_momenta
+from free_bodies import (
+    euler_body,
+    planar_body,
+    rotor,
+    run_explicitly,
+    spatial_body,
+    spatial_energy,
+    spatial_momenta,
+)
 
 items: Any = exudyn.itemInterface
 
@@ -18,6 +26,8 @@ KINDS = {
 }
 SPATIAL = ("rotation vector", "Tait-Bryan")
 PAIRS = list(product(KINDS, repeat=2))
+EULER = "Euler parameters"
+"""For implicit solvers alone: their norm is a constraint."""
 
 # Mass, principal moments of inertia, position and rotation, velocity and turn rates: tilted and out of line.
 MASTER = (2.0, [0.5, 0.6, 0.7], [0.3, -0.2, 0.1, 0.2, -0.1, 0.1], [0.1, 0.05, -0.03, 0.02, 0.1, 2.0])
@@ -29,6 +39,8 @@ def body(mbs, kind, mass, inertia, position, velocity):
         return rotor(mbs, inertia[2], velocity[5])
     if kind == "planar":
         return planar_body(mbs, mass, inertia[2], [*position[:2], position[5]], [*velocity[:2], velocity[5]])
+    if kind == EULER:
+        return euler_body(mbs, mass, inertia, position, velocity)
     return spatial_body(mbs, KINDS[kind], mass, inertia, position, velocity)
 
 
@@ -47,7 +59,7 @@ def momenta_and_energy(mbs, kinds, nodes, bodies=(MASTER, DISC)):
 
 def conserved(kinds):
     """Components of momentum and angular momentum that no bearing of a rotor or plane takes up."""
-    if set(kinds) <= set(SPATIAL):
+    if set(kinds) <= {*SPATIAL, EULER}:
         return [0, 1, 2, 3, 4, 5]
     return [5] if "rotor" in kinds else [0, 1, 5]
 

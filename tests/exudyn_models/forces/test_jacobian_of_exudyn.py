@@ -4,7 +4,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exudyn.advancedUtilities import ItemODE2Coordinates, NumericalJacobian
-from pairs_of_bodies import DISC, KINDS, MASTER, PAIRS, body
+from pairs_of_bodies import DISC, EULER, KINDS, MASTER, PAIRS, body
 
 from exudyn_models import add_radial_support, add_ring_friction
 
@@ -53,6 +53,8 @@ CASES = [
     for contact in CONTACTS
     if kinds not in ROTORS or contact in ("creeping ring", "laws")
 ]
+WITH_EULER = [(None, EULER), ("rotor", EULER), (EULER, "planar"), (EULER, EULER)]
+CASES += [(kinds, contact) for kinds in WITH_EULER for contact in ("ring", "creeping ring", "points", "laws")]
 
 
 @pytest.mark.parametrize(("kinds", "contact"), CASES, ids=str)
@@ -67,8 +69,8 @@ def test_friction_has_the_jacobian_that_exudyn_finds_by_differences(kinds, conta
     assert_of_exudyn(mbs, friction.item, OF_ANNULUS if contact.startswith("annulus") else 1e-7)
 
 
-@pytest.mark.parametrize("base", [None, *KINDS])
-@pytest.mark.parametrize("disc", [kind for kind in KINDS if kind != "rotor"])
+@pytest.mark.parametrize("base", [None, *KINDS, EULER])
+@pytest.mark.parametrize("disc", [*(kind for kind in KINDS if kind != "rotor"), EULER])
 def test_a_support_has_the_jacobian_that_exudyn_finds_by_differences(base, disc):
     mbs = exu.SystemContainer().AddSystem()
     first = None if base is None else body(mbs, base, *MASTER)

@@ -19,7 +19,7 @@ RING = {"contact_radius": RADIUS, "friction_coefficient": 0.3, "normal_load": LO
 QUANTITIES = ("relative_spin", "capacity_share", "mode")
 
 
-def told(torque, end, spin=0.0, **contact):
+def told(torque, end, spin=0.0, step=1e-3, **contact):
     """Return times and what the sensors of a brake tell of a rotor under a torque in N m, a function of time."""
     mbs = exu.SystemContainer().AddSystem()
     disc = rotor(mbs, INERTIA, spin)
@@ -34,7 +34,7 @@ def told(torque, end, spin=0.0, **contact):
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, round(end / 1e-3), 0
+    options.endTime, options.numberOfSteps, options.verboseMode = end, round(end / step), 0
     options.absoluteTolerance, options.relativeTolerance = 1e-9, 0.0
     solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
     stored = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
@@ -58,8 +58,8 @@ def test_the_mode_follows_break_away_in_either_direction_and_stick():
     times, spin, share, mode = told(torque, 1.1 * period)
     assert set(mode) == {-1.0, 0.0, 1.0}
     assert (np.sign(spin[mode != 0.0]) == mode[mode != 0.0]).all()
-    assert (share[mode != 0.0] == 1.0).all()
-    assert (share[mode == 0.0] < 1.0).all()
+    assert (share[mode != 0.0] > 0.99).all()
+    assert (spin[mode == 0.0] < 1.01 * EPSILON / RADIUS).all()
     changes = times[1:][np.diff(mode) != 0.0]
     assert mode[0] == 0.0
     # By hand: it breaks away where 1.5·sin(2πt/T) = 1, and half a period later the other way.
@@ -76,6 +76,21 @@ def test_a_contact_that_holds_nearly_all_it_can_is_locked_once_its_slip_has_ende
     locked = times > 1.01 * stop
     assert (mode[locked] == 0.0).all()
     np.testing.assert_allclose(share[locked], 0.97, atol=1e-3)
+
+
+def test_the_mode_does_not_flicker_where_a_torque_shakes_a_contact_at_its_capacity():
+    period = 5e-4
+
+    def torque(t):
+        return CAPACITY * (1.0 - 0.001 * np.sin(2.0 * np.pi * t / period))
+
+    # By hand the torque moves slip by 2·0.001·CAPACITY/INERTIA·period/(2π) = 2.9e-5 rad/s, or 0.7 % of ε/R.
+    start, swing = 0.995 * EPSILON / RADIUS, 2.0 * 0.001 * CAPACITY / INERTIA * period / (2.0 * np.pi)
+    _, spin, _, mode = told(torque, 6.0 * period, spin=start, step=period / 20.0)
+    slips = spin * RADIUS / EPSILON >= 1.0
+    assert spin.max() * RADIUS / EPSILON < 1.0 + 1.1 * swing * RADIUS / EPSILON < 1.01
+    assert np.count_nonzero(np.diff(slips)) > 5
+    assert (mode == 0.0).all()
 
 
 def test_a_clutch_without_load_is_open():

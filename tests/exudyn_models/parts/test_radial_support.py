@@ -267,7 +267,7 @@ def test_nodes_that_no_support_can_hold_are_refused():
     mbs = exu.SystemContainer().AddSystem()
     shaft, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
     point = mbs.AddNode(exudyn.itemInterface.NodePoint())
-    kinds = "NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz"
+    kinds = "NodeRigidBody2D, NodeRigidBodyRotVecLG, NodeRigidBodyRxyz or NodeRigidBodyEP"
     with pytest.raises(ValueError, match=f"disc_node 0 is a Node1D: it must be a {kinds}$"):
         add_radial_support(mbs, None, shaft, stiffness=1.0)
     with pytest.raises(ValueError, match=f"base_node 2 is a NodePoint: it must be a Node1D, {kinds}$"):

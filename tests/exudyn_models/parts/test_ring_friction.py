@@ -175,13 +175,13 @@ def test_nonsense_is_refused_with_its_name_and_value(change, message):
         add_ring_friction(mbs, master, disc, **arguments)
 
 
-@pytest.mark.parametrize("node", [items.NodePoint(), items.NodeRigidBodyEP()])
+@pytest.mark.parametrize("node", [items.NodePoint(), items.NodePoint2D()])
 @pytest.mark.parametrize("name", ["master_node", "disc_node"])
 def test_a_node_of_the_wrong_kind_is_refused_with_the_kinds_that_serve(node, name):
     mbs = exu.SystemContainer().AddSystem()
     nodes = {"master_node": rotor(mbs, 1.0, 0.0), "disc_node": rotor(mbs, 1.0, 0.0)}
     nodes[name] = mbs.AddNode(node)
-    kinds = "Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz"
+    kinds = "Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG, NodeRigidBodyRxyz or NodeRigidBodyEP"
     with pytest.raises(ValueError, match=rf"{name} 2 is a Node\w+: it must be a {kinds}$"):
         add_ring_friction(mbs, **nodes, **CONTACT)
 

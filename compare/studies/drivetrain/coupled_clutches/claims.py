@@ -126,6 +126,7 @@ def moves(engine: Engine) -> Measured:
         components=ROTORS,
         at={"t in s": SHOWN},
         note=note,
+        named={"speeds of four rotors": None},
         data={"run t": runs[0].times, "run off": runs[0].speeds - _speeds(runs[0].times)},
     )
 

@@ -121,6 +121,7 @@ def onset(engine: Engine) -> Measured:
         predicted=ONSET,
         value=first,
         error=float(change_as_error(np.array([first]), np.array([second]))[0]),
+        named={"onset of judder": 0},
         data={"measured": _growth(_motions(engine)[0]), "at": GRADIENTS},
     )
 

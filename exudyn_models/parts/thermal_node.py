@@ -1,0 +1,153 @@
+"""The temperature of what friction heats: a heat capacity with a conductance to its surroundings.
+
+C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. What has gone to the surroundings is a
+coordinate besides, so that C·(T − T_start) + loss = heat is a linear invariant, which solvers keep to rounding.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+
+from exudyn_models.forces.laws.functions import checked_not_negative
+from exudyn_models.forces.load_and_coefficient import Coefficient
+from exudyn_models.solver.model import IN_MEMORY
+from reference_model.systems import finite_number
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+ARGUMENT = "temperature"
+
+
+@dataclass(frozen=True, eq=False)
+class ThermalNode:
+    """A heat capacity that ``add_thermal_node`` has added to a model, to be given to ``add_ring_friction``.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        The model.
+    node : NodeIndex
+        Of two coordinates of first order: T and the heat in J that has gone to the surroundings.
+    heat_capacity, conductance, surroundings : float
+        C in J/K, G in W/K and T₀, in whatever unit the temperature is.
+
+    """
+
+    mbs: Any
+    node: Any
+    heat_capacity: float
+    conductance: float
+    surroundings: float
+    _sources: list[Callable[[Any, float], float]] = field(repr=False)
+
+    def temperature(self, mbs: Any) -> float:
+        """Return T at the current motion of the assembled model."""
+        return float(mbs.systemData.GetODE1Coordinates()[self._place])
+
+    def stored_energy(self, mbs: Any) -> float:
+        """Return C·(T − T₀) in J, as ``add_energy_balance`` takes it."""
+        return self.heat_capacity * (self.temperature(mbs) - self.surroundings)
+
+    def power(self, mbs: Any, t: float) -> float:
+        """Return what goes to the surroundings in W, as ``add_energy_balance`` takes it."""
+        return self.conductance * (self.temperature(mbs) - self.surroundings)
+
+    def add_sensor(self, **options: Any) -> Any:
+        """Add a sensor of T and of the heat in J that has gone to the surroundings; return its ``SensorIndex``.
+
+        ``options`` are those of Exudyn's sensors. Without any the sensor stores its values for
+        ``mbs.GetSensorStoredData`` and writes no file.
+        """
+        variable = exu.OutputVariableType.Coordinates
+        return self.mbs.AddSensor(
+            items.SensorNode(nodeNumber=self.node, outputVariableType=variable, **IN_MEMORY | options)
+        )
+
+    def heated_by(self, power: Callable[[Any, float], float]) -> None:
+        """Heat it by a power in W too, a function of ``mbs`` and the time in s, as ``RingFriction.power`` is one."""
+        self._sources.append(power)
+
+    def with_temperature(self, coefficient: Coefficient) -> Coefficient:
+        """Return a coefficient of friction with the ``temperature`` filled in, if it is a function that takes it."""
+        if not callable(coefficient):
+            return coefficient
+        try:
+            signature = inspect.signature(coefficient)
+        except (TypeError, ValueError):  # whoever looks at its other arguments tells it
+            return coefficient
+        if ARGUMENT not in signature.parameters:
+            return coefficient
+
+        def at_temperature(*values: float, **named: float) -> float:
+            return coefficient(*values, **named, temperature=self.temperature(self.mbs))
+
+        rest = [one for name, one in signature.parameters.items() if name != ARGUMENT]
+        by_name = [
+            one.replace(kind=one.KEYWORD_ONLY) for one in rest if one.kind == one.POSITIONAL_OR_KEYWORD
+        ]
+        others = [one for one in rest if one.kind != one.POSITIONAL_OR_KEYWORD]
+        at_temperature.__signature__ = signature.replace(  # type: ignore[attr-defined]
+            parameters=sorted([*by_name, *others], key=lambda one: one.kind)
+        )
+        return at_temperature
+
+    @cached_property  # nodes that are added later come behind
+    def _place(self) -> int:
+        return int(self.mbs.systemData.GetNodeLTGODE1(self.node)[0])
+
+
+def add_thermal_node(
+    mbs: Any,
+    *,
+    heat_capacity: float,
+    conductance: float = 0.0,
+    surroundings: float = 20.0,
+    start: float | None = None,
+) -> ThermalNode:
+    """Add a temperature to ``mbs``; return a handle, which ``add_ring_friction`` takes as its ``thermal_node``.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Not yet assembled.
+    heat_capacity : float
+        C in J/K, > 0.
+    conductance : float
+        G in W/K, >= 0; 0 for no loss.
+    surroundings, start : float
+        T₀ and the temperature to begin with, T₀ if None, in one unit, °C or K.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+
+    """
+    capacity = finite_number("heat_capacity", heat_capacity)
+    if capacity <= 0.0:
+        raise ValueError(f"heat_capacity = {capacity:g} J/K: it must be > 0")
+    loss, outside = (
+        checked_not_negative("conductance", conductance, " W/K"),
+        finite_number("surroundings", surroundings),
+    )
+    first = outside if start is None else finite_number("start", start)
+    sources: list[Callable[[Any, float], float]] = []
+
+    def rates(mbs: Any, t: float, item: int, state: Any) -> list[float]:
+        to_outside = loss * (state[0] - outside)
+        return [(sum(source(mbs, t) for source in sources) - to_outside) / capacity, to_outside]
+
+    node = mbs.AddNode(
+        items.NodeGenericODE1(
+            referenceCoordinates=[0.0, 0.0], initialCoordinates=[first, 0.0], numberOfODE1Coordinates=2
+        )
+    )
+    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
+    return ThermalNode(mbs, node, capacity, loss, outside, sources)

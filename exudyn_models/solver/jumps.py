@@ -1,0 +1,118 @@
+"""Jumps of a load inside of an implicit run, seen by the powers of its energy balance.
+
+Coulomb friction itself lets no power jump: where a contact comes to stick or leaves it, slip is zero. So a power that
+jumps between two steps, while it hardly changes in the steps before and after, tells of a load that does, or of what
+the steps don't resolve; either way the step across it is wrong by a share of the jump.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from reference_model.systems import FloatArray
+
+_NAMES = "names_of_powers"
+
+NEIGHBOURS = 2
+"""Steps before and after a jump that it is compared with."""
+
+STEEPER = 5.0
+"""A jump exceeds their changes, and their slopes, by this: twice is usual where a curve bends."""
+
+LEAST = 0.02
+"""Of the largest power of the run: less is not told."""
+
+
+def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
+    """Have jumps looked for in all that ``rates``, a user function of first order, returns: powers in ``unit`` W."""
+    setattr(rates, _NAMES, tuple((name, unit) for name in names))
+
+
+TOGETHER = 4096
+"""Steps that are looked at together, which costs next to nothing."""
+
+
+class JumpCheck:
+    """Looks at the powers of an assembled model after every step of an implicit run, and warns at its end.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        Assembled.
+
+    """
+
+    def __init__(self, mbs: Any) -> None:
+        self._names, self._units, self._places = _powers(mbs)
+        self._times: list[float] = []
+        self._rates: list[FloatArray] = []
+        self._largest = np.zeros(len(self._names))
+        self._jumps: list[tuple[float, float, int, float]] = []
+
+    def look(self, t: float, rates: FloatArray) -> None:
+        """Take note of all ``rates`` of the model after a step, or at the start, at the time t (s)."""
+        if not self._names:
+            return
+        self._times.append(t)
+        self._rates.append(rates)
+        if len(self._times) == TOGETHER:
+            self._find()
+
+    def _find(self) -> None:
+        """Look for jumps in the steps noted, all but the last ones, which the next look begins with."""
+        times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
+        del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
+        self._largest = np.maximum(self._largest, np.abs(powers).max(axis=0))
+        if len(times) < 2 * NEIGHBOURS + 2:
+            return
+        changes, spans = (
+            np.abs(np.diff(powers, axis=0)),
+            np.maximum(np.diff(times), np.spacing(times[1:]))[:, None],
+        )
+        middle = slice(NEIGHBOURS, len(changes) - NEIGHBOURS)
+        jumps = changes[middle] > LEAST * self._largest
+        for measured in (changes, changes / spans):
+            for k in range(2 * NEIGHBOURS + 1):
+                if k != NEIGHBOURS:
+                    jumps &= measured[middle] > STEEPER * measured[k : k + len(jumps)]
+        for step, i in np.argwhere(jumps):
+            first = step + NEIGHBOURS
+            self._jumps.append(
+                (float(times[first]), float(times[first + 1]), int(i), float(changes[first, i]))
+            )
+
+    def warn(self) -> None:
+        """Warn of the largest jump that has been seen, if there is any."""
+        if self._times:
+            self._find()
+        jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest[jump[2]]]
+        if not jumps:
+            return
+        start, end, power, size = max(jumps, key=lambda jump: jump[3] / self._largest[jump[2]])
+        times = len({jump[0] for jump in jumps})
+        warnings.warn(
+            f"the power {self._names[power]!r} jumps by {size:.3g} W between t = {start:.9g} s and {end:.9g} s"
+            + (f", and powers do so in {times} steps of this run" if times > 1 else "")
+            + f": the energy across that step may be wrong by {size * (end - start) / 2.0:.2g} J. If a load jumps "
+            "there, give its time to solve_dynamic, as breaks=[...]; if none does, take shorter steps",
+            RuntimeWarning,
+            stacklevel=4,
+        )
+
+
+def _powers(mbs: Any) -> tuple[list[str], FloatArray, list[int]]:
+    """Return names and units (W) of the powers that are watched, and where they are among the rates."""
+    found: list[tuple[str, float]] = []
+    places: list[int] = []
+    objects = mbs.systemData.NumberOfObjects() if mbs.systemData.ODE1Size() else 0
+    for item in range(objects):
+        rates = mbs.GetObject(item).get("rhsUserFunction")
+        own = getattr(rates["function"], _NAMES, ()) if isinstance(rates, dict) else ()
+        if own:
+            found += own
+            places += [int(place) for place in mbs.systemData.GetObjectLTGODE1(item)]
+    return [name for name, _ in found], np.array([unit for _, unit in found]), places

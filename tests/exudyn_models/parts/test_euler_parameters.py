@@ -1,0 +1,110 @@
+"""Friction and support of bodies with Euler parameters, Exudyn's default, under implicit solvers."""
+
+import exudyn as exu
+import exudyn.utilities
+import numpy as np
+import pytest
+from free_bodies import spatial_momenta
+from pairs_of_bodies import DISC, EULER, MASTER, body, conserved, momenta_and_energy
+
+from exudyn_models import (
+    add_energy_balance,
+    add_radial_support,
+    add_ring_friction,
+    largest_stable_step,
+    solve_dynamic,
+)
+
+PAIRS = [(EULER, EULER), ("rotor", EULER), (EULER, "planar")]
+RING = {"contact_radius": 0.12, "friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
+SUPPORT = {"stiffness": 20.0, "damping": 0.3, "hardening": 10.0}
+
+
+def settings(steps, end=0.2):
+    result = exu.SimulationSettings()
+    result.solution.file.write = False
+    options = result.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = end, steps, 0
+    options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, 1e-12
+    return result
+
+
+def model(kinds, friction=True):
+    mbs = exu.SystemContainer().AddSystem()
+    nodes = [body(mbs, kind, *data) for kind, data in zip(kinds, (MASTER, DISC), strict=True)]
+    contact = (
+        add_ring_friction(mbs, *nodes, **RING) if friction else add_radial_support(mbs, *nodes, **SUPPORT)
+    )
+    return mbs, nodes, contact
+
+
+@pytest.mark.parametrize("friction", [True, False])
+@pytest.mark.parametrize("kinds", PAIRS, ids=str)
+def test_momentum_is_kept_to_rounding_and_angular_momentum_and_energy_to_second_order(kinds, friction):
+    drifts, leaks = [], []
+    for steps in (100, 200):
+        mbs, nodes, contact = model(kinds, friction)
+        stored = [] if friction else [contact.stored_energy]
+        read = add_energy_balance(mbs, gains={}, losses={"contact": contact.power}, stored=stored)
+        mbs.Assemble()
+        before, _ = momenta_and_energy(mbs, kinds, nodes)
+        solve_dynamic(mbs, settings(steps), exu.DynamicSolverType.TrapezoidalIndex2)
+        after, _ = momenta_and_energy(mbs, kinds, nodes)
+        change = np.abs(after - before)
+        linear = [i for i in conserved(kinds) if i < 3]
+        assert all(change[linear] < 1e-11)
+        drifts.append(max(change[conserved(kinds)]))
+        balance = read()
+        assert balance.losses["contact"][-1] > 1e-3
+        leaks.append(np.max(np.abs(balance.residual)))
+    for errors in (drifts, leaks):
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.parametrize("friction", [True, False])
+def test_a_body_with_euler_parameters_moves_as_one_with_angles(friction):
+    # Both by the same implicit solver: what differs falls with the square of its step.
+    differences = []
+    for steps in (50, 100):
+        ends = []
+        for kind in (EULER, "Tait-Bryan"):
+            mbs, nodes, _ = model((kind, kind), friction)
+            solve_dynamic(mbs, settings(steps), exu.DynamicSolverType.GeneralizedAlpha)
+            ends.append(spatial_momenta(mbs, nodes[1], 1.0, DISC[1]))
+        differences.append(np.abs(ends[0] - ends[1]).max())
+    assert differences[1] < 1e-5
+    assert np.log2(differences[0] / differences[1]) == pytest.approx(2.0, abs=0.2)
+
+
+def test_the_default_body_of_exudyn_goes_by_its_number_and_its_sensors_tell_its_motion():
+    mbs = exu.SystemContainer().AddSystem()
+    bodies = [
+        mbs.CreateRigidBody(
+            referencePosition=[x, 0.0, 0.3],
+            inertia=exu.utilities.InertiaCuboid(1000.0, [0.1, 0.1, 0.1]),
+            initialAngularVelocity=[0.0, 0.0, spin],
+        )
+        for x, spin in ((0.0, 2.0), (0.05, -3.0))
+    ]
+    clutch = mbs.CreateRingFriction(
+        bodyNumbers=bodies, contactRadius=0.1, frictionCoefficient=0.3, normalLoad=2.0, regularisation=1e-3
+    )
+    sensors = [clutch.add_sensor(q) for q in ("relative_spin", "centre_slip", "radial_force", "power")]
+    mbs.Assemble()
+    spin, slip, force, power = (np.array(mbs.GetSensorValues(sensor)) for sensor in sensors)
+    assert mbs.GetNode(clutch.nodes[0])["nodeType"] == "RigidBodyEP"
+    assert spin == pytest.approx(-5.0, rel=1e-14)
+    assert slip == pytest.approx(2.0 * 0.05, rel=1e-14)  # the disc's centre rests, the master passes with ω·d
+    assert force[[0, 2]] == pytest.approx(0.0, abs=1e-14)
+    assert force[1] > 0.0  # with the master
+    assert power > 0.0
+
+
+def test_an_explicit_solver_is_refused_with_the_node_that_serves():
+    mbs, _, _ = model((EULER, EULER))
+    with pytest.raises(
+        ValueError, match=r"explicit and would ignore 2 constraint.*NodeRigidBodyEP.*RotVecLG"
+    ):
+        solve_dynamic(mbs, settings(10), exu.DynamicSolverType.RK44)
+    with pytest.raises(ValueError, match="2 constraint equations, which an explicit solver would ignore"):
+        largest_stable_step(mbs, exu.DynamicSolverType.RK44)
