@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from compare.output.text_files import replacing, write_text
-from compare.report.machines.arrays import array_files
+from compare.report.machines.arrays import tables
 from compare.report.machines.junit import junit
 from compare.report.machines.results_json import FILE, results
 from compare.report.matrix import Matrix, matrix
@@ -27,8 +27,10 @@ def write_report(run: Run, output: Path) -> Matrix:
     for drawing in run.drawings.values():
         if isinstance(drawing, Drawing):
             _write(_pictures(drawing), output)
-    _write(array_files(verdicts), output)
-    write_text(output / FILE, _lines(results(run, verdicts, stamp), LINES) + "\n")
+    arrays = tables(verdicts)
+    _write(dict(arrays.values()), output)
+    paths = {identity: path for identity, (path, _) in arrays.items()}
+    write_text(output / FILE, _lines(results(run, verdicts, stamp, paths), LINES) + "\n")
     write_text(output / "junit.xml", junit(run, verdicts).decode("utf-8"))
     write_text(output / "index.html", page(run, verdicts, stamp))
     return verdicts

@@ -39,17 +39,12 @@ LARGE = 32_768
 """Bytes from which a table is compressed."""
 
 
-def array_files(matrix: Matrix) -> dict[str, bytes]:
-    """Return the contents of the files by their paths in the report's folder."""
-    return dict(file_of(row) for group in matrix.groups for row in group.rows if row.claims)
+def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
+    """Return the path in the report's folder and the content of each claim's file, by the claim's identity."""
+    return {row.identity: table(row) for group in matrix.groups for row in group.rows if row.claims}
 
 
-def array_paths(matrix: Matrix) -> dict[str, str]:
-    """Return the path of each claim's file by the claim's identity."""
-    return {row.identity: file_of(row)[0] for group in matrix.groups for row in group.rows if row.claims}
-
-
-def file_of(row: Row) -> tuple[str, bytes]:
+def table(row: Row) -> tuple[str, bytes]:
     """Return the path of a claim's file in the report's folder, and what is in it."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -59,7 +54,7 @@ def file_of(row: Row) -> tuple[str, bytes]:
             writer.writerows((engine, i, *element) for element in _elements(claim))
     content = stream.getvalue().encode()
     path = f"{FOLDER}/{row.identity}.csv"
-    return (f"{path}.xz", lzma.compress(content)) if len(content) > LARGE else (path, content)
+    return (f"{path}.xz", lzma.compress(content, preset=2)) if len(content) > LARGE else (path, content)
 
 
 def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:

@@ -7,6 +7,7 @@ it, see ``compare.report.machines.arrays``; ``read_results`` puts both together.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from compare.claims.as_json import as_json, claim_as_json
 from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import slug
-from compare.report.machines.arrays import array_paths, with_arrays
+from compare.report.machines.arrays import with_arrays
 from compare.report.matrix import VERDICTS, Cell, Group, Matrix, RecordedMatrix, State
 from compare.report.quotes import filled
 from compare.report.worst import worst
@@ -65,13 +66,15 @@ def read_results(path: Path) -> dict[str, Any]:
         ) from None
 
 
-def results(run: Run, matrix: Matrix, stamp: dict[str, str]) -> dict[str, Any]:
-    """Return the content of ``results.json``; numbers that JSON doesn't know are "nan", "inf", "-inf"."""
-    paths = array_paths(matrix)
+def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
+    """Return the content of ``results.json``; numbers that JSON doesn't know are "nan", "inf", "-inf".
+
+    ``paths`` are those of the claims' tables, by identity.
+    """
     return {
         "format": FORMAT,
         "version": VERSION,
-        "stamp": stamp,
+        "stamp": dict(stamp),
         "engines": list(run.engines),
         "engine_versions": {name: run.versions.get(name, "") for name in run.engines},
         "interrupted": run.interrupted,
@@ -107,7 +110,7 @@ def results(run: Run, matrix: Matrix, stamp: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def _study(run: Run, group: Group, paths: dict[str, str]) -> dict[str, Any]:
+def _study(run: Run, group: Group, paths: Mapping[str, str]) -> dict[str, Any]:
     study = group.study
     drawing = run.drawings.get(study.name)
     return {

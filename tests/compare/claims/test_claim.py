@@ -44,7 +44,9 @@ def test_an_error_beyond_the_resolution_is_judged_by_the_size_of_what_is_predict
 
 def test_a_size_is_of_the_numbers_of_one_unit():
     predicted, error = np.array([[1e3, 1e-3], [0.0, 0.0]]), np.array([1.0, 1.0])
-    mixed = claim("c", "good", predicted, predicted, error, unit="m, rad/s", axes=((), ("x in m", "spin in rad/s")))
+    mixed = claim(
+        "c", "good", predicted, predicted, error, unit="m, rad/s", axes=((), ("x in m", "spin in rad/s"))
+    )
     alike = claim("c", "good", predicted, predicted, error, axes=((), ("x in m", "y in m")))
     assert (mixed.grade, alike.grade) == (None, Grade.COARSE)
 
