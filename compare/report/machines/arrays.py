@@ -78,7 +78,7 @@ def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
 def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return ``results.json`` of the report in ``folder`` with the arrays of each claim in it.
 
-    They are as in ``compare.claims.as_json.claim_as_json``. Raises ``OSError`` or ``ValueError`` for a file that is
+    They are as in ``compare.claims.as_json.claim_as_json``; ``places`` has the name and the unit of each element. Raises ``OSError`` or ``ValueError`` for a file that is
     not there, or is no such table.
     """
     studies = []
@@ -127,5 +127,6 @@ def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, A
         "difference": np.abs(measured - predicted).tolist(),
         "numerical_error": column("numerical_error").tolist(),
         "size": column("size").tolist() if rows[0]["size"] else None,
+        "places": [(row["place"], row["unit"]) for row in rows],
         "axes": _axes(rows, claim),
     }
