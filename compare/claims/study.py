@@ -14,7 +14,7 @@ import numpy as np
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
-from compare.claims.prose import Prose, Table
+from compare.claims.prose import Prose, Table, slug
 from compare.engines import Engine, UnsupportedSystemError
 from compare.engines.finer_steps import decided
 from reference_model.systems import FloatArray, System
@@ -134,11 +134,6 @@ class Declared:
 
 def _takes_engine(function: Callable[..., Any]) -> bool:
     return next(iter(inspect.signature(function).parameters), "") == "engine"
-
-
-def slug(words: str) -> str:
-    """Return ``words`` as part of a name: small letters and digits, between hyphens."""
-    return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
 
 
 def nothing_drawn(data: ByEngine) -> Figures:

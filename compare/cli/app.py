@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | diff | matrix | plan | judge | simulate | sweep | errata | ...``.
+"""The command line: ``friction-discs list | report | diff | matrix | plan | judge | simulate | sweep | ...``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.

@@ -10,7 +10,8 @@ from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.evidence import evidence_of
-from compare.claims.study import Findings, Recorded, Study, slug
+from compare.claims.prose import slug
+from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by
 from compare.report.worst import deciding, in_short
 from compare.run.runner import Run

@@ -78,8 +78,8 @@ def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
 def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return ``results.json`` of the report in ``folder`` with the arrays of each claim in it.
 
-    They are as in ``compare.claims.as_json.claim_as_json``; ``places`` has the name and the unit of each element. Raises ``OSError`` or ``ValueError`` for a file that is
-    not there, or is no such table.
+    They are as in ``compare.claims.as_json.claim_as_json``; ``places`` has the name and the unit of each element.
+    Raises ``OSError`` or ``ValueError`` for a file that is not there, or is no such table.
     """
     studies = []
     for study in results["studies"]:

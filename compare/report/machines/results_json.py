@@ -15,7 +15,7 @@ from typing import Any
 from compare.claims.as_json import as_json, claim_as_json
 from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Erratum, Evidence
-from compare.claims.study import slug
+from compare.claims.prose import slug
 from compare.report.machines.arrays import with_arrays
 from compare.report.matrix import VERDICTS, Cell, Group, Matrix, RecordedMatrix, State
 from compare.report.quotes import filled

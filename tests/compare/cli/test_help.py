@@ -77,6 +77,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
     monkeypatch.setattr(compare.sweep.store.files.Files, "write", stop)
     monkeypatch.setattr("reference_model.smallest_shock", stop)
+    monkeypatch.setattr("compare.report.machines.results_json.read_results", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
     monkeypatch.setattr(compare.run.kernels, "kernels", stop)
 
