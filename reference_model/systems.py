@@ -254,6 +254,9 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
 }
 """Name and unit of each state of a system."""
 
+UNITS = DiscOnDisc._units
+"""Unit of each parameter, those of a pin among them."""
+
 SMALLEST_TOLERANCE = 1e-14
 """What double precision can reach."""
 

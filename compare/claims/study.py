@@ -60,12 +60,13 @@ class Recorded:
 
     Parameters
     ----------
-    engine, setting : str
-        "" for the setting of an engine that has one only.
-    version, date : str
-        Of the engine, and when it was recorded.
+    engine, setting, version, date : str
+        "" for the setting of an engine that has one only; when it was recorded.
     claims : tuple of Claim
-        A finding about that engine, whatever the verdict.
+        Findings about that engine.
+    own, cases
+        Whether friction is the engine's own, and no force of its user's; and by the sentence of each claim a name for
+        its motion, and whether it is about "slip" or "stick".
 
     """
 
@@ -74,6 +75,8 @@ class Recorded:
     version: str
     date: str
     claims: tuple[Claim, ...]
+    own: bool = True
+    cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

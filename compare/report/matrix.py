@@ -150,10 +150,16 @@ class Group:
         """Return the reasons of all cells in ``state``, and how many cells give each."""
         return Counter(cell.reason for row in self.rows for cell in row.cells.values() if cell.state is state)
 
-    def number_of(self, sentence: str) -> int | None:
-        """Return the number, from 1, of the row of a claim; None for what is none."""
-        numbers = {row.sentence: i for i, row in enumerate(self.rows, 1)}
-        return numbers.get(sentence)
+    @property
+    def worst(self) -> tuple[State, ...]:
+        """The worst state of all cells, () where they agree or were not asked for."""
+        states = {cell.state for row in self.rows for cell in row.cells.values()}
+        found = next((state for state in WORST_FIRST if state in states), State.AGREES)
+        return () if found in (State.AGREES, State.NOT_SIMULATED) else (found,)
+
+    def row_of(self, sentence: str) -> Row | None:
+        """Return the row of a claim; None for what is none."""
+        return next((row for row in self.rows if row.sentence == sentence), None)
 
     @property
     def agrees(self) -> bool:

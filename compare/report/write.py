@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from compare.output.text_files import replacing, write_text
+from compare.report.animation import still
 from compare.report.machines.arrays import tables
 from compare.report.machines.junit import junit
 from compare.report.machines.results_json import FILE, results
@@ -32,14 +33,15 @@ def write_report(run: Run, output: Path) -> Matrix:
     paths = {identity: path for identity, (path, _) in arrays.items()}
     write_text(output / FILE, _lines(results(run, verdicts, stamp, paths), LINES) + "\n")
     write_text(output / "junit.xml", junit(run, verdicts).decode("utf-8"))
-    write_text(output / "index.html", page(run, verdicts, stamp))
+    write_text(output / "index.html", page(run, verdicts, stamp, paths))
     return verdicts
 
 
 def _pictures(drawing: Drawing) -> dict[str, bytes]:
     """Return figures and animations by their paths in the report's folder."""
     figures = {f"figures/{name}.svg": content for name, content in drawing.figures.items()}
-    return figures | {f"figures/{name}.gif": content for name, content in drawing.animations.items()}
+    moving = {f"figures/{name}.gif": content for name, content in drawing.animations.items()}
+    return figures | moving | {f"figures/{name}.png": still(gif) for name, gif in drawing.animations.items()}
 
 
 def _lines(content: Any, depth: int) -> str:
