@@ -113,3 +113,18 @@ def in_short(claim: Claim) -> str:
 def answers_text(count: float) -> str:
     """Return a number of answers, which is whole: "3", "1,000,000"."""
     return f"{round(count):,}"
+
+
+def account(claim: Claim) -> str:
+    """Return the numbers of the element that decides."""
+    element = worst(claim)
+    if claim.answers:
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
+    unit = f" {element.unit}" if element.unit else ""
+    largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
+    return (
+        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
+        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
+        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
+        f"largest difference of {element.count}: {largest}"
+    )

@@ -31,6 +31,7 @@ from compare.cli.door.options import (
 from compare.cli.door.progress import measurements
 
 if TYPE_CHECKING:
+    from compare.claims.study import Study
     from compare.engines import Engine
     from compare.report.matrix import Matrix
     from compare.run.runner import Run
@@ -85,9 +86,21 @@ LeastConclusive = Annotated[
 ]
 
 
+OneClaim = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ID",
+        help="Measure this one claim, as the report calls it, and print its numbers; --output is then the folder "
+        "claim, if nothing else is said.",
+        show_default=False,
+    ),
+]
+
+
 def report(
     context: typer.Context,
     names: Names = None,
+    claim: OneClaim = None,
     engine: Engines = None,
     level: Level = "full",
     study_limit: Limit = None,
@@ -107,10 +120,16 @@ def report(
       friction-discs report
       friction-discs report --level quick
       friction-discs report fig03 fig05 --engine exudyn --output fig
+      friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.engines import engines
 
     studies = studies_of(context, names or [], level)
+    if claim is not None:
+        studies = (_alone(studies, claim, names, level, resume),)
+        source = context.get_parameter_source("output")
+        if source is not None and source.name == "DEFAULT":  # the whole report stays
+            output = Path("claim")
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
@@ -120,7 +139,9 @@ def report(
     from compare.run.runner import run
     from compare.run.workers import interrupts_ignored
 
-    whole = context.obj is None and not names and level == "full"  # errata are part of the whole paper
+    whole = (
+        context.obj is None and not names and claim is None and level == "full"
+    )  # errata are part of the whole paper
     with measurements() as progress:
         result = run(
             studies,
@@ -137,10 +158,33 @@ def report(
     with interrupts_ignored():  # a second or so, and then nothing is half written
         matrix = write_report(result, output)
     with printing():
+        if claim is not None:
+            _print_numbers(matrix)
         _print_summary(result, matrix, output / "index.html")
     if not result.interrupted:
         _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
     return _status(result, matrix, min_conclusive)
+
+
+def _alone(studies: Sequence[Study], claim: str, names: object, level: str, resume: bool) -> Study:
+    """Return the study that makes one claim; refuse what doesn't go with it."""
+    from compare.cli.measure.claim import with_claim
+
+    with refused():
+        if names or level != "full" or resume:
+            raise ValueError(
+                f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
+            )
+        return with_claim(studies, claim)
+
+
+def _print_numbers(matrix: Matrix) -> None:
+    """Print the numbers that decide each claim."""
+    from compare.report.worst import account
+
+    for group in matrix.groups:
+        for claim in group.claims:
+            print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
 
 
 def _is_suspect(matrix: Matrix, engine: str) -> bool:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from compare.claims.claim import Claim
 from compare.report.matrix import Matrix, Row, State, state_of
-from compare.report.numbers import error_text
-from compare.report.worst import answers_text, in_short, worst
+from compare.report.worst import account
 from compare.run.runner import Run
 from compare.run.workers import Failure
 
@@ -43,9 +41,9 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
             if value:
                 ET.SubElement(properties, "property", name=name, value=value)
         if state_of(claim) is State.DIFFERS:
-            ET.SubElement(case, "failure", message=_message(claim))
+            ET.SubElement(case, "failure", message=account(claim))
         elif state_of(claim) is State.INCONCLUSIVE:
-            ET.SubElement(case, "skipped", message=f"inconclusive: {_message(claim)}")
+            ET.SubElement(case, "skipped", message=f"inconclusive: {account(claim)}")
     if not cell.claims:
         case = _case(suite, study, column, row.sentence)
         if cell.state is State.FAILED:
@@ -62,21 +60,6 @@ def _error(case: ET.Element, reason: str, failure: object) -> None:
     error = ET.SubElement(case, "error", message=reason)
     if isinstance(failure, Failure):
         error.text = "\n".join(failure.where)
-
-
-def _message(claim: Claim) -> str:
-    """Return the numbers of the element that decides."""
-    element = worst(claim)
-    if claim.answers:
-        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
-    unit = f" {element.unit}" if element.unit else ""
-    largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
-    return (
-        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
-        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
-        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
-        f"largest difference of {element.count}: {largest}"
-    )
 
 
 def _count(element: ET.Element) -> None:

@@ -47,7 +47,7 @@
     for (const study of studies) {
       const told = onlyWords && words.every((word) => study.text.includes(word));
       study.element.hidden = active && !within.get(study.element) && !told;
-      if (active && within.get(study.element) && count <= 60 && !study.element.open) {
+      if (active && within.get(study.element) && count <= 120 && !study.element.open) {
         study.element.open = study.opened = true;
       } else if (!active && study.opened) {
         study.element.open = study.opened = false;
