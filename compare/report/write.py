@@ -10,6 +10,7 @@ from typing import Any
 from compare.output.text_files import replacing, write_text
 from compare.report.animation import still
 from compare.report.machines.arrays import tables
+from compare.report.machines.badge import badge
 from compare.report.machines.junit import junit
 from compare.report.machines.results_json import FILE, results
 from compare.report.matrix import Matrix, matrix
@@ -33,6 +34,7 @@ def write_report(run: Run, output: Path) -> Matrix:
     paths = {identity: path for identity, (path, _) in arrays.items()}
     write_text(output / FILE, _lines(results(run, verdicts, stamp, paths), LINES) + "\n")
     write_text(output / "junit.xml", junit(run, verdicts).decode("utf-8"))
+    write_text(output / "badge.svg", badge(verdicts))
     write_text(output / "index.html", page(run, verdicts, stamp, paths))
     return verdicts
 

@@ -127,21 +127,15 @@ def report(
     studies = studies_of(context, names or [], level)
     if claim is not None:
         studies = (_alone(studies, claim, names, level, resume),)
-        source = context.get_parameter_source("output")
-        if source is not None and source.name == "DEFAULT":  # the whole report stays
-            output = Path("claim")
+        output = _folder_of_claim(context, output)
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
 
     from compare.claims.errata import ERRATA
-    from compare.report.write import write_report
     from compare.run.runner import run
-    from compare.run.workers import interrupts_ignored
 
-    whole = (
-        context.obj is None and not names and claim is None and level == "full"
-    )  # errata are part of the whole paper
+    part = context.obj is not None or names or claim is not None or level != "full"
     with measurements() as progress:
         result = run(
             studies,
@@ -150,13 +144,12 @@ def report(
             jobs=jobs or cores(),
             limit=study_limit,
             resume=resume,
-            errata=ERRATA if whole else (),
+            errata=() if part else ERRATA,
             progress=progress,
         )
     if resume:
         _tell_unknown(result.unknown)
-    with interrupts_ignored():  # a second or so, and then nothing is half written
-        matrix = write_report(result, output)
+    matrix = _write(result, output)
     with printing():
         if claim is not None:
             _print_numbers(matrix)
@@ -176,6 +169,21 @@ def _alone(studies: Sequence[Study], claim: str, names: object, level: str, resu
                 f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
             )
         return with_claim(studies, claim)
+
+
+def _folder_of_claim(context: typer.Context, output: Path) -> Path:
+    """Return the folder that was asked for, else one of its own, so that a whole report stays as it is."""
+    source = context.get_parameter_source("output")
+    return Path("claim") if source is not None and source.name == "DEFAULT" else output
+
+
+def _write(result: Run, output: Path) -> Matrix:
+    """Write the report, without an interruption: that takes seconds, and then nothing is half written."""
+    from compare.report.write import write_report
+    from compare.run.workers import interrupts_ignored
+
+    with interrupts_ignored():
+        return write_report(result, output)
 
 
 def _print_numbers(matrix: Matrix) -> None:

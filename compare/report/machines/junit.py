@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
+from compare.claims.claim import Claim
 from compare.report.matrix import Matrix, Row, State, state_of
-from compare.report.worst import account
+from compare.report.worst import account, worst
 from compare.run.runner import Run
 from compare.run.workers import Failure
 
@@ -24,6 +25,7 @@ def junit(run: Run, matrix: Matrix) -> bytes:
         drawing = run.drawings.get(group.study.name)
         if isinstance(drawing, Failure):
             _error(_case(suite, group.study.name, "figures", "drawn"), drawing.reason, drawing)
+        _share_time(suite, run, group.study.name)
         _count(suite)
     _count(root)
     ET.indent(root)
@@ -36,8 +38,13 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
     for claim in cell.claims:
         case = _case(suite, study, column, row.sentence)
         properties = ET.SubElement(case, "properties")
-        said = {"kind": claim.kind, "evidence": cell.evidence, "implied by": cell.implied_by}
-        for name, value in said.items():
+        said = {
+            "id": row.identity,
+            "kind": claim.kind,
+            "evidence": cell.evidence,
+            "implied by": cell.implied_by,
+        }
+        for name, value in (said | _numbers(claim)).items():
             if value:
                 ET.SubElement(properties, "property", name=name, value=value)
         if state_of(claim) is State.DIFFERS:
@@ -50,6 +57,30 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
             _error(case, cell.reason, run.outcomes.get((study, column)))
         else:
             ET.SubElement(case, "skipped", message=cell.reason)
+
+
+def _numbers(claim: Claim) -> dict[str, str]:
+    """Return the numbers of the element that decides, in full, and its unit."""
+    element = worst(claim)
+    numbers = {
+        "predicted": element.predicted,
+        "measured": element.measured,
+        "difference": element.difference,
+        "allowed": element.total,
+        "resolution": claim.budget.resolution,
+    }
+    return {"element": element.name, "unit": element.unit} | {name: repr(it) for name, it in numbers.items()}
+
+
+def _share_time(suite: ET.Element, run: Run, study: str) -> None:
+    """Share the time that a study took of an engine among its cases: no claim was timed by itself."""
+    cases: dict[str, list[ET.Element]] = {}
+    for case in suite.iter("testcase"):
+        cases.setdefault(case.get("classname", ""), []).append(case)
+    for name, own in cases.items():
+        seconds = run.seconds.get((study, name.removeprefix(f"{study}.")), 0.0)
+        for case in own:
+            case.set("time", f"{seconds / len(own):.3f}")
 
 
 def _case(suite: ET.Element, study: str, column: str, sentence: str) -> ET.Element:
@@ -67,3 +98,4 @@ def _count(element: ET.Element) -> None:
     element.set("tests", str(len(cases)))
     for attribute, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
         element.set(attribute, str(sum(case.find(tag) is not None for case in cases)))
+    element.set("time", f"{sum(float(case.get('time', '0')) for case in cases):.3f}")

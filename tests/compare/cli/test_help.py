@@ -53,6 +53,9 @@ DOCUMENTS = [
     (path.name, example)
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
     for example in examples(code(path))
+] + [
+    ("ci-workflow.yml", example.partition(" ||")[0])
+    for example in examples((ROOT / "docs" / "ci-workflow.yml").read_text(encoding="utf-8"))
 ]
 
 

@@ -1,12 +1,13 @@
 """What programs read of a report: results by their published schema, tables with every number, to the last bit."""
 
 import json
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import jsonschema
 import numpy as np
 import pytest
-from fake_studies import GOOD, VERDICTS, claim, measure_verdicts
+from fake_studies import AGREEMENT, GOOD, VERDICTS, claim, measure_verdicts
 
 from compare.claims.as_json import claim_from_json
 from compare.claims.study import Findings
@@ -85,6 +86,15 @@ def test_a_table_says_unit_and_place_of_each_number(tmp_path, monkeypatch, large
     if large:
         table = (tmp_path / first["arrays"]).read_text(encoding="utf-8").splitlines()
         assert table[4] == f'good,1,3,"b, angle in rad",rad,{1 / 3!r},{1 / 3!r},0.5,inf'
+
+
+def test_a_badge_counts_what_agrees_and_is_red_where_something_differs(reported, tmp_path):
+    badge = ET.fromstring((reported[1] / "badge.svg").read_text(encoding="utf-8"))
+    assert badge.get("aria-label") == "friction-discs: 5 of 11 agree"
+    colours = [one.get("fill") for one in badge.iter() if one.tag.endswith("path")]
+    assert colours == ["#9c1c1c"]
+    write_report(run((AGREEMENT,), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    assert "#1d5c38" in (tmp_path / "badge.svg").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -205,11 +205,25 @@ def test_junit_has_a_case_for_each_claim_and_engine(reported, results):
     assert failure.get("message").startswith(
         "predicted 0.1 N, measured 0.1004 N, difference 0.00040, allowed "
     )
+    (differing,) = [case for case in cases if case.find("failure") is not None]
+    said = {one.get("name"): one.get("value") for one in differing.iter("property")}
+    assert said["id"] == "verdicts/the-equilibrium-is-lost-at-the-load-of-eq-5"
+    assert (float(said["measured"]), float(said["allowed"]), said["unit"]) == (0.1004, 1e-6, "N")
     assert {case.get("classname") for case in cases} >= {
         "verdicts.theory",
         "verdicts.good",
         "agreement.failing",
     }
+
+
+def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
+    result = run((VERDICTS,), (Engine("good", straight),), folder=tmp_path / "data")
+    result.seconds["verdicts", "good"] = 8.0
+    write_report(result, tmp_path)
+    root = ET.parse(tmp_path / "junit.xml").getroot()
+    times = [float(case.get("time")) for case in root.iter("testcase") if "good" in case.get("classname")]
+    assert times == [2.0] * 4
+    assert float(root.get("time")) >= 8.0
 
 
 @pytest.fixture(scope="module", params=["first", "resumed"])
