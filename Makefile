@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: report readme test lint benchmarks clean
+.PHONY: report readme test lint docs paper dist benchmarks clean
 
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
@@ -21,6 +21,20 @@ lint: $(VENV)/for-tests
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# The site: site/index.html, with the last report if there is one. A warning is an error.
+docs: $(VENV)/for-docs
+	$(BIN)/python docs/site/build.py
+
+# The paper about the findings, docs/paper/paper.pdf, with the figures of the last report.
+paper: $(VENV)/for-docs
+	$(BIN)/python docs/paper/build.py
+
+# Wheel and source archive, and a check that each holds what it should.
+dist: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable '.[release]'
+	rm -rf dist
+	$(BIN)/python builders/release.py dist
+
 benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/exudyn_contact.py
 	$(BIN)/python benchmarks/exudyn_solvers.py
@@ -32,14 +46,18 @@ benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:
-	rm -rf $(VENV) report build *.egg-info
+	rm -rf $(VENV) report site docs/paper/paper.pdf build dist *.egg-info
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --editable '.[sweep]'
 	touch $@
 
 # Whoever only wants a report does not wait for what tests need.
 $(VENV)/for-tests: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
+	touch $@
+
+$(VENV)/for-docs: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	touch $@

@@ -4,18 +4,18 @@ Run with ``python benchmarks/exec_protocol.py``; takes about 10 s. The engine dr
 motion, as fast as they can be drawn, so that all but that is the protocol's: both ends of the line count, once with a
 program in Python and once, where there is node, with one in JavaScript. Times are of the wall, the shortest of some.
 
-Measured on two cores with AVX-512 that others kept busy besides, which costs some tenths:
+Measured on two cores that others kept busy besides:
 
 | times | numbers | Python, ms more | JavaScript, ms more | allowed, ms |
 |---|---|---|---|---|
-| 2 | 14 | 0.13 | 0.11 | 0.21 |
-| 20 | 104 | 0.23 | 0.17 | 0.30 |
-| 200 | 1,004 | 1.19 | 0.78 | 1.20 |
-| 2,000 | 10,004 | 11.4 | 7.7 | 10.2 |
-| 20,000 | 100,004 | 115 | 74 | 100 |
+| 2 | 14 | 0.03 | 0.03 | 0.21 |
+| 20 | 104 | 0.09 | 0.06 | 0.30 |
+| 200 | 1,004 | 0.69 | 0.41 | 1.20 |
+| 2,000 | 10,004 | 6.7 | 4.0 | 10.2 |
+| 20,000 | 100,004 | 74 | 44 | 100 |
 
-Of the 1.1 µs that a number costs with Python, 0.5 µs are this end's; the other 0.6 µs are what the program's own json
-takes to write all 17 digits and to read them.
+On a processor that is slower by half a number takes 1.1 µs with Python: half of it is this end's, the other half what
+the program's own json takes to write all 17 digits and to read them.
 """
 
 from __future__ import annotations

@@ -78,13 +78,18 @@ def native(connector: str, marker: str, count: int) -> AddContact:
     return add
 
 
-def with_force(force: Callable[..., Any]) -> AddContact:
-    """Add the connector between rotor and disc with another force function."""
+def with_force(force: Callable[..., Any], coordinates: int = 4) -> AddContact:
+    """Add the connector between both bodies with another force function."""
     return lambda mbs, master, disc: mbs.AddObject(
         items.ObjectGenericODE2(
-            nodeNumbers=[master, disc], massMatrix=np.zeros((4, 4)), forceUserFunction=force
+            nodeNumbers=[master, disc],
+            massMatrix=np.zeros((coordinates, coordinates)),
+            forceUserFunction=force,
         )
     )
+
+
+NOTHING = [0.0] * 12
 
 
 def constant(*arguments: Any) -> list[float]:
@@ -182,6 +187,7 @@ PLANAR: dict[str, AddContact] = {
 
 SPATIAL: dict[str, AddContact] = {
     "two spatial bodies, no friction": lambda mbs, master, disc: None,
+    "a user function of twelve coordinates": with_force(lambda *arguments: NOTHING, coordinates=12),
     "the same with a ring": ours(RING),
     "the same under a load of the radius": ours(RING, lambda radius: FIG5.friction_force),
 }

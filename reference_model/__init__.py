@@ -47,6 +47,9 @@ from reference_model.steady.steady_states import (
 from reference_model.systems import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
+__version__ = "0.1.0"
+"""Of all three packages: ``pyproject.toml`` takes it from here."""
+
 __all__ = [
     "Annulus",
     "DiscOnDisc",

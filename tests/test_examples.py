@@ -13,7 +13,10 @@ from exudyn_models import PASSENGER_CAR
 from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
 
 ROOT = Path(__file__).parents[1]
-DOCUMENTS = ["README.md", "docs/friction-in-your-own-model.md", "docs/from-modelica.md"]
+DOCUMENTS = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
+DOCUMENTS = [name for name in DOCUMENTS if "```python" in (ROOT / name).read_text(encoding="utf-8")]
+RUN_ELSEWHERE = {"docs/sweeps.md"}
+"""In tests/compare/sweep/test_sweep_command.py, with the store of a sweep."""
 
 VALUE = re.compile(r"True|False|-?\d+(?:\.(\d+))?")
 """In a comment; digits after the point say to how many it is rounded."""
@@ -146,12 +149,12 @@ def test_the_drivetrain_centres_its_clutch_disc_and_lets_it_whirl_against_its_st
     assert deflection.max() < PASSENGER_CAR.stop_gap + whirl
 
 
-def test_the_engine_of_the_readme_is_that_of_the_example():
-    (code,) = [code for code in code_of("README.md") if "def simulate" in code]
-    assert code in (ROOT / "examples" / "05_your_own_engine.py").read_text()
+def test_the_engine_of_the_documents_is_that_of_the_example():
+    (code,) = [code for code in code_of("docs/judge-your-engine.md") if "def simulate(pin" in code]
+    assert code[code.index("def simulate") :] in (ROOT / "examples" / "05_your_own_engine.py").read_text()
 
 
-@pytest.mark.parametrize("document", DOCUMENTS)
+@pytest.mark.parametrize("document", [name for name in DOCUMENTS if name not in RUN_ELSEWHERE])
 def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names, compared = {}, 0
@@ -170,5 +173,5 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
                     assert round(float(found), digits) == float(ast.literal_eval(match[0])), comment
                 assert len(said) >= np.size(value), f"no value is said of {lines[statement.lineno - 1]}"
                 compared += 1
-    assert compared >= 3
+    assert compared >= 2
     assert not list(tmp_path.iterdir()), "a run has left files"

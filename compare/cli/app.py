@@ -80,6 +80,10 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
         return say(" ".join(message.split()), BAD_INPUT)
     except EngineFailedError as error:
         return say(str(error), SOMETHING_DIFFERS)
+    except ModuleNotFoundError as error:
+        if not (error.name or "").startswith("friction-discs["):  # else an extra that is not installed
+            raise
+        return say(str(error), BAD_INPUT)
     except MemoryError:
         return say("there is not enough memory", SOMETHING_DIFFERS)
     except SystemExit as end:

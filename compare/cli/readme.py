@@ -1,4 +1,4 @@
-"""Numbers in README and docs, written from a report and compared with every later one.
+"""Numbers in README, docs and paper, written from a report and compared with every later one.
 
 A number stands between two comments that no reader sees, the first of which says where it is from::
 
@@ -6,8 +6,8 @@ A number stands between two comments that no reader sees, the first of which say
 
 ``study: name, ...`` is a quote of one of the study's claims, see ``compare.report.quotes``. ``claims`` and
 ``verdicts`` are how many of them a whole report has, and ``verdicts: engine=exudyn, verdict=agrees`` how many have
-these values of fields in ``results.json``. All numbers are kept in ``docs/numbers.json`` too, with what they may be
-off::
+these values of fields in ``results.json``. In the paper ``#n("fig05: dividing velocity, reference")`` stands for such
+a number. All numbers are kept in ``docs/numbers.json`` too, with what they may be off::
 
     python -m compare.cli.readme write report/results.json   # takes them over from this report
     python -m compare.cli.readme check report/results.json   # fails where this report and the texts part
@@ -34,6 +34,9 @@ ROOT = Path(__file__).parents[2]
 NUMBERS = Path("docs", "numbers.json")
 
 MARKED = re.compile(r"(<!--=(?P<words>[^>]*?)-->)(?P<text>.*?)(?P<end><!--/-->)", flags=re.DOTALL)
+
+QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+"""A number in a source of the paper, which looks it up in ``docs/numbers.json`` by itself."""
 
 UNKNOWN = "…"
 """Stands where a number was never measured."""
@@ -79,6 +82,12 @@ def marks(text: str) -> Iterator[tuple[str, str]]:
         yield found["words"], found["text"]
 
 
+def quoted(root: Path = ROOT) -> Iterator[str]:
+    """Yield what the numbers of the paper are."""
+    for path in sorted((root / "docs" / "paper").glob("*.typ")):
+        yield from QUOTED.findall(path.read_text(encoding="utf-8"))
+
+
 def filled(text: str, numbers: Mapping[str, Number]) -> str:
     """Return ``text`` with its marked numbers as they are in ``numbers``."""
 
@@ -98,7 +107,8 @@ def kept(root: Path = ROOT) -> dict[str, Number]:
 
 def wanted(root: Path = ROOT) -> tuple[str, ...]:
     """Return what all marked numbers are to be, each once."""
-    return tuple(dict.fromkeys(words for text in texts(root).values() for words, _ in marks(text)))
+    marked = (words for text in texts(root).values() for words, _ in marks(text))
+    return tuple(dict.fromkeys([*marked, *quoted(root)]))
 
 
 def number_in(results: Results, words: str) -> Number | None:
@@ -220,6 +230,7 @@ def unlike(root: Path = ROOT) -> list[str]:
         for words, text in marks(content)
         if words not in numbers or numbers[words].text != text
     ]
+    sentences += [f"the paper: {words}: never measured" for words in quoted(root) if words not in numbers]
     return sentences + [f"no text has {words!r}" for words in numbers.keys() - set(wanted(root))]
 
 

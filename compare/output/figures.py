@@ -163,6 +163,16 @@ def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, A
     } | changes
 
 
+def beside(panel: Axes, place: float) -> Any:
+    """Return the transform of marks that stand ``place`` marks to the right of where they belong.
+
+    So marks that would lie on each other are all seen; a caption has to say so.
+    """
+    from matplotlib.transforms import offset_copy
+
+    return offset_copy(panel.transData, panel.figure, x=7.0 * place, units="points")  # type: ignore[arg-type]
+
+
 def engines_in(data: Iterable[str]) -> tuple[str, ...]:
     """Return the engines among the keys of ``data``: reference, exudyn, then others by name."""
     names = [name for name in data if name != "theory"]

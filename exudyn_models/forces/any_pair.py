@@ -25,20 +25,6 @@ to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is
 
 
 @compiled
-def friction_on_nodes(
-    kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, contact: Contact
-) -> tuple[FloatArray, float, float, float]:
-    """Return the generalised forces on both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s."""
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
-    ux, uy, spin = to_slip @ velocities
-    angle = math.atan2(sine, cosine)
-    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    forces = fx * to_slip[0] + fy * to_slip[1] + moment * to_slip[2]
-    radius = radius_of_disc(kinds, coordinates, axes)
-    return forces, radius, slip_potential_of_contact(ux, uy, spin, angle, contact), spin
-
-
-@compiled
 def friction_derivatives_on_nodes(
     kinds: Kinds,
     coordinates: FloatArray,
@@ -49,11 +35,11 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of those by the coordinates and by the velocities. What ``friction_on_nodes`` returns comes
-    with them.
+    They are weighted sums of those by the coordinates and by the velocities. The generalised forces on both nodes,
+    shape (n,), the disc's radius in m, P in m/s and S in rad/s come with them.
     """
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
-    ux, uy, spin = to_slip @ velocities
+    ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
@@ -94,11 +80,30 @@ def force_on_any(
     a ``law`` where the friction force is no number, and 1 N in its place.
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    forces, radius, speed, spin = friction_on_nodes(kinds, coordinates, velocities, contact)
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    ux, uy, spin = _slip(to_slip, velocities)
+    angle = math.atan2(sine, cosine)
+    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     if law is not None:
-        forces *= friction_force_under(law, contact[3], t, radius, speed, spin)
-    result: Floats = to_tuple(forces, len(q))
+        radius = radius_of_disc(kinds, coordinates, axes)
+        speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+        friction = friction_force_under(law, contact[3], t, radius, speed, spin)
+        fx, fy, moment = friction * fx, friction * fy, friction * moment
+    for k in range(len(q)):  # in the place of the velocities, which are not needed any more
+        velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
+    result: Floats = to_tuple(velocities, len(q))
     return result
+
+
+@compiled
+def _slip(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
+    """Return their product: so small a one takes longer by a library."""
+    ux = uy = spin = 0.0
+    for k in range(len(velocities)):
+        ux += to_slip[0, k] * velocities[k]
+        uy += to_slip[1, k] * velocities[k]
+        spin += to_slip[2, k] * velocities[k]
+    return ux, uy, spin
 
 
 @compiled

@@ -52,8 +52,15 @@ Array = NDArray[Any]
 """Of real numbers, or of complex ones where derivatives are asked for."""
 
 
+Vector = tuple[Any, Any, Any]
+"""In global axes."""
+
+Axes = tuple[Vector, Vector, Vector]
+"""Of a body: x, y and z."""
+
+
 @compiled
-def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple[Any, Any]]:
+def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
@@ -61,28 +68,27 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Array, tuple
     """
     master, disc = kinds
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
-    place, axes, turning = _frame(master, coordinates[:size])
-    disc_place, disc_axes, disc_turning = _frame(disc, coordinates[size:])
+    place, axes, turning = _frame(master, coordinates, 0)
+    disc_place, disc_axes, disc_turning = _frame(disc, coordinates, size)
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
-        axis = axes[:, i]
+        axis = axes[i]
         lever = _lever(place, disc_place, axis)  # (ω×d)·e = ω·(d×e)
         for k in range(before):
             result[i, k] = -axis[k]
         for k in range(first):
             result[i, size + k] = axis[k]
         for k in range(size - before):
-            result[i, before + k] = -_product(lever, turning[:, k])
+            result[i, before + k] = -_product(lever, turning[k])
     for k in range(size - before):
-        result[2, before + k] = -_product(axes[:, 2], turning[:, k])
+        result[2, before + k] = -_product(axes[2], turning[k])
     for k in range(SIZES[disc] - first):
-        result[2, size + first + k] = _product(axes[:, 2], disc_turning[:, k])
-    mark = disc_axes[:, 0]
-    return result, axes, (_product(mark, axes[:, 0]), _product(mark, axes[:, 1]))
+        result[2, size + first + k] = _product(axes[2], disc_turning[k])
+    return result, axes, (_product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1]))
 
 
 @compiled
-def place_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> tuple[Any, Any]:
+def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, Any]:
     """Return the place of the disc's node over the axis of the master with ``axes``, in two of these, in m."""
     master, disc = kinds
     x = y = 0.0 * coordinates[0]
@@ -92,94 +98,89 @@ def place_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> tuple[Any, A
             apart += coordinates[SIZES[master] + i]
         if i < TRANSLATIONS[master]:
             apart -= coordinates[i]
-        x += apart * axes[i, 0]
-        y += apart * axes[i, 1]
+        x += apart * axes[0][i]
+        y += apart * axes[1][i]
     return x, y
 
 
 @compiled
-def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Array) -> Any:
+def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
     """Return the distance in m of the disc's node from the axis of the master with ``axes``, across it."""
     x, y = place_of_disc(kinds, coordinates, axes)
     return np.sqrt(x * x + y * y)
 
 
 @compiled
-def _frame(kind: int, q: Array) -> tuple[Array, Array, Array]:
-    """Return position and axes of a body, and the columns that turn rates of its coordinates into ω."""
-    place, axes, turning = np.zeros(3, q.dtype), np.zeros((3, 3), q.dtype), np.zeros((3, 4), q.dtype)
-    first = TRANSLATIONS[kind]
-    for i in range(first):
-        place[i] = q[i]
+def _frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
+    """Return place and axes of a body with coordinates from ``q[at]`` on, and what each rate of angles adds to ω."""
+    zero = 0.0 * q[0]
+    one, none = zero + 1.0, (zero, zero, zero)
+    place, angle = none, at + TRANSLATIONS[kind]
+    if TRANSLATIONS[kind] > 0:
+        place = (q[at], q[at + 1], q[at + 2] if TRANSLATIONS[kind] == 3 else zero)
     if kind == ROTATION_VECTOR:
-        _rotate_by_vector(q[3:], axes)
-        for i in range(3):
-            for j in range(3):
-                turning[i, j] = axes[i, j]  # the velocities are ω in the body's axes
-    elif kind == TAIT_BRYAN:
-        cx, cy, cz = np.cos(q[3]), np.cos(q[4]), np.cos(q[5])
-        sx, sy, sz = np.sin(q[3]), np.sin(q[4]), np.sin(q[5])
-        axes[0, 0], axes[0, 1], axes[0, 2] = cy * cz, -cy * sz, sy
-        axes[1, 0], axes[1, 1], axes[1, 2] = cx * sz + sx * sy * cz, cx * cz - sx * sy * sz, -sx * cy
-        axes[2, 0], axes[2, 1], axes[2, 2] = sx * sz - cx * sy * cz, sx * cz + cx * sy * sz, cx * cy
-        turning[0, 0] = 1.0
-        turning[1, 1], turning[2, 1] = cx, sx
-        for i in range(3):
-            turning[i, 2] = axes[i, 2]
-    elif kind == EULER_PARAMETERS:
-        _rotate_by_euler_parameters(q[3:], axes, turning)
-    elif kind == GROUND:
-        for i in range(3):
-            axes[i, i] = 1.0
-    else:
-        c, s = np.cos(q[first]), np.sin(q[first])
-        axes[0, 0], axes[0, 1] = c, -s
-        axes[1, 0], axes[1, 1] = s, c
-        axes[2, 2] = turning[2, 0] = 1.0
-    return place, axes, turning
+        axes = _rotated_by_vector(q[angle], q[angle + 1], q[angle + 2])
+        return place, axes, (axes[0], axes[1], axes[2], none)  # the velocities are ω in the body's axes
+    if kind == TAIT_BRYAN:
+        cx, cy, cz = np.cos(q[angle]), np.cos(q[angle + 1]), np.cos(q[angle + 2])
+        sx, sy, sz = np.sin(q[angle]), np.sin(q[angle + 1]), np.sin(q[angle + 2])
+        x = (cy * cz, cx * sz + sx * sy * cz, sx * sz - cx * sy * cz)
+        y = (-cy * sz, cx * cz - sx * sy * sz, sx * cz + cx * sy * sz)
+        z = (sy, -sx * cy, cx * cy)
+        return place, (x, y, z), ((one, zero, zero), (zero, cx, sx), z, none)
+    if kind == EULER_PARAMETERS:
+        return place, *_rotated_by_euler_parameters(q[angle], q[angle + 1], q[angle + 2], q[angle + 3])
+    c, s, turning = one, zero, none
+    if kind != GROUND:
+        c, s, turning = np.cos(q[angle]), np.sin(q[angle]), (zero, zero, one)
+    return place, ((c, s, zero), (-s, c, zero), (zero, zero, one)), (turning, none, none, none)
 
 
 @compiled
-def _rotate_by_vector(v: Array, axes: Array) -> None:
-    """Fill ``axes``, all zero, by Rodrigues' formula, 1 + sin(θ)/θ·[v] + (1 − cos(θ))/θ²·[v]²."""
-    square = _product(v, v)
+def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
+    """Return axes by Rodrigues' formula, 1 + sin(θ)/θ·[v] + (1 − cos(θ))/θ²·[v]²."""
+    square = x * x + y * y + z * z
     theta = np.sqrt(square)
     # Half angles keep the digits of 1 − cos(θ).
     linear = np.sin(theta) / theta if theta != 0.0 else theta + 1.0
     half = np.sin(theta / 2.0) / theta if theta != 0.0 else theta + 0.5
     quadratic = 2.0 * half * half
-    for i in range(3):
-        for j in range(3):
-            axes[i, j] += quadratic * v[i] * v[j]
-        axes[i, i] += 1.0 - quadratic * square
-        j, k = (i + 1) % 3, (i + 2) % 3
-        axes[k, j] += linear * v[i]
-        axes[j, k] -= linear * v[i]
+    xy, yz, zx = quadratic * x * y, quadratic * y * z, quadratic * z * x
+    x_turned, y_turned, z_turned = linear * x, linear * y, linear * z
+    cosine = 1.0 - quadratic * square
+    return (
+        (cosine + quadratic * x * x, xy + z_turned, zx - y_turned),
+        (xy - z_turned, cosine + quadratic * y * y, yz + x_turned),
+        (zx + y_turned, yz - x_turned, cosine + quadratic * z * z),
+    )
 
 
 @compiled
-def _rotate_by_euler_parameters(p: Array, axes: Array, turning: Array) -> None:
-    """Fill ``axes`` and ``turning``, all zero: ω = 2·(p₀·ṗ − ṗ₀·p + p×ṗ), with p₀ and the vector p.
+def _rotated_by_euler_parameters(
+    p: Any, x: Any, y: Any, z: Any
+) -> tuple[Axes, tuple[Vector, Vector, Vector, Vector]]:
+    """Return axes and ω = 2·(p·v̇ − ṗ·v + v×v̇), with the parameters p and v = (x, y, z), over each of their rates.
 
     Both are those of Exudyn, quadratic and linear in parameters whose norm is 1 but for the error of Newton's method.
     """
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        axes[i, i] = p[0] * p[0] + p[1 + i] * p[1 + i] - p[1 + j] * p[1 + j] - p[1 + k] * p[1 + k]
-        axes[i, j] = 2.0 * (p[1 + i] * p[1 + j] - p[0] * p[1 + k])
-        axes[i, k] = 2.0 * (p[1 + i] * p[1 + k] + p[0] * p[1 + j])
-        turning[i, 0], turning[i, 1 + i] = -2.0 * p[1 + i], 2.0 * p[0]
-        turning[i, 1 + j], turning[i, 1 + k] = -2.0 * p[1 + k], 2.0 * p[1 + j]
+    pp, xx, yy, zz = p * p, x * x, y * y, z * z
+    axes = (
+        (pp + xx - yy - zz, 2.0 * (x * y + p * z), 2.0 * (x * z - p * y)),
+        (2.0 * (x * y - p * z), pp - xx + yy - zz, 2.0 * (y * z + p * x)),
+        (2.0 * (x * z + p * y), 2.0 * (y * z - p * x), pp - xx - yy + zz),
+    )
+    p, x, y, z = 2.0 * p, 2.0 * x, 2.0 * y, 2.0 * z
+    return axes, ((-x, -y, -z), (p, z, -y), (-z, p, x), (y, -x, p))
 
 
 @compiled
-def _lever(start: Array, end: Array, axis: Array) -> tuple[Any, Any, Any]:
+def _lever(start: Vector, end: Vector, axis: Vector) -> Vector:
     """Return the cross product of what is between two places and an axis."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     return y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]
 
 
 @compiled
-def _product(a: Array | tuple[Any, Any, Any], b: Array) -> Any:
+def _product(a: Vector, b: Vector) -> Any:
     """Return a·b without the complex conjugate."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -18,6 +18,7 @@ from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, sl
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
+    Axes,
     Kinds,
     radius_of_disc,
     slip_jacobian,
@@ -181,7 +182,7 @@ class RingFriction:
                 return [float(friction[2])]
             if quantity == "power":
                 return [-float(friction @ slip)]
-            return cast(list[float], (axes[:, :2] @ friction[:2]).tolist())
+            return cast(list[float], (np.array(axes[:2]).T @ friction[:2]).tolist())
 
         return values
 
@@ -223,7 +224,7 @@ class RingFriction:
         variable = exu.OutputVariableType.Coordinates
         return self.mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **options))
 
-    def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, FloatArray]:
+    def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s) and S (rad/s), the disc's angle and radius, all in the master's axes, and these."""
         coordinates, velocities = self._motion(mbs, configuration)
         to_slip, axes, (cosine, sine) = slip_jacobian(self._kinds, coordinates)

@@ -123,7 +123,7 @@ class RadialSupport:
         to_slip, axes, _ = slip_jacobian(self._kinds, coordinates)
         w = np.array(place_of_disc(self._kinds, coordinates, axes)) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
-        force = axes[:, :2] @ (-secant_stiffness(square, self._law) * w - damping * rate)
+        force = np.array(axes[:2]).T @ (-secant_stiffness(square, self._law) * w - damping * rate)
         return w, force, elastic_energy(square, self._law), damping * float(rate @ rate)
 
 

@@ -90,7 +90,8 @@ def at_hand(arguments):
     ours = iter(("reference", "exudyn"))
     return [
         next(ours)
-        if argument.startswith("exec:") or (argument.partition(":")[0] in INSTALLED and known_name(argument))
+        if argument.startswith(("exec:", "mypackage.mymodule:"))
+        or (argument.partition(":")[0] in INSTALLED and known_name(argument))
         else argument
         for argument in arguments
     ]

@@ -1,6 +1,7 @@
 """The numbers of README and docs are those of a report, and a report that says something else is noticed."""
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -54,6 +55,54 @@ def root(tmp_path):
 def test_the_texts_have_the_numbers_that_are_kept():
     assert unlike() == []
     assert len(kept()) > 20
+
+
+def prose(text):
+    """Return a page without code, marked numbers, links, and numbers that are names, as of equations."""
+    for pattern in (
+        r"```.*?```",
+        readme.MARKED.pattern,
+        r"`[^`]*`",
+        r"\]\([^)]*\)",
+        r"^> .*$",  # the paper as one cites it
+        r"\b(?:Figs?\.|Equations?|Python ≥) [\d.]+(?: and \d+)?",
+        r"\(\d+\)",
+        r"[kX]0",
+    ):
+        text = re.sub(
+            pattern, " ", text, flags=re.DOTALL if pattern.startswith(("```", "(<")) else re.MULTILINE
+        )
+    return text
+
+
+def test_every_number_of_the_readme_is_from_a_report():
+    text = (readme.ROOT / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r".*\d.*", prose(text)) == []
+    assert re.findall(r"\d+", prose(f"{text}\nAnd 17 more.")) == ["17"]
+
+
+def test_no_line_of_a_page_begins_with_a_marked_number():
+    """A comment at the beginning of a line ends the paragraph, for GitHub and for the site alike."""
+    for path, text in readme.texts().items():
+        assert re.findall(r"^\s*<!--=.*", text, re.MULTILINE) == [], path
+
+
+def test_the_readme_is_short_and_has_the_engines_on_its_first_screen():
+    lines = (readme.ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= 120
+    first = "\n".join(lines[:25])
+    assert [word in first for word in ("make report", "make test", "(docs/engines.png)")] == [True] * 3
+
+
+def test_a_number_of_the_paper_is_kept_and_one_that_was_never_measured_is_noticed(root):
+    (root / "docs" / "paper").mkdir()
+    paper = root / "docs" / "paper" / "paper.typ"
+    paper.write_text('#n("fig05: place, error, good") and #n("claims")', encoding="utf-8")
+    write(results(), root)
+    assert "fig05: place, error, good" in kept(root)
+    assert unlike(root) == []
+    paper.write_text('#n("fig05: place, error, other")', encoding="utf-8")
+    assert unlike(root) == ["the paper: fig05: place, error, other: never measured"]
 
 
 def test_every_number_of_the_texts_names_a_study_or_counts():

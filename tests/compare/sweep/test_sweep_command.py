@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import pytest
 import xarray as xr
-from processes import REAL, environment
+from processes import REAL, ROOT, environment
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
@@ -116,6 +116,21 @@ def files(folder):
     return {
         path: (path.stat().st_mtime_ns, path.read_bytes()) for path in folder.rglob("*") if path.is_file()
     }
+
+
+def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch):
+    """All of it but a cluster of a batch system, which is the last block."""
+    (tmp_path / "basin").symlink_to(finished[0])
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    blocks = [block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "dask" not in block]
+    assert len(blocks) == 2
+    names = {}
+    for block in blocks:
+        exec(block, names)
+        if "open_zarr" in block:
+            assert "self_centred" in names["found"].attrs["flag_meanings"]
+    assert list(names["found"].end) == [1, 1, 2]
 
 
 @pytest.mark.parametrize(

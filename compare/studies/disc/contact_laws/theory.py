@@ -101,7 +101,9 @@ def worst(number: int, part: slice) -> tuple[float, float, float, float]:
 
 def curves() -> Data:
     """Return force along the slip and moment of all laws over U/W, of points the range over φ."""
-    ratios = np.unique(np.concatenate((np.geomspace(0.05, 20.0, 241), 1.0 + np.linspace(-0.1, 0.1, 101))))
+    # Beside U = W and not on it: there a point rests, which leaves less than its neighbourhood.
+    near = np.geomspace(1e-5, 0.1, 50)
+    ratios = np.unique(np.concatenate((np.geomspace(0.05, 20.0, 240), 1.0 - near, 1.0 + near)))
     data = {"ratio": ratios}
     for name, law in {"ring": RING, "expansion": EXPANSION, "annulus": Annulus(INNER, R)}.items():
         data[name] = np.array([friction(law, ratio, 1.0)[[0, 2]] for ratio in ratios]) * (-1.0, 1.0)

@@ -22,6 +22,7 @@ from compare.studies.disc.fig08.parameters import (
     LOADS,
     OFFSETS,
     PAPER_LAW,
+    RESOLUTION,
     RING,
     SIX,
     SOURCE,
@@ -79,7 +80,7 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     "The motion that comes back is the self-centred equilibrium of the continuous ring, at every friction force",
     equation="(19), (20)",
     unit="m, rad/s",
-    resolution=1e-9,
+    resolution=RESOLUTION,
     note="Measured: the state that the engine itself brings back after a sixth of a turn, found from the place by "
     "(26). Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
     basis="reference",

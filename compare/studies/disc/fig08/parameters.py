@@ -46,3 +46,6 @@ TOLERANCE = WORKING / 10
 
 BALANCED = 1e-9
 """Of μN: a force below is rounding, and the bracket of (26) as printed leaves far more."""
+
+RESOLUTION = 1e-9
+"""Of places in m and spins in rad/s on the continuous ring."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
-from compare.studies.disc.fig08.parameters import RING
+from compare.studies.disc.fig08.parameters import RESOLUTION, RING
 from compare.studies.disc.fig08.theory import place_and_spin
 from compare.studies.toolkit.self_centred import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
@@ -57,7 +57,7 @@ def draw_spin(data: ByEngine) -> Figure:
         xlabel=axis(r"\mu N", "N"),
         ylabel="difference in rad/s",
         yscale="log",
-        ylim=(1e-16, 1e5),
+        ylim=(1e-16, 1.0),
         title="Spin less that on the continuous ring",
     )
     plane.set(
@@ -69,7 +69,8 @@ def draw_spin(data: ByEngine) -> Figure:
         title="Places of rest",
     )
     spin.legend(loc="upper left", bbox_to_anchor=(0.0, 0.89), fontsize=9.0)
-    distance.legend(loc="upper left", fontsize=9.0, ncols=2)
+    distance.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--", label="resolution of ring")
+    distance.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), fontsize=9.0, ncols=2)
     plane.legend(loc="lower center", fontsize=9.0)
     return figure
 

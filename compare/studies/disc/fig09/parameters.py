@@ -72,11 +72,13 @@ fraction the crossings fall."""
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
 """μN in N of whirls before the branch."""
 
-FOLD_START = 0.016
-FOLD_STEP = 0.12
-"""Friction force a little above that of the fold, in units of C·X0, and the steps to it."""
+FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
+"""Friction force a little above that of the fold, in units of C·X0, and in N where that is larger."""
 
-FOLD_OFFSETS = (0.04, 0.06, 0.1, 0.15, 0.25)
+FOLD_STEP = 0.12
+"""Of the steps to the fold."""
+
+FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
 """X0 in m for which the end of the whirl, and those of the other motions, are computed."""
 

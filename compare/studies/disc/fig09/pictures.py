@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
-from compare.output.figures import BLACK, GREEN, GREY, PURPLE, axis, curve, engines_in, new_figure, points
+from compare.output.figures import (
+    BLACK,
+    GREEN,
+    GREY,
+    PURPLE,
+    axis,
+    beside,
+    curve,
+    engines_in,
+    new_figure,
+    points,
+)
 from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
 from compare.studies.disc.fig09.theory import radius_of_pin, spin_of_large_whirl
 
@@ -20,10 +31,12 @@ UNSTABLE: dict[str, Any] = {"color": GREY, "linestyle": (0.0, (3.0, 1.5)), "line
 WHIRL: dict[str, Any] = {"color": GREEN, "linewidth": 1.6, "zorder": 2.5}
 CENTRED_WHIRL: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "zorder": 2.4}
 SIX: dict[str, dict[str, Any]] = {
-    "reference": {"marker": "h", "markersize": 10.5},
-    "exudyn": {"marker": "+", "markersize": 8.0},
+    "reference": {"marker": "h", "markersize": 7.5},
+    "exudyn": {"marker": "+", "markersize": 6.5},
 }
-"""Marks of results on six points, where they differ from those on the ring."""
+"""Marks of results on six points, which stand beside those on the ring."""
+
+SIX_BESIDE = 1.5
 
 PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
 
@@ -48,10 +61,12 @@ def draw_radius(data: ByEngine) -> Figure:
         for prefix, style in _marks(engine, found):
             loads = found[f"{prefix}circle load"]
             pin = np.array([radius_of_pin(load) for load in loads])
-            whole.plot(loads, found[f"{prefix}circle"][:, 0] * pin, **style)
+            place = SIX_BESIDE if prefix else 0.0
+            whole.plot(loads, found[f"{prefix}circle"][:, 0] * pin, transform=beside(whole, place), **style)
             radius = RING.offset * np.hypot(*found[f"{prefix}rest"].T[:2])
             for panel in (whole, near):
-                panel.plot(found["rest load"], radius, **style | {"label": ""})
+                shifted = beside(panel, place)
+                panel.plot(found["rest load"], radius, transform=shifted, **style | {"label": ""})
         if "orbit" in found:
             whole.plot(found["orbit load"], found["orbit"][:, 1:3], **points(engine, ""))
             for panel in (whole, near):
@@ -111,10 +126,14 @@ def draw_spin(data: ByEngine) -> Figure:
         for prefix, style in _marks(engine, found):
             spin = RING.disc_speed * found[f"{prefix}circle"][:, 2]
             loads = found[f"{prefix}circle load"]
-            whole.plot(loads, spin, **style)
-            distance.plot(loads, spin - limit, **style)
+            place = SIX_BESIDE if prefix else 0.0
+            whole.plot(loads, spin, transform=beside(whole, place), **style)
+            distance.plot(loads, spin - limit, transform=beside(distance, place), **style)
             whole.plot(
-                found["rest load"], RING.disc_speed * found[f"{prefix}rest"][:, 2], **style | {"label": ""}
+                found["rest load"],
+                RING.disc_speed * found[f"{prefix}rest"][:, 2],
+                transform=beside(whole, place),
+                **style | {"label": ""},
             )
         if "orbit" in found:
             distance.plot(found["orbit load"], found["orbit"][:, -1] - limit, **points(engine, ""))

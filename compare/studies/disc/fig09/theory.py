@@ -24,6 +24,7 @@ from compare.studies.disc.fig09.parameters import (
     FOLD_START,
     FOLD_STEP,
     LARGEST_LOAD,
+    LEAST_FOLD_START,
     OFFSETS,
     ORBIT_TOLERANCE,
     OUTER_LOADS,
@@ -137,7 +138,8 @@ def smallest_load(disc: DiscOnDisc) -> float:
     """Return μN in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
     sizes: list[float] = []
     loads: list[float] = []
-    for orbit in to_inner_orbits(with_load(disc, FOLD_START * disc.stiffness * disc.offset), FOLD_STEP):
+    start = max(FOLD_START * disc.stiffness * disc.offset, LEAST_FOLD_START)
+    for orbit in to_inner_orbits(with_load(disc, start), FOLD_STEP):
         sizes.append(math.log(orbit.state[0]))
         loads.append(orbit.system.friction_force)
         if loads[-1] > min(loads):

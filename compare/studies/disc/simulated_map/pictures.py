@@ -12,12 +12,14 @@ from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis
 from compare.studies.disc.simulated_map.parameters import DAMPING, SHAFT_DAMPING
 from reference_model.systems import FloatArray
 
+DARK = "#3d3d3d"
+
 LOOKS = {
     "UNDECIDED": ("undecided", "#ffffff"),
     "SELF_CENTRED": ("rotation about the axis", "#f3ead7"),
     "WHIRL": ("whirl", SKY),
     "MODULATED": ("modulated cycle", ORANGE),
-    "STUCK": ("sticks", GREY),
+    "STUCK": ("sticks", DARK),
 }
 
 CURVES: dict[str, tuple[str, Any]] = {
@@ -53,7 +55,7 @@ def draw(data: ByEngine) -> Figures:
         if name != "ends":
             colour, dashes = CURVES[name.split("/")[0]]
             plane.plot(*points.T, color=colour, linestyle=dashes, linewidth=1.6)
-    plane.plot(FIG11.damping, FIG11.shaft_damping, "+", color=BLACK, markersize=9.0)
+    plane.plot(FIG11.damping, FIG11.shaft_damping, "+", color="white", markersize=10.0, markeredgewidth=1.8)
     plane.set(
         xlabel=axis(r"\beta", "N s/m"),
         ylabel=axis("b", "N m s/rad"),

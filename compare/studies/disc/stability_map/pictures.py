@@ -16,6 +16,7 @@ from compare.output.figures import (
     PURPLE,
     SKY,
     axis,
+    beside,
     engine_style,
     engines_in,
     new_figure,
@@ -161,12 +162,12 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     )
     for law, colour in COLOURS.items():
         for kind, width, dashes, words in (
-            ("Hopf", 2.0, DASHES[law], "the whirl loses its stability (Hopf)"),
-            ("fold", 1.3, ":", "two whirls meet (fold)"),
+            ("Hopf", 2.0, DASHES[law], "whirl loses its stability (Hopf)"),
+            ("fold", 1.3, ":", "two whirls meet (fold); purple: (23)"),
         ):
             found = [shown(name, curve) for curve in curves(theory, name, law, kind)]
             for i, (first, second) in enumerate(found):
-                label = f"{NAMES[law]}: {words}" if i == 0 else None
+                label = f"{NAMES[law]}: {words}" if i == 0 and (kind, law) != ("fold", "(23)") else None
                 axes.plot(
                     first, second, color=colour, linestyle=dashes, linewidth=width, zorder=3.0, label=label
                 )
@@ -178,16 +179,18 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
         color=GREY,
         linestyle="-.",
         linewidth=1.2,
-        label=r"sticking on the axis begins: $b|\omega-\Omega| = \mu N R$",
     )
     if panel.names[0] == "disc_speed":
-        axes.axvline(K, color=SKY, linewidth=1.4, label=r"$\omega = k$, the only border of a pin's whirl")
+        axes.axvline(K, color=SKY, linewidth=1.4)
+        axes.annotate(
+            r"$\omega = k$", (K, 0.97), (5, 0), xycoords=("data", "axes fraction"), textcoords="offset points"
+        )
     here = np.array([[getattr(FIG11, parameter) for parameter in panel.names]])
     axes.plot(
         *shown(name, here), "*", color=BLACK, markersize=8.0, linestyle="none", zorder=4.0, label="Fig. 11"
     )
-    for engine in engines_in(data):
-        draw_dots(axes, name, engine, data[engine])
+    for rank, engine in enumerate(engines_in(data)):
+        draw_dots(axes, name, engine, data[engine], rank)
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.15}
     for region in panel.regions:
         axes.annotate(
@@ -205,8 +208,11 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     axes.set(xlabel=panel.labels[0], ylabel=panel.labels[1], xlim=panel.x, ylim=panel.y)
 
 
-def draw_dots(axes: Axes, name: str, engine: str, found: Data) -> None:
-    """Draw whether deviations grew beside the curves and what motions ended as, as ``engine`` simulated them."""
+def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
+    """Draw whether deviations grew beside the curves and what motions ended as, as ``engine`` simulated them.
+
+    Ends stand on the right, where ``rank`` is how many engines stand before; growth stands on the left.
+    """
     none = np.empty((0, 3))
     sides, ends = found.get(f"sides/{name}", none), found.get(f"ends/{name}", none)
     groups = [
@@ -214,9 +220,10 @@ def draw_dots(axes: Axes, name: str, engine: str, found: Data) -> None:
         *((ends[ends[:, 2] == code], mark) for code, mark in enumerate(ENDS_AS.values())),
     ]
     style: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "zorder": 5.0}
-    style |= {"color": engine_style(engine).colour, "markersize": 8.0 if engine == "reference" else 5.0}
+    style |= {"color": engine_style(engine).colour, "markersize": 5.0}
     for chosen, mark in groups:
-        axes.plot(*shown(name, chosen), marker=mark, **style)
+        place = -1.0 - rank if mark in SIDES.values() else 1.0 + rank
+        axes.plot(*shown(name, chosen), marker=mark, transform=beside(axes, place), **style)
 
 
 def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray]:

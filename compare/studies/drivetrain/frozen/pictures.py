@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 MM = 1e3
 
+NO_WHIRL = "#d0d0d0"
+"""Hatched, so that it is not taken for a growth of zero."""
+
 
 def draw(data: ByEngine) -> Figures:
     """Draw what is there."""
@@ -95,6 +98,7 @@ def draw_maps(theory: Data) -> Figure:
         )
         panel.contour(across, torques, values[..., 1], [gap], colors=BLACK, linewidths=1.2)
         panel.set(yscale="log", ylim=(torques[0], torques[-1]), xlim=(across[0], across[-1]))
+        panel.patch.set(facecolor=NO_WHIRL, hatch="///", edgecolor="white")
         panel.grid(visible=False)
     left.set(
         xlabel="engine speed in rpm",
@@ -129,6 +133,11 @@ def draw_modulated(data: ByEngine) -> Figure:
         times, distance, slipping = data[engine]["modulated"].T
         radius.plot(times, MM * distance, **curve(engine, linestyle="-"))
         slip.plot(times, slipping, **curve(engine, linestyle="-"))
+        on_stop = distance > car.stop_gap
+        for panel in (radius, slip):
+            panel.fill_between(
+                times, 0.0, 1.0, where=on_stop, transform=panel.get_xaxis_transform(), color=GREY, alpha=0.25
+            )
     whirl = whirls_of(car)[0]
     matrix = in_turning_axes(state_matrix_of(car, whirl), whirl.frequency)
     start = PUSH * whirl.radius * np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, whirl.frequency, 0.0])
@@ -138,7 +147,7 @@ def draw_modulated(data: ByEngine) -> Figure:
     for panel, value in ((radius, MM * whirl.radius), (slip, whirl.slip)):
         panel.axhline(value, **curve("theory", "steady whirl, unstable", linestyle=":", linewidth=1.2))
     radius.axhline(MM * car.stop_gap, color=GREY, lw=0.9)
-    radius.annotate("play", (0.0, MM * car.stop_gap), (2, 3), textcoords="offset points")
+    radius.annotate("play of the pilot bearing", (0.0, MM * car.stop_gap), (2, 3), textcoords="offset points")
     radius.set(ylabel=axis(r"\rho", "mm"), ylim=(0.0, 0.62))
     slip.set(xlabel=axis("t", "s"), ylabel="slip in rad/s")
     radius.legend(loc="upper center", bbox_to_anchor=(0.6, 0.8), fontsize=9.0)

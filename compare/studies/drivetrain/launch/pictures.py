@@ -40,7 +40,7 @@ def _launch(found: Data) -> Figure:
             label=name,
             zorder=2.0 if name == "vehicle" else 3.0,
         )
-    speeds.set(ylabel="speed in 1/min", ylim=(0.0, None))
+    speeds.set(ylabel="speed in rpm", ylim=(0.0, None))
     speeds.annotate("sticks", ((start + end) / 2.0, 2700.0), ha="center")
     speeds.legend(loc="lower right")
     torques.plot(t, found["shaft torque"], color=ORANGE, label="of the shaft")

@@ -5,26 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.output.figures import BLACK, axis, curve, new_figure, points
+from compare.output.figures import BLACK, PALETTE, axis, new_figure, points
 from compare.studies.drivetrain.reduced.parameters import CASES, UNTIL
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radial motion of three cases in both engines, and the influence of the inertias."""
+    """Draw the radial motion of all cases in both engines, and the influence of the inertias."""
     found = data.get("exudyn", {})
-    drawn = [name for name in list(CASES)[1:] if f"{name}: t" in found]
+    drawn = [name for name in CASES if f"{name}: t" in found]
     if not drawn or "inertia" not in found:
         return {}
-    figure, (radii, order) = new_figure(ncols=2, width=10.0, height=4.0, width_ratios=(1.5, 1.0))
-    for name in drawn:
+    figure, (radii, order) = new_figure(ncols=2, width=10.0, height=4.6, width_ratios=(1.5, 1.0))
+    for name, colour in zip(drawn, PALETTE, strict=False):
         times = found[f"{name}: t"]
         reference, mine = (np.hypot(*found[f"{name}: {key}"][:, :2].T) for key in ("reference", "states"))
-        first = name == drawn[0]
-        radii.plot(times, reference, **curve("reference", "reference" if first else "_", linewidth=1.6))
-        radii.plot(times[::4], mine[::4], **points("exudyn", "drivetrain" if first else "_", markersize=4.0))
-        radii.annotate(name, (times[-1], mine[-1]), xytext=(4, -3), textcoords="offset points", fontsize=9.0)
-    radii.set(xlabel=axis("t", "s"), ylabel="radius of the disc's centre in m", ylim=(0.0, 0.05))
-    radii.legend(loc="upper right", ncols=2)
+        radii.semilogy(times, reference, color=colour, linewidth=1.2, label=name)
+        radii.semilogy(times[::4], mine[::4], **points("exudyn", "_", color=colour, markersize=4.0))
+    radii.set(xlabel=axis("t", "s"), ylabel="radius of the disc's centre in m", ylim=(1e-3, 0.2))
+    radii.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize=9.5)
     inertias, changes = found["inertia"], found["finite inertia"]
     order.loglog(inertias, changes, **points("exudyn", "drivetrain"))
     order.loglog(inertias, changes[0] * inertias[0] / inertias, color=BLACK, linewidth=0.8, label="slope −1")

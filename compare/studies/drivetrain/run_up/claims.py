@@ -111,7 +111,7 @@ def lines(engine: Engine, top: float = TOP) -> Measured | None:
         value=measured[chosen],
         error=float(np.max(change_as_error(measured, other))),
         model=1.0 / TURNS,
-        at={"speed in 1/min": speeds[chosen] / RPM},
+        at={"speed in rpm": speeds[chosen] / RPM},
         parameters=_parameters(),
         note=f"Orders of the engine in windows of {TURNS} turns, {np.count_nonzero(below)} below "
         f"{natural_frequency(car) / RPM:.0f} and {np.count_nonzero(above)} above {circling[0] / RPM:.0f} turns a "

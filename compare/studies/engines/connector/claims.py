@@ -21,7 +21,7 @@ from compare.claims.paper_parameters import FIG5, FIG8, FIG11
 from compare.claims.study import Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.connector.model import momenta, two_discs
-from compare.studies.engines.connector.parameters import EPSILON, FRICTION, RADIUS, STEPS, UNTIL
+from compare.studies.engines.connector.parameters import EPSILON, FRICTION, RADIUS, RESOLUTION, STEPS, UNTIL
 from compare.studies.engines.connector.pictures import draw
 from reference_model import self_centred_equilibria
 from reference_model.steady.stability import jacobian_without_angle
@@ -50,7 +50,7 @@ NOTE = (
 @STUDY.claim(
     "Friction between two free discs keeps their momentum and angular momentum: ring",
     kind="conservation",
-    resolution=1e-12,
+    resolution=RESOLUTION,
     note=NOTE,
 )
 def ring(engine: Engine) -> Measured:
@@ -65,7 +65,7 @@ def ring(engine: Engine) -> Measured:
 @STUDY.claim(
     "Friction between two free discs keeps their momentum and angular momentum: six points",
     kind="conservation",
-    resolution=1e-12,
+    resolution=RESOLUTION,
     note=NOTE,
 )
 def six_points(engine: Engine) -> Measured:

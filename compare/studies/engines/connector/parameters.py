@@ -26,3 +26,6 @@ FRICTION, RADIUS, EPSILON = 0.3, 0.12, 1e-3
 
 STEPS, UNTIL = 6000, 10.0
 """Steps, and the last time in s."""
+
+RESOLUTION = 1e-12
+"""Of momenta over the largest part of one body."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from compare.claims.study import ByEngine, Figures
-from compare.output.figures import axis, curve, engines_in, new_figure
+from compare.output.figures import GREY, axis, curve, engines_in, new_figure
+from compare.studies.engines.connector.parameters import RESOLUTION
+
+LEAST = 1e-17
 
 
 def draw(data: ByEngine) -> Figures:
@@ -26,7 +29,7 @@ def draw(data: ByEngine) -> Figures:
             look = {"linestyle": "-" if contact == "ring" else ":"}
             drift.semilogy(
                 times[1:],
-                np.maximum(values[f"{contact}: drift"][1:], 1e-17),
+                np.maximum(values[f"{contact}: drift"][1:], LEAST),
                 **curve(engine, f"{engine}, {contact}", **look),
             )
     for name, value in parts.items():
@@ -35,6 +38,7 @@ def draw(data: ByEngine) -> Figures:
         )
     exchange.set(xlabel=axis("t", "s"), ylabel="angular momentum in kg m²/s")
     exchange.legend()
-    drift.set(xlabel=axis("t", "s"), ylabel="drift over the largest part", ylim=(1e-17, 1e-9))
+    drift.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--", label="resolution of the claim")
+    drift.set(xlabel=axis("t", "s"), ylabel="drift over the largest part", ylim=(LEAST, 30.0 * RESOLUTION))
     drift.legend(loc="upper left")
     return {"connector-momenta": figure}

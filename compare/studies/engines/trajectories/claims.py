@@ -122,15 +122,17 @@ def moves(engine: Engine, motion: Motion) -> Measured:
     """Compare all states with the reference's."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
+    # A single number may be right by chance, and so may all of them where both runs take the same steps.
+    bar = found.largest + motion.tolerance * float(np.max(np.abs(predicted)))
     times, data = times_of(motion), {}
     if motion in NAMES:
-        error = np.max(np.abs(found.value - predicted), axis=1)
-        data = {f"{NAMES[motion]}: times": times, f"{NAMES[motion]}: error": error}
+        difference = np.max(np.abs(found.value - predicted), axis=1)
+        shown = {"times": times, "difference": difference, "error bar": bar}
+        data = {f"{NAMES[motion]}: {name}": values for name, values in shown.items()}
     return Measured(
         predicted=predicted,
         value=found.value,
-        # A single number may be right by chance, and so may all of them where both runs take the same steps.
-        error=found.largest + motion.tolerance * float(np.max(np.abs(predicted))),
+        error=bar,
         resolution=motion.resolution,
         at={"t in s": times},
         components=components_of(motion.system),

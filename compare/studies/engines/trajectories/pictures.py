@@ -1,26 +1,46 @@
-"""How far engines are from the reference over time."""
+"""How far engines are from the reference over time, and how far they say they may be."""
 
 from __future__ import annotations
+
+import math
+import textwrap
 
 import numpy as np
 
 from compare.claims.error_estimates import TRUTH
 from compare.claims.study import ByEngine, Figures
-from compare.output.figures import axis, curve, engines_in, new_figure
+from compare.output.figures import GREY, axis, curve, engine_style, engines_in, new_figure
 from compare.studies.engines.trajectories.parameters import MOTIONS
+
+COLUMNS = 4
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw how far each motion is from the reference's over time."""
-    figure, (axes,) = new_figure(width=7.0, height=4.0)
-    for engine in engines_in(data):
-        label = engine
-        for name in MOTIONS:
-            if f"{name}: times" in data[engine]:
-                error = np.maximum(data[engine][f"{name}: error"], TRUTH)
-                axes.semilogy(data[engine][f"{name}: times"], error, **curve(engine, label))
-                label = "_"
-    axes.set(xlabel=axis("t", "s"), ylabel="largest difference of a component of the state")
-    if data:
-        axes.legend()
+    """Draw the largest difference of each motion from the reference's so far, and its error bar."""
+    rows = math.ceil(len(MOTIONS) / COLUMNS)
+    figure, panels = new_figure(
+        ncols=COLUMNS, nrows=rows, width=11.0, height=2.6 * rows, sharex=True, sharey=True
+    )
+    for panel, name in zip(panels, MOTIONS, strict=False):
+        panel.set_title(textwrap.fill(name, 30), fontsize=9.5)
+        panel.axhspan(0.1 * TRUTH, TRUTH, color=GREY, alpha=0.25, linewidth=0.0)
+        for engine in engines_in(data):
+            found = data[engine]
+            if f"{name}: times" in found:
+                so_far = np.maximum.accumulate(np.maximum(found[f"{name}: difference"], 0.1 * TRUTH))
+                panel.semilogy(found[f"{name}: times"], so_far, **curve(engine))
+                colour = engine_style(engine).colour
+                panel.axhline(float(found[f"{name}: error bar"]), color=colour, linewidth=0.9, linestyle="--")
+    spare = panels[len(MOTIONS) :]
+    for panel in spare:
+        panel.axis("off")
+    for panel in panels[max(0, len(MOTIONS) - COLUMNS) : len(MOTIONS)]:
+        panel.set_xlabel(axis("t", "s"))
+        panel.tick_params(labelbottom=True)
+    panels[0].set_ylim(0.1 * TRUTH, None)
+    figure.supylabel("largest difference of the state so far", fontsize=11.0)
+    named = {
+        label: line for one in panels for line, label in zip(*one.get_legend_handles_labels(), strict=True)
+    }
+    (spare[0] if len(spare) else panels[0]).legend(named.values(), named.keys(), loc="center")
     return {"trajectories": figure}

@@ -184,6 +184,7 @@ def all_sticks(engine: Engine, name: str) -> Measured:
             f"{name}: states": run.states,
             f"{name}: sticks": run.stick_times,
             f"{name}: reference sticks": predicted,
+            f"{name}: error bar of sticks": found.largest,
         },
     )
 

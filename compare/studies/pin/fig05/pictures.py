@@ -27,39 +27,76 @@ STUCK = PURPLE
 
 def draw(data: ByEngine) -> Figures:
     """Draw both motions in the plane and over time, and the errors of their stick and release times."""
-    figure, (plane, history, errors) = new_figure(ncols=3, width=13.0)
+    from matplotlib.ticker import MaxNLocator
+
+    figure, (plane, near, history, errors) = new_figure(ncols=2, nrows=2, width=9.6, height=8.0)
     for rank, engine in enumerate(engines_in(data)):
-        found = data[engine]
         for name, look in LOOKS.items():
-            times, states = found[f"{name}: times"], found[f"{name}: states"]
-            radius = np.hypot(states[:, 0], states[:, 1])
+            planes = (plane, near) if name == "equilibrium" else (plane,)
             if rank == 0:
-                plane.plot(states[:, 0], states[:, 1], linewidth=0.8, **look)
-                history.plot(times, radius, label=f"{name}, {engine}", linewidth=1.1, **look)
-                for start, end in found[f"{name}: sticks"].reshape(-1, 2):
-                    inside = (times >= start) & (times <= end)
-                    history.plot(times[inside], radius[inside], color=STUCK, linewidth=4.0)
+                _draw_lines(planes, history, data[engine], name, f"{name}, {engine}", look)
             else:
-                sparse = slice(None, None, 37)
                 label = engine if name == "equilibrium" else ""
-                plane.plot(states[sparse, 0], states[sparse, 1], **points(engine, "", markersize=3.0))
-                history.plot(times[sparse], radius[sparse], **points(engine, label, markersize=3.0))
-            events, exact = found[f"{name}: sticks"], found[f"{name}: reference sticks"]
-            if len(events) == len(exact):
-                gap = np.maximum(np.abs(events - exact), 1e-14)
-                label = engine if name == "whirl" else ""
-                fill = "full" if name == "equilibrium" else "none"
-                style = points(engine, label, linestyle=":") | {"fillstyle": fill, "markerfacecolor": None}
-                errors.semilogy(np.arange(1, len(gap) + 1), gap, **style)
-    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
-    plane.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
+                _draw_marks(planes, history, data[engine], name, engine, label)
+            _draw_errors(errors, data[engine], name, engine)
+    for panel in (plane, near):
+        panel.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
+        panel.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
+    plane.set_title("both")
+    near.set_title("to the equilibrium")
     history.plot([], [], color=STUCK, linewidth=4.0, label="stick phases")
     history.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, None))
     history.legend(loc="upper left")
     errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of its time in s")
+    errors.xaxis.set_major_locator(MaxNLocator(integer=True))
     if errors.lines:
         errors.legend()
     return {"fig05-motions": figure}
+
+
+def _draw_lines(
+    planes: tuple[Axes, ...], history: Axes, found: Data, name: str, label: str, look: dict[str, Any]
+) -> None:
+    times, states, radius = _motion(found, name)
+    for panel in planes:
+        panel.plot(states[:, 0], states[:, 1], linewidth=0.8, **look)
+    history.plot(times, radius, label=label, linewidth=1.1, **look)
+    for start, end in found[f"{name}: sticks"].reshape(-1, 2):
+        inside = (times >= start) & (times <= end)
+        history.plot(times[inside], radius[inside], color=STUCK, linewidth=4.0)
+
+
+def _draw_marks(
+    planes: tuple[Axes, ...], history: Axes, found: Data, name: str, engine: str, label: str
+) -> None:
+    times, states, radius = (values[::37] for values in _motion(found, name))
+    for panel in planes:
+        panel.plot(states[:, 0], states[:, 1], **points(engine, "", markersize=3.0))
+    history.plot(times, radius, **points(engine, label, markersize=3.0))
+
+
+def _motion(found: Data, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    states = found[f"{name}: states"]
+    return found[f"{name}: times"], states, np.hypot(states[:, 0], states[:, 1])
+
+
+def _draw_errors(errors: Axes, found: Data, name: str, engine: str) -> None:
+    events, exact = found[f"{name}: sticks"], found[f"{name}: reference sticks"]
+    if len(events) != len(exact):
+        return
+    gap = np.maximum(np.abs(events - exact), 1e-14)
+    filled = name == "equilibrium"
+    style = points(engine, "" if filled else engine, linestyle=":") | {
+        "fillstyle": "full" if filled else "none",
+        "markerfacecolor": None,
+    }
+    errors.semilogy(np.arange(1, len(gap) + 1), gap, **style)
+    errors.axhline(
+        float(found[f"{name}: error bar of sticks"]),
+        color=engine_style(engine).colour,
+        linewidth=0.9,
+        linestyle="--" if filled else "-.",
+    )
 
 
 def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:

@@ -17,6 +17,7 @@ from compare.studies.pin.fig06.parameters import (
     CYCLE_TURNS,
     EQUILIBRIUM_LOADS,
     FIG6,
+    INNERMOST,
     SOURCE,
     TOLERANCE,
     WHIRL_LOADS,
@@ -34,7 +35,16 @@ from reference_model import Orbit, last_whirl, simulate, sticking_radius, whirl_
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "fig06", source=SOURCE, system=FIG6, draw=draw, curves=curves, seconds=7.0)
+STUDY = Study.beside(
+    __file__,
+    "fig06",
+    words={"innermost": f"{INNERMOST:g}"},
+    source=SOURCE,
+    system=FIG6,
+    draw=draw,
+    curves=curves,
+    seconds=7.0,
+)
 
 
 @STUDY.claim(
@@ -181,11 +191,12 @@ def coexist(engine: Engine) -> Measured:
 def cycle_exists(engine: Engine) -> Measured:
     """Follow the reference's cycle for a turn."""
     orbit = cycle()
-    times = np.linspace(0.0, orbit.period, 9)
+    times = np.linspace(0.0, orbit.period, 65)
     found = refined(
         lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states,
         TOLERANCE,
     )
+    radius = np.hypot(found.value[:, 0], found.value[:, 1])
     return Measured(
         predicted=simulate(orbit.system, orbit.state, times, tolerance=TRUTH).states,
         value=found.value,
@@ -193,6 +204,7 @@ def cycle_exists(engine: Engine) -> Measured:
         at={"t in s": times},
         components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
         system=orbit.system,
+        data={"cycle load": orbit.system.friction_force, "cycle extent": [np.min(radius), np.max(radius)]},
     )
 
 

@@ -25,6 +25,8 @@ def draw(data: ByEngine) -> Figures:
             found = data[engine]
             panel.plot(found["equilibrium loads"], found["equilibrium radius"], **points(engine))
             panel.plot(found["whirl loads"], found["whirl extents"], **points(engine, ""))
+            if "cycle load" in found:
+                panel.plot(np.full(2, found["cycle load"]), found["cycle extent"], **points(engine, ""))
         panel.set(xlabel=axis(r"\mu N", "N"))
     whole.set(ylabel=axis(r"\rho", "m"), xlim=(0.0, WHIRL_LOADS[-1]), ylim=(0.0, None))
     near.set(xlim=(0.07, 0.115), ylim=(0.0, 0.4))

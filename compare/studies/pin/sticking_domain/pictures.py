@@ -25,21 +25,23 @@ def draw(data: ByEngine) -> Figures:
         found = data[engine]
         speed = found["speed"]
         domain.semilogy(found["searched"], found["radius"], **points(engine, f"{engine}: bisection"))
-        away = np.maximum(np.abs(found["turn"] - predicted_turns(speed)), 1e-16)
+        away = np.abs(found["turn"] - predicted_turns(speed))
         for i in range(len(OUTSIDE)):
             label = engine if i == 0 else "_"
             time.semilogy(speed, found["turn"][:, i] / speed, **points(engine, label))
-            error.semilogy(speed, away[:, i], **points(engine, label))
+            error.plot(speed, away[:, i], **points(engine, label))
         budget = curve(engine, f"{engine}: error budget", linewidth=1.0, linestyle="--")
-        error.semilogy(speed, found["turn_error"][:, 0], **budget)
+        error.plot(speed, found["turn_error"][:, 0], **budget)
     domain.axvline(RESONANCE, color=GREY, linestyle=":", linewidth=1.0, label=r"$\omega_*$")
     domain.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("A", "m"), title="Largest radius of sticking")
     domain.legend()
     time.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("t_r", "s"), title="Time until release")
+    error.set_yscale("symlog", linthresh=1e-16)
+    error.set_yticks([0.0, *10.0 ** np.arange(-16.0, 1.0, 4.0)])
     error.set(
         xlabel=axis(r"\omega", "rad/s"),
         ylabel=axis(r"|\Delta(\omega\,t_r)|", "rad"),
-        ylim=(2e-17, 1.0),
+        ylim=(-5e-17, 1.0),
         title="Distance of the turn until release from (7)",
     )
     for panel, place in ((time, (0.62, 0.7)), (error, (0.2, 0.24))):

@@ -57,8 +57,8 @@ DEVIATION = 1e-3
 
 DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
 
-RATIOS = np.asarray((np.arange(150) + 0.5) / 50.0, dtype=float)
-DAMPINGS = np.geomspace(0.03, 10.0, 81)
+RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
+DAMPINGS = np.geomspace(0.03, 10.0, 121)
 """ω/k and β/(mk) of the grid on which (14) to (16) are compared with eigenvalues, ω < k included."""
 
 

@@ -68,7 +68,7 @@ class TestFig05(StudyTests):
         found = {"reference": self.found("reference").data, "exudyn": self.found("reference").data}
         broken = STUDY.measure(self.faults["square"], only=("all_sticks",)).data
         (figure,) = STUDY.draw(found | {"broken": broken}).values()
-        labels = [line.get_label() for line in figure.axes[2].lines]
+        labels = [line.get_label() for line in figure.axes[3].lines]
         assert labels.count("exudyn") == 1
         assert "broken" not in labels
 

@@ -53,7 +53,7 @@ NOTE = (
 
 
 class Steady(NamedTuple):
-    """A steady motion on the bench at ``speed`` in 1/min, and what the reference says of it; shape (3,) each.
+    """A steady motion on the bench at ``speed`` in rpm, and what the reference says of it; shape (3,) each.
 
     x and y in m, or in a whirl radius in m and frequency in rad/s, and the slip in rad/s.
     """
@@ -122,7 +122,7 @@ def _measured(
         value=[one.found.value[place] for one in motions],
         error=np.max([one.found.error[place] + one.predicted.error[place] for one in motions]),
         resolution=1e-7 * float(np.max(np.abs(predicted))),
-        at={"speed in 1/min": [one.speed for one in motions]},
+        at={"speed in rpm": [one.speed for one in motions]},
         components=components,
         parameters=parameters_of(
             balanced_car(), without=("offset",), offset=offset, torque=TORQUE, brake=BRAKE

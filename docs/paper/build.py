@@ -1,0 +1,37 @@
+"""Build the paper: ``python docs/paper/build.py``, from the report in ``report/``, whose figures it has.
+
+Its numbers are those of ``docs/numbers.json``, which ``make readme`` takes over from a report.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SOURCE = Path(__file__).with_name("paper.typ")
+FIGURES = ROOT / "report" / "figures"
+
+
+def figures() -> list[str]:
+    """Return the names of the figures that the paper has."""
+    return re.findall(r'#shown\("([^"]+)"', SOURCE.read_text(encoding="utf-8"))
+
+
+def main() -> int:
+    """Write ``paper.pdf`` beside its source and return the exit status."""
+    missing = [name for name in figures() if not (FIGURES / f"{name}.svg").exists()]
+    if missing:
+        print(f"no {', '.join(missing)} in {FIGURES}: make report", file=sys.stderr)
+        return 2
+    import typst
+
+    written = SOURCE.with_suffix(".pdf")
+    typst.compile(SOURCE, output=written, root=ROOT)
+    print(written)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,188 @@
+"""Build the site: ``python docs/site/build.py [FOLDER]``; a warning is an error.
+
+The pages are those of ``docs/``, as they are. A page may link to any file of the repository, which the site shows as
+a page of code. Changelog and the guide for contributors are pages too, and where there is a report in ``report/``,
+the site has it with its figures.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import posixpath
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+REPORT = ROOT / "report"
+
+WHOLE = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "README.md": "index.md"}
+"""What stands outside of docs, by its page of the site; the README has a page of its own there."""
+
+LINK = re.compile(r"\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
+LANGUAGES = {".py": "python", ".c": "c", ".js": "javascript"}
+
+SECTIONS = {
+    "Tutorials": ("tutorial-judge", "tutorial-model", "tutorial-motions"),
+    "Engines": ("judge-your-engine", "foreign-engines", "verdicts", "tolerance-tubes"),
+    "Models": ("friction-in-your-own-model", "from-modelica"),
+    "Motions": ("findings", "equations", "sweeps"),
+    "Look up": ("glossary", "gallery", "latest-report"),
+    "Reference": ("api/reference-model", "api/ensemble", "api/exudyn-models", "api/compare"),
+    "Development": ("architecture", "contributing", "changelog"),
+}
+"""Pages in the order of the navigation."""
+
+API = {
+    "reference-model": ("reference_model",),
+    "ensemble": ("reference_model.ensemble",),
+    "exudyn-models": ("exudyn_models",),
+    "compare": (
+        "compare.engines.engine",
+        "compare.claims.claim",
+        "compare.claims.study",
+        "compare.claims.measured",
+        "compare.claims.error_estimates",
+        "compare.output.figures",
+    ),
+}
+"""What is public, by page."""
+
+DATA = {"exudyn_models": ("exudyn_models.drivetrain.parameters.PASSENGER_CAR",)}
+"""What is public, is no function, and has its words where it comes from."""
+
+
+def gather(folder: Path) -> None:
+    """Write all pages into a folder, ready for Sphinx."""
+    pages = {path.name: _text(path) for path in DOCS.glob("*.md")}
+    sources = {uri: f"docs/{uri}" for uri in pages}
+    for name, uri in WHOLE.items():
+        if uri not in pages:
+            pages[uri], sources[uri] = _text(ROOT / name), name
+    linked = {path for uri, text in pages.items() for path in _outside(text, sources[uri])}
+    found = {uri: moved(text, sources[uri], uri) for uri, text in pages.items()}
+    found["index.md"] += _navigation()
+    found["latest-report.md"] = _report() or found["latest-report.md"]
+    found |= {_page_of(path): _shown(path) for path in linked}
+    found |= {f"api/{name}.rst": _reference(modules) for name, modules in API.items()}
+    for uri, text in found.items():
+        (folder / uri).parent.mkdir(parents=True, exist_ok=True)
+        (folder / uri).write_text(text, encoding="utf-8")
+    for picture in [*DOCS.glob("*.png"), *DOCS.glob("*.svg")]:
+        shutil.copy(picture, folder)
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _repository_path(link: str, source: str) -> str:
+    return posixpath.normpath(posixpath.join(posixpath.dirname(source), link))
+
+
+def _outside(text: str, source: str) -> Iterator[str]:
+    """Yield the files of the repository that a page links to and that are no pages of the site."""
+    for link, _ in LINK.findall(text):
+        path = _repository_path(link, source)
+        if path not in WHOLE and not _is_of_docs(path) and (ROOT / path).is_file():
+            yield path
+
+
+def _is_of_docs(path: str) -> bool:
+    """Tell whether a file of the repository is a page or a picture of the site."""
+    return posixpath.dirname(path) == "docs" and not path.endswith(".py")
+
+
+def _page_of(path: str) -> str:
+    return f"source/{path}.md"
+
+
+def moved(text: str, source: str, uri: str) -> str:
+    """Return a page whose links lead to pages of the site, from ``source`` in the repository to its place there."""
+
+    def replaced(found: re.Match[str]) -> str:
+        path = _repository_path(found[1], source)
+        if path in WHOLE:
+            to = WHOLE[path]
+        elif _is_of_docs(path):
+            to = path.removeprefix("docs/")
+        elif (ROOT / path).is_file():
+            to = _page_of(path)
+        elif (ROOT / path).is_dir():
+            to = "gallery.md"
+        else:
+            return found[0]  # of which Sphinx complains
+        return f"]({posixpath.relpath(to, posixpath.dirname(uri) or '.')}{found[2] or ''})"
+
+    return LINK.sub(replaced, text)
+
+
+def _navigation() -> str:
+    """Return what Sphinx makes the navigation of."""
+    blocks = [
+        f":caption: {caption}\n:hidden:\n:maxdepth: 1\n\n" + "\n".join(names)
+        for caption, names in SECTIONS.items()
+    ]
+    return "".join(f"\n```{{toctree}}\n{block}\n```\n" for block in blocks)
+
+
+def _shown(path: str) -> str:
+    """Return a page with the code of a file."""
+    language = LANGUAGES.get(Path(path).suffix, "text")
+    return f"---\norphan: true\n---\n\n# {path}\n\n`````{language}\n{_text(ROOT / path).rstrip()}\n`````\n"
+
+
+def _reference(modules: tuple[str, ...]) -> str:
+    """Return a page of the reference, from docstrings."""
+    title = modules[0].split(".")[0] if len(modules) > 1 else modules[0]
+    lines = [title, "=" * len(title), ""]
+    for module in modules:
+        if len(modules) > 1:
+            lines += [module, "-" * len(module), ""]
+        lines += [f".. automodule:: {module}", "   :imported-members:" * (len(modules) == 1), ""]
+        lines += [f".. autodata:: {name}\n   :no-value:\n" for name in DATA.get(module, ())]
+    return "\n".join(lines)
+
+
+def _report() -> str:
+    """Return the page about the latest report, with its figures."""
+    if not (REPORT / "results.json").exists():
+        return (
+            "# Latest report\n\nThere was none when this site was built: `make report`, then `make docs`.\n"
+        )
+    results = json.loads(_text(REPORT / "results.json"))
+    totals = ", ".join(
+        f"{number} {html.escape(name)}" for name, number in results["totals"].items() if number
+    )
+    lines = ["# Latest report", "", f'<a href="report/index.html">The report</a>: {totals}.', ""]
+    for study in results["studies"]:
+        names = [name for name in study["figures"] if (REPORT / "figures" / f"{name}.png").exists()]
+        lines += [f"## {html.escape(study['title'])}", ""] if names else []
+        for name in names:
+            picture = f"report/figures/{name}.png"
+            lines += [f'<a href="{picture}"><img alt="{name}" loading="lazy" src="{picture}"></a>', ""]
+    return "\n".join(lines) + "\n"
+
+
+def main(folder: Path) -> int:
+    """Build the site into ``folder`` and return the exit status."""
+    from sphinx.cmd.build import build_main
+
+    shutil.rmtree(folder, ignore_errors=True)
+    with tempfile.TemporaryDirectory() as place:
+        gather(Path(place))
+        shutil.copy(Path(__file__).with_name("conf.py"), place)
+        status = build_main(["-W", "--keep-going", "-q", "-b", "html", place, str(folder)])
+    if not status and (REPORT / "index.html").exists():
+        shutil.copytree(REPORT, folder / "report", dirs_exist_ok=True)
+    return status
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "site").resolve()))

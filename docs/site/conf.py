@@ -1,0 +1,48 @@
+"""Sphinx's settings for the site; ``build.py`` beside it gathers the pages."""
+
+import re
+
+from reference_model import __version__
+
+project = "friction-discs"
+author = "the friction-discs maintainers"
+copyright = f"2026, {author}"
+release = version = __version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+html_theme = "furo"
+html_title = "friction-discs"
+html_theme_options = {"navigation_with_keys": True}
+highlight_language = "text"
+
+myst_heading_anchors = 3
+myst_links_external_new_tab = False
+suppress_warnings = ["myst.header"]  # of the changelog, whose headings leave out a level
+
+autodoc_default_options = {"members": True, "member-order": "bysource", "show-inheritance": False}
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_preserve_defaults = True
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+
+LITERAL = re.compile(r"(``.*?``)")
+
+
+def setup(app):
+    """Let bars in docstrings be bars, |v| for a size, before anything else reads them."""
+    app.connect("autodoc-process-docstring", escape_bars, priority=100)
+
+
+def escape_bars(app, what, name, thing, options, lines):
+    """Escape bars in place, but in literals, and in blocks below a line that ends with two colons."""
+    margin = None
+    for place, line in enumerate(lines):
+        indent = len(line) - len(line.lstrip())
+        if margin is not None and line and indent <= margin:
+            margin = None
+        if margin is None:
+            parts = LITERAL.split(line)
+            lines[place] = "".join(each if each[:2] == "``" else each.replace("|", r"\|") for each in parts)
+            if line.endswith("::"):
+                margin = indent

@@ -1,0 +1,18 @@
+"""The README's first picture shows what is recorded of the engines."""
+
+import runpy
+
+from PIL import Image
+from processes import ROOT
+
+
+def test_the_picture_of_the_engines_is_drawn_from_what_is_recorded():
+    script = runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))
+    with Image.open(script["PICTURE"]) as picture:
+        assert picture.info["Description"] == script["drawn_from"](), "run python docs/draw_engines.py"
+
+
+def test_a_law_that_is_no_cone_is_marked_in_the_picture():
+    cells = runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))["cells"]()
+    assert cells["MuJoCo, pyramidal cone"]["law of friction"] == ["✗", "pyramid"]
+    assert {mark for mark, _ in cells["reference"].values()} == {"✓"}

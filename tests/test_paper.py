@@ -1,0 +1,53 @@
+"""The paper names claims, figures and numbers that there are; a typesetter builds it in a workflow."""
+
+import re
+import runpy
+from pathlib import Path
+
+from compare.cli.readme import kept, quoted
+from compare.studies import STUDIES
+
+ROOT = Path(__file__).parents[1]
+PAPER = ROOT / "docs" / "paper"
+TEXT = (PAPER / "paper.typ").read_text(encoding="utf-8")
+
+
+def claims(text):
+    """Return the names of all claims in a source of the paper."""
+    return [
+        name for listed in re.findall(r"#c\(([^)]*)\)", text) for name in re.findall(r'"([^"]*)"', listed)
+    ]
+
+
+def test_every_claim_of_the_paper_is_declared():
+    declared = {each.identity(study.name, "") for study in STUDIES for each in study.declared}
+    assert len(claims(TEXT)) > 30
+    assert set(claims(TEXT)) <= declared
+    assert claims('#c("fig05/x", "fig06/y")') == ["fig05/x", "fig06/y"]
+
+
+def test_every_figure_of_the_paper_is_one_of_the_report():
+    names = runpy.run_path(str(PAPER / "build.py"))["figures"]()
+    assert len(names) == 3
+    assert set(names) <= {name for study in STUDIES for name in study.figures}
+
+
+def test_every_number_of_the_paper_was_measured():
+    words = list(quoted())
+    assert len(words) > 20
+    assert set(words) <= kept().keys()
+
+
+def test_the_paper_without_a_report_says_what_it_lacks(monkeypatch, capsys, tmp_path):
+    script = runpy.run_path(str(PAPER / "build.py"))
+    monkeypatch.setitem(script["main"].__globals__, "FIGURES", tmp_path)
+    assert script["main"]() == 2
+    assert capsys.readouterr().err.startswith("no basins, fig06-branches, stability-map in ")
+
+
+def test_what_the_paper_cites_is_among_its_references():
+    entries = set(
+        re.findall(r"^(\w+):$", (PAPER / "references.yml").read_text(encoding="utf-8"), re.MULTILINE)
+    )
+    cited = {name for name in re.findall(r"(?<![\w\"])@([a-z-]+)", TEXT) if not name.startswith("fig-")}
+    assert cited == entries

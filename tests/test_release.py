@@ -1,0 +1,102 @@
+"""What is released: one version, a citation, ranges that are tested, and all files in wheel and source archive."""
+
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import reference_model
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PACKAGES = ("reference_model", "exudyn_models", "compare")
+
+
+def tracked():
+    """Return the files under version control, or skip where there is none, as in a source archive."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no checkout")
+    out = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, encoding="utf-8"
+    )
+    return [Path(name) for name in out.stdout.split("\0") if name and (ROOT / name).exists()]
+
+
+@pytest.fixture(scope="module")
+def release():
+    return runpy.run_path(str(ROOT / "builders" / "release.py"))
+
+
+def test_a_wheel_or_archive_that_lacks_a_file_or_has_one_too_many_is_noticed(release):
+    files = {"compare/a.py", "compare/page.html", "docs/b.png", ".ci/run"}
+    complaints = release["complaints_of_wheel"](
+        ["compare/a.py", "compare/c.py", "x-1.dist-info/METADATA"], files
+    )
+    assert complaints == ["the wheel lacks compare/page.html", "the wheel has compare/c.py"]
+    complaints = release["complaints_of_archive"](
+        ["x-1/compare/a.py", "x-1/compare/page.html", "x-1/PKG-INFO"], files
+    )
+    assert complaints == ["the source archive lacks docs/b.png"]
+
+
+def lower_ends(requirements):
+    """Return the lower end of each range by the name of the library, "numpy>=1.24" giving 1.24."""
+    return dict(re.fullmatch(r"([\w-]+)>=([\w.]+)", each).groups() for each in requirements)
+
+
+def short(version):
+    """Return a version without zeros at its end: 1.24.0 is 1.24."""
+    return re.sub(r"(\.0)+$", "", version)
+
+
+def test_the_version_is_in_one_place():
+    assert "version" not in PROJECT["project"]
+    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"]["attr"] == "reference_model.__version__"
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r"^version: (\S+)$", citation, re.MULTILINE) == [reference_model.__version__]
+
+
+def test_the_oldest_versions_are_the_lower_ends_of_the_ranges():
+    project = PROJECT["project"]
+    ranges = lower_ends([*project["dependencies"], *project["optional-dependencies"]["sweep"]])
+    lines = (ROOT / "tests" / "oldest.txt").read_text(encoding="utf-8").splitlines()
+    oldest = dict(line.split("==") for line in lines if not line.startswith("#"))
+    assert {name: short(each) for name, each in oldest.items()} == {
+        name: short(each) for name, each in ranges.items()
+    }
+
+
+def test_the_wheel_has_every_file_of_the_packages():
+    data = PROJECT["tool"]["setuptools"]["package-data"]
+    files = [path for path in tracked() if path.parts[0] in PACKAGES and path.suffix != ".py"]
+    assert len(files) > 40
+    for path in files:
+        inside = path.relative_to(path.parts[0])
+        assert any(inside in found(path.parts[0], pattern) for pattern in data[path.parts[0]]), path
+
+
+def found(package, pattern):
+    return {path.relative_to(ROOT / package) for path in (ROOT / package).glob(pattern)}
+
+
+def test_the_source_archive_has_every_file_but_what_belongs_to_the_repository():
+    """Packages, pyproject, README and licence are in it by themselves, the rest by ``MANIFEST.in``."""
+    lines = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()
+    named = {name for line in lines for name in line.split()[1:]}
+    by_itself = {*PACKAGES, "pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"}
+    for path in tracked():
+        assert path.parts[0] in named | by_itself or path.parts[0].startswith("."), path
+
+
+def test_paths_of_the_workflows_are_there():
+    for workflow in (ROOT / ".github" / "workflows").glob("*.yml"):
+        for name in re.findall(r"[\w./-]+\.(?:txt|py)\b", workflow.read_text(encoding="utf-8")):
+            assert (ROOT / name).exists(), f"{workflow.name}: {name}"
