@@ -73,7 +73,7 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
         f"{independent[State.AGREES]} of {sum(independent.values())} claims agree on independent evidence"
     )
     gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
-    rest = [f"{counts[state]} {_VERBS.get(state, state.value)}" for state in gaps if counts[state]]
+    rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
     settings = recorded.by_engine.get(engine, []) if recorded is not None else []
     if settings and grade != DIFFERS:  # by the same motions as the others
         grade = _grade(settings[0])
@@ -85,7 +85,9 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
 
 INDEPENDENT: Evidence = "independent"
 
-_VERBS = {State.DIFFERS: "differ"}
+
+def _verb(state: State, count: int) -> str:
+    return "differ" if state is State.DIFFERS and count > 1 else state.value
 
 
 def _best(settings: Sequence[Recorded]) -> Recorded:

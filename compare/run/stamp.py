@@ -64,9 +64,8 @@ def commit() -> str:
                 ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"],
                 capture_output=True,
                 encoding="utf-8",
-                timeout=10.0,
             )
-        except (OSError, subprocess.TimeoutExpired):
+        except OSError:
             return ""
         return found.stdout.strip()
     try:

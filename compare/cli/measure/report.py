@@ -124,13 +124,12 @@ def report(
     """
     from compare.engines import engines
 
-    studies = studies_of(context, names or [], level)
-    if claim is not None:
-        studies = (_alone(studies, claim, names, level, resume),)
-        output = _folder_of_claim(context, output)
+    studies = _asked(context, names or [], claim, level, resume)
+    output = output if claim is None else _folder_of_claim(context, output)
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
+        check_folder(store := store_of(output))
 
     from compare.claims.errata import ERRATA
     from compare.run.runner import run
@@ -140,7 +139,7 @@ def report(
         result = run(
             studies,
             chosen,
-            folder=output / "data",
+            folder=store,
             jobs=jobs or cores(),
             limit=study_limit,
             resume=resume,
@@ -159,16 +158,26 @@ def report(
     return _status(result, matrix, min_conclusive)
 
 
-def _alone(studies: Sequence[Study], claim: str, names: object, level: str, resume: bool) -> Study:
-    """Return the study that makes one claim; refuse what doesn't go with it."""
+def store_of(output: Path) -> Path:
+    """Return the folder beside the report's in which --resume finds what was measured: no reader needs it."""
+    return output.resolve().with_name(f"{output.resolve().name}.data")
+
+
+def _asked(
+    context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
+) -> tuple[Study, ...]:
+    """Return the studies to measure, or the one that makes a claim; refuse what doesn't go with it."""
     from compare.cli.measure.claim import with_claim
 
+    studies = studies_of(context, names, level)
+    if claim is None:
+        return studies
     with refused():
         if names or level != "full" or resume:
             raise ValueError(
                 f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
             )
-        return with_claim(studies, claim)
+        return (with_claim(studies, claim),)
 
 
 def _folder_of_claim(context: typer.Context, output: Path) -> Path:
