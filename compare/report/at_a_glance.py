@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from urllib.parse import quote
 
 from compare.claims.claim import GRADES, Evidence, Verdict
 from compare.claims.study import Recorded
@@ -22,7 +23,7 @@ ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
 class Glance:
     """One engine: ``cells`` are those of the recorded motions at its best setting, None where it simulates none.
 
-    ``where`` is the id of the place in the page that tells more.
+    ``where`` is the link to the place in the page that tells more.
     """
 
     engine: str
@@ -80,7 +81,8 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
     errors = _errors(settings[0]) if settings else ""
     parts = [agreeing, *rest, *([errors] if errors else [])]
     cells = recorded.cells(settings[0]) if recorded is not None and settings else ()
-    return Glance(engine, run.versions.get(engine, ""), grade, f"{'; '.join(parts)}.", "studies", cells)
+    where = f"?engine={quote(engine)}#studies"  # its claims
+    return Glance(engine, run.versions.get(engine, ""), grade, f"{'; '.join(parts)}.", where, cells)
 
 
 INDEPENDENT: Evidence = "independent"
@@ -117,7 +119,7 @@ def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recor
         best.version,
         _grade(best),
         f"{'; '.join(parts)}.",
-        f"{recorded.study.name}-recorded",
+        f"#{recorded.study.name}-recorded",
         cells,
     )
 

@@ -86,7 +86,8 @@
       it.hidden = false;
       if (it.matches("details")) it.open = true;
     }
-    for (const own of target.querySelectorAll(":scope > details")) if (target.matches("section")) own.open = true;
+    const own = target.matches("section") ? target.querySelectorAll(":scope > details") : [];
+    if (own.length === 1) own[0].open = true;
     target.scrollIntoView();
   }
 

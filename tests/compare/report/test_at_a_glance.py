@@ -84,7 +84,7 @@ def test_the_best_setting_of_the_engines_own_friction_speaks_for_it(found):
     assert found["Kite"].sentence == (
         "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another law by box."
     )
-    assert found["Kite"].where == "agreement-recorded"
+    assert found["Kite"].where == "#agreement-recorded"
 
 
 def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):

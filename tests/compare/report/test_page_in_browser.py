@@ -88,6 +88,20 @@ def test_a_link_opens_what_it_leads_to(opened):
     assert page.locator('[id="figure/fake-radius"]').is_visible()
 
 
+def test_the_way_from_an_engine_leads_to_its_claims(opened):
+    page, _ = opened
+    page.locator(".glance tbody a").first.click()
+    page.wait_for_url("**?engine=good#studies")
+    assert page.locator("#found").inner_text() == "5 of 6 claims"
+    assert page.locator("#studies").bounding_box()["y"] < 800
+
+
+def test_the_way_to_one_claim_opens_none_unasked(opened):
+    page, _ = opened
+    page.locator(".ways a", has_text="Check one claim").click()
+    assert page.locator("details[open]").count() == 0
+
+
 def test_without_a_script_all_can_be_read(browser, reported):
     page = browser.new_page(java_script_enabled=False)
     page.goto((reported[1] / "index.html").as_uri() + f"#{CLAIM}")
