@@ -210,7 +210,8 @@ def test_programs_see_the_kind_of_each_verdict(reported):
         }
         for case in ET.parse(folder / "junit.xml").iter("testcase")
     }
-    assert cases["rests.exudyn", CIRCLE] == {"kind": "formula", "evidence": "implied", "implied by": RESTS}
+    said = {"kind": "formula", "evidence": "implied", "implied by": RESTS}
+    assert cases["rests.exudyn", CIRCLE].items() >= said.items()
     assert cases["rests.theory", "The forms are one"]["evidence"] == "algebra"
     assert sum(matrix.of_evidence("independent").values()) == 4
 
