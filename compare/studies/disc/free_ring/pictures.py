@@ -24,7 +24,7 @@ def draw(data: ByEngine) -> Figures:
     figure, (plane, approach, ratio) = new_figure(ncols=3, width=13.2, height=4.2)
     plane.plot([0.0, 0.7], [0.0, 0.7], color=GREY, linewidth=1.0, linestyle=":", label="ratio 1")
     law = np.linspace(0.0, 22.0, 101)
-    approach.semilogy(law, deviation(law), **curve("theory", r"$8\,e^{-2}\exp(-A/t)$"))
+    approach.semilogy(law, deviation(law), **curve("theory", r"$8\,e^{-2}\exp(-\tau/t)$"))
     if "theory" in data:
         ratio.loglog(data["theory"]["inertia"], data["theory"]["ratio"], **curve("theory", "closed form"))
     for engine in engines_in(data):
@@ -49,7 +49,7 @@ def draw(data: ByEngine) -> Figures:
         title=r"Speeds of rim and centre, $J = mR^2$",
     )
     approach.set(
-        xlabel=r"$A\,/\,t$, $t$: time until the ring rests",
+        xlabel=r"$\tau\,/\,t$, $t$: time until the ring rests",
         ylabel=r"$|\ln(|v|\,/\,R\dot\varphi)|$",
         xlim=(0.0, 22.0),
         ylim=(LEAST_DEVIATION, 20.0),
