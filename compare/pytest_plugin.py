@@ -284,7 +284,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
     if claim.answers:
         first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"
         return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
-    unit = f" {claim.unit}" if claim.unit else ""
+    unit = f" {element.unit}" if element.unit else ""
     allowed = f"{error_text(element.total)}{unit}"
     differs = claim.verdict is Verdict.DIFFERS
     lines = {
@@ -298,9 +298,11 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "element": f"{element.name}: of {element.count} the nearest to its budget or the farthest beyond"
         if element.name
         else "",
-        "largest": f"{error_text(element.largest_difference)}{unit}, {element.largest_name}"
-        if element.largest_index != element.index
-        else "",
+        "largest": "; ".join(
+            f"{error_text(one.difference)} {one.unit}, {one.name}"
+            for one in element.largest
+            if one.index != element.index
+        ),
     }
     first = (
         f"differs by {error_text(element.difference)}{unit}, allowed are {allowed}"

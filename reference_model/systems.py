@@ -260,6 +260,9 @@ PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
 }
 """Name and unit of each parameter of a system, and how small it may be; the number of points stands apart."""
 
+UNITS = DiscOnDisc._units
+"""Unit of each parameter, those of a pin among them."""
+
 SMALLEST_TOLERANCE = 1e-14
 """What double precision can reach."""
 

@@ -231,6 +231,11 @@ class Claim:
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
                 f"measured {self.measured.shape}"
             )
+        mixed = [unit.strip() for unit in self.unit.split(",")]
+        if len(mixed) > 1 and any(_unit(name) not in mixed for name in (self.axes or ((),))[-1] or ("",)):
+            raise ValueError(
+                f"claim {sentence!r} has numbers in {self.unit}: each component must say which, as 'x in m'"
+            )
         if self.predicted.size == 0:
             raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
         for name, place in self.named.items():
@@ -241,6 +246,17 @@ class Claim:
                 f"claim {sentence!r}: numerical error has shape {numerical.shape}, "
                 f"predicted {self.predicted.shape}"
             )
+
+    def unit_of(self, index: int) -> str:
+        """Return the unit of element ``index`` (flat), "1" where several are mixed and it has none."""
+        return self.units[index % len(self.units)]
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit of each place along the last axis where they are mixed, or the one of all."""
+        if "," not in self.unit:
+            return (self.unit,)
+        return tuple(_unit(name) for name in self.axes[-1])
 
     def element(self, index: int) -> str:
         """Return in words which element ``index`` (flat) is, as "μN = 0.05 N, x in m"; "" where nothing names it."""
@@ -280,7 +296,7 @@ class Claim:
     def relative_error(self) -> float:
         """The largest total error over the size of what is predicted; infinite where that has none.
 
-        Without a ``size`` it is that of the largest prediction, of each of the last axis' units if they are named.
+        Without a ``size`` it is that of the largest prediction, of each unit where they are mixed.
         Orders and answers have no size beside which an error is small.
         """
         if self.answers or self.kind == "order":
@@ -295,10 +311,9 @@ class Claim:
         if self.size is not None:
             return self.size
         numbers = np.abs(self.predicted)
-        names = self.axes[-1] if self.axes else ()
-        if not names or any(" = " in name for name in names):  # which are values of what was varied
+        units = np.array(self.units)
+        if units.size == 1:
             return np.asarray(np.max(numbers, initial=0.0))
-        units = np.array([name.partition(" in ")[2] for name in names])
         return np.array([np.max(numbers[..., units == unit], initial=0.0) for unit in units])
 
     @property
@@ -321,6 +336,11 @@ class Claim:
         if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
             return Verdict.INCONCLUSIVE
         return Verdict.AGREES
+
+
+def _unit(name: str) -> str:
+    """Return the unit that the name of a component ends with, as "x in m"; "" where it has none."""
+    return name.rpartition(" in ")[2] if " in " in name else ""
 
 
 def _place_of_largest(values: FloatArray) -> int:

@@ -8,7 +8,7 @@ from dataclasses import asdict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import System
+from reference_model.systems import COLUMNS, System
 
 BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
 """Parameters of a support that are zero in the paper."""
@@ -32,3 +32,8 @@ def parameters_of(
 def at_each(name: str, values: ArrayLike) -> str:
     """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
     return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
+
+
+def components_of(system: System) -> tuple[str, ...]:
+    """Return the components of a state with their units, "x in m"."""
+    return tuple(f"{name} in {unit}" for name, unit in COLUMNS[type(system)])

@@ -87,3 +87,8 @@ class Table:
     caption: str
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+
+
+def slug(words: str) -> str:
+    """Return ``words`` as part of a name: small letters and digits, between hyphens."""
+    return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())

@@ -14,7 +14,7 @@ import numpy as np
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
-from compare.claims.prose import Prose, Table
+from compare.claims.prose import Prose, Table, slug
 from compare.engines import Engine, UnsupportedSystemError
 from compare.engines.finer_steps import decided
 from reference_model.systems import FloatArray, System
@@ -60,12 +60,13 @@ class Recorded:
 
     Parameters
     ----------
-    engine, setting : str
-        "" for the setting of an engine that has one only.
-    version, date : str
-        Of the engine, and when it was recorded.
+    engine, setting, version, date : str
+        "" for the setting of an engine that has one only; when it was recorded.
     claims : tuple of Claim
-        A finding about that engine, whatever the verdict.
+        Findings about that engine.
+    own, cases
+        Whether friction is the engine's own, and no force of its user's; and by the sentence of each claim a name for
+        its motion, and whether it is about "slip" or "stick".
 
     """
 
@@ -74,6 +75,8 @@ class Recorded:
     version: str
     date: str
     claims: tuple[Claim, ...]
+    own: bool = True
+    cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -129,15 +132,11 @@ class Declared:
     def identity(self, study: str, case: str) -> str:
         """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
         parts = (study, self.function.__name__.strip("_"), case)
-        return "/".join(_slug(part) for part in parts if part)
+        return "/".join(slug(part) for part in parts if part)
 
 
 def _takes_engine(function: Callable[..., Any]) -> bool:
     return next(iter(inspect.signature(function).parameters), "") == "engine"
-
-
-def _slug(words: str) -> str:
-    return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())
 
 
 def nothing_drawn(data: ByEngine) -> Figures:

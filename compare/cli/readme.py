@@ -25,6 +25,7 @@ from typing import Any
 
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
+from compare.report.machines.results_json import read_results
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.quotes import Nature, parts, quote
 
@@ -238,7 +239,7 @@ def main(arguments: list[str], root: Path = ROOT) -> int:
     if len(arguments) != 2 or arguments[0] not in ("write", "check"):
         print("usage: python -m compare.cli.readme write|check RESULTS.json", file=sys.stderr)
         return 2
-    results = json.loads(Path(arguments[1]).read_text(encoding="utf-8"))
+    results = read_results(Path(arguments[1]))
     if arguments[0] == "write":
         write(results, root)
     sentences = unlike(root) + parted(results, root) + unmeasured(results)

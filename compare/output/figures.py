@@ -187,8 +187,15 @@ def axis(symbol: str, unit: str = "") -> str:
 
 def saved(figure: Figure) -> tuple[bytes, bytes]:
     """Return the figure as SVG and as PNG; equal figures give equal bytes."""
-    svg, png = io.BytesIO(), io.BytesIO()
+    png = io.BytesIO()
+    with paper_style():
+        figure.savefig(png, format="png", metadata={"Software": None})
+    return as_svg(figure), png.getvalue()
+
+
+def as_svg(figure: Figure) -> bytes:
+    """Return the figure as SVG; equal figures give equal bytes."""
+    svg = io.BytesIO()
     with paper_style():
         figure.savefig(svg, format="svg", metadata={"Date": None})
-        figure.savefig(png, format="png", metadata={"Software": None})
-    return svg.getvalue(), png.getvalue()
+    return svg.getvalue()

@@ -69,6 +69,16 @@ def gif(
     return stream.getvalue()
 
 
+def still(content: bytes) -> bytes:
+    """Return the first picture of an animation as PNG, for those who want nothing to move."""
+    import PIL.Image
+
+    stream = io.BytesIO()
+    with PIL.Image.open(io.BytesIO(content)) as picture:
+        picture.save(stream, format="PNG", optimize=True)
+    return stream.getvalue()
+
+
 def _palette(pictures: list[PIL.Image.Image]) -> PIL.Image.Image:
     """Return a picture whose palette serves some frames from beginning to end."""
     import PIL.Image

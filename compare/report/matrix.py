@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.evidence import evidence_of
+from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by
 from compare.report.worst import deciding, in_short
@@ -107,8 +109,12 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """One claim of a study, with a cell for each column that has something to say about it."""
+    """One claim of a study, with a cell for each column that has something to say about it.
 
+    ``identity`` is what it is called for good, and the address of its place in the page: "fig06/rests".
+    """
+
+    identity: str
     sentence: str
     equation: str
     cells: dict[str, Cell]
@@ -144,10 +150,16 @@ class Group:
         """Return the reasons of all cells in ``state``, and how many cells give each."""
         return Counter(cell.reason for row in self.rows for cell in row.cells.values() if cell.state is state)
 
-    def number_of(self, sentence: str) -> int | None:
-        """Return the number, from 1, of the row of a claim; None for what is none."""
-        numbers = {row.sentence: i for i, row in enumerate(self.rows, 1)}
-        return numbers.get(sentence)
+    @property
+    def worst(self) -> tuple[State, ...]:
+        """The worst state of all cells, () where they agree or were not asked for."""
+        states = {cell.state for row in self.rows for cell in row.cells.values()}
+        found = next((state for state in WORST_FIRST if state in states), State.AGREES)
+        return () if found in (State.AGREES, State.NOT_SIMULATED) else (found,)
+
+    def row_of(self, sentence: str) -> Row | None:
+        """Return the row of a claim; None for what is none."""
+        return next((row for row in self.rows if row.sentence == sentence), None)
 
     @property
     def agrees(self) -> bool:
@@ -255,7 +267,7 @@ def _group(run: Run, study: Study) -> Group:
             for claim in outcome.claims:
                 claims.setdefault((claim.sentence, claim.equation), {}).setdefault(column, []).append(claim)
     gaps = {column: gap for column in columns if (gap := _gap(run, study, column)) is not None}
-    rows = []
+    rows: list[Row] = []
     for (sentence, equation), found in claims.items():
         theory_only = set(found) == {THEORY}
         cells = {}
@@ -264,15 +276,25 @@ def _group(run: Run, study: Study) -> Group:
                 cells[column] = _cell(found[column])
             elif column in gaps and column != THEORY and not theory_only:
                 cells[column] = gaps[column]
-        rows.append(Row(sentence, equation, cells))
+        identity = _identity(study, next(iter(found.values()))[0], rows)
+        rows.append(Row(identity, sentence, equation, cells))
     rows = [_weighed(row, rows, study) for row in rows]
     # a gap that no row shows, because nobody made a claim there, still has to be seen
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
     }
     if unseen:
-        rows.append(Row("(claims not known)", "", unseen))
+        rows.append(Row(f"{study.name}/unknown", "(claims not known)", "", unseen))
     return Group(study, tuple(rows))
+
+
+def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
+    """Return what a claim is called; one made by hand by its sentence, and unlike all of ``rows``."""
+    if claim.identity:
+        return claim.identity
+    name = f"{study.name}/{slug(claim.sentence)}"
+    same = sum(row.identity.partition("~")[0] == name for row in rows)
+    return f"{name}~{same + 1}" if same else name
 
 
 def _weighed(row: Row, rows: list[Row], study: Study) -> Row:

@@ -1,12 +1,14 @@
-"""``index.html``: one file with everything in it."""
+"""``index.html``: one page with all texts and numbers, and pictures in files beside it."""
 
 from __future__ import annotations
 
-import base64
+import shlex
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import Any
+from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -14,11 +16,14 @@ from markupsafe import Markup
 from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.study import Study
 from compare.report import quotes
+from compare.report.at_a_glance import cases, glances
+from compare.report.machines.results_json import erratum_id
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
 from compare.report.worst import Worst, answers_text, in_short, worst
 from compare.run.runner import Drawing, Run
 from compare.run.workers import Failure
+from reference_model.systems import UNITS
 
 
 @dataclass(frozen=True)
@@ -41,12 +46,17 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure or an animation as a data URI."""
+    """A figure or an animation by its path in the report's folder, and that of what shows until it is played."""
 
     name: str
-    uri: str
+    path: str
     caption: str
     moves: bool = False
+
+    @property
+    def still(self) -> str:
+        """The path of what does not move."""
+        return str(PurePosixPath(self.path).with_suffix(".png")) if self.moves else self.path
 
 
 @dataclass(frozen=True)
@@ -58,8 +68,13 @@ class Exceptional:
     target: str
 
 
-def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
-    """Return the HTML of the report."""
+HERO = "drivetrain-picture"
+"""The figure that shows on the first screen what all this is about, where it was drawn."""
+
+
+def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
+    """Return the HTML of the report; ``paths`` are those of the claims' tables, by identity."""
+    hero_group, hero = _hero(run, matrix)
     return (
         environment()
         .get_template("index.html.j2")
@@ -73,6 +88,15 @@ def page(run: Run, matrix: Matrix, stamp: dict[str, str]) -> str:
             GRADE_SYMBOLS=GRADE_SYMBOLS,
             kinds=[evidence for evidence in EVIDENCE if matrix.of_evidence(evidence)],
             summary=summary(matrix),
+            paths=paths,
+            glances=glances(run, matrix),
+            recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
+            off=_off,
+            hero=hero,
+            hero_group=hero_group,
+            filters=_filters(matrix),
+            erratum_id=erratum_id,
+            claim_commands=_claim_commands,
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
             measurements=_measurements,
@@ -96,7 +120,9 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    result.filters.update(number=_number, value=_value, answers=_answers, paragraphs=_paragraphs)
+    result.filters.update(
+        number=_number, value=_value, answers=_answers, paragraphs=_paragraphs, urlpath=quote
+    )
     return result
 
 
@@ -140,12 +166,12 @@ def _exceptions(matrix: Matrix) -> list[Exceptional]:
     """Return what a reader must not overlook: claims that differ or show nothing, engines that failed."""
     found: dict[tuple[State, str, str], list[str]] = {}
     for group in matrix.groups:
-        for i, row in enumerate(group.rows, 1):
+        for row in group.rows:
             for column, cell in row.cells.items():
                 if cell.state is State.FAILED:  # all claims of the study at once
                     text, target = f"{group.study.title}: {cell.reason}", group.study.name
                 elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
-                    text, target = row.sentence, f"{group.study.name}-{i}"
+                    text, target = row.sentence, row.identity
                 else:
                     continue
                 columns = found.setdefault((cell.state, text, target), [])
@@ -206,7 +232,10 @@ def _by_engine(row: Row, attribute: str) -> list[str]:
 
 
 def _parameters(parameters: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name} = {_parameter(value)}" for name, value in parameters.items())
+    said = (
+        f"{name} = {_parameter(value)} {UNITS.get(name, '')}".rstrip() for name, value in parameters.items()
+    )
+    return ", ".join(said)
 
 
 def _parameter(value: Any) -> str:
@@ -226,13 +255,13 @@ def _quoting(group: Group, text: str) -> Markup:
         found += literal
         if words is None:
             continue
-        quote = quotes.quote(group.claims, words)
-        if quote is None:
+        number = quotes.quote(group.claims, words)
+        if number is None:
             found += quotes.MISSING
             continue
-        place = next(i for i, row in enumerate(group.rows, 1) if quote.claim in row.claims)
-        found += Markup('<a class="quote" href="#{}-{}" title="{}">{}</a>').format(
-            group.study.name, place, _origin(quote), quote.text
+        place = next(row.identity for row in group.rows if number.claim in row.claims)
+        found += Markup('<a class="quote" href="#{}" title="{}">{}</a>').format(
+            place, _origin(number), number.text
         )
     return found
 
@@ -248,13 +277,10 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
-    figures = [
-        Picture(name, _data_uri("image/svg+xml", svg), study.figures.get(name, ""))
-        for name, (svg, _) in drawing.figures.items()
-    ]
+    figures = [Picture(name, f"figures/{name}.svg", study.figures.get(name, "")) for name in drawing.figures]
     animations = [
-        Picture(name, _data_uri("image/gif", content), study.figures.get(name, ""), moves=True)
-        for name, content in drawing.animations.items()
+        Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
+        for name in drawing.animations
     ]
     # in the order of the captions where there is one
     order = list(study.figures)
@@ -264,8 +290,31 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
     )
 
 
-def _data_uri(kind: str, content: bytes) -> str:
-    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+def _hero(run: Run, matrix: Matrix) -> tuple[Group | None, Picture | None]:
+    """Return the picture of the first screen and the group that it is from; None for none."""
+    for group in matrix.groups:
+        for picture in _pictures(run, group):
+            if picture.name == HERO:
+                return group, picture
+    return None, None
+
+
+def _off(cell: Cell) -> str:
+    """Return how far a recorded motion is off."""
+    return error_text(max(float(claim.difference.max()) for claim in cell.claims), 1)
+
+
+def _filters(matrix: Matrix) -> dict[str, list[str]]:
+    """Return what can be chosen of the claims: by engine, verdict, kind of evidence, study and equation."""
+    rows = [row for group in matrix.groups for row in group.rows]
+    cells = [cell for row in rows for cell in row.cells.values()]
+    return {
+        "engine": list(matrix.columns),
+        "verdict": [state.value for state in State if any(cell.state is state for cell in cells)],
+        "evidence": [kind for kind in EVIDENCE if any(cell.evidence == kind for cell in cells)],
+        "study": [group.study.name for group in matrix.groups],
+        "equation": list(dict.fromkeys(row.equation for row in rows if row.equation)),
+    }
 
 
 def _reason(value: object) -> str:
@@ -277,9 +326,14 @@ def _commands(run: Run, study: Study) -> list[str]:
     return [command(study.name, engine) for engine in engines] or [command(study.name, THEORY)]
 
 
-def command(study: str, engine: str) -> str:
-    """Return the command line that measures a study again with one engine."""
-    return f"friction-discs report {study}" + ("" if engine == THEORY else f" --engine {engine}")
+def _claim_commands(row: Row) -> list[str]:
+    engines = list(dict.fromkeys(claim.engine for claim in row.claims if claim.engine != THEORY)) or [THEORY]
+    return [command(f"--claim {shlex.quote(row.identity)}", engine) for engine in engines]
+
+
+def command(what: str, engine: str) -> str:
+    """Return the command line that measures a study, or a claim, again with one engine."""
+    return f"friction-discs report {what}" + ("" if engine == THEORY else f" --engine {shlex.quote(engine)}")
 
 
 def _number(value: float) -> Markup:

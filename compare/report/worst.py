@@ -14,10 +14,20 @@ SPACE = "\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
-class Worst:
-    """The numbers of one element, ``index`` (from 0) of ``count``, and which difference is the largest.
+class Largest:
+    """The largest difference in one unit, of the element ``index`` with that ``name``."""
 
-    ``name`` and ``largest_name`` say in words which elements they are, "" where there is only one.
+    index: int
+    name: str
+    difference: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The numbers of one element, ``index`` (from 0) of ``count``, in ``unit``, and each unit's largest difference.
+
+    ``name`` says in words which element it is, "" where there is only one.
     """
 
     index: int
@@ -28,9 +38,8 @@ class Worst:
     difference: float
     numerical: float
     model: float
-    largest_index: int
-    largest_name: str
-    largest_difference: float
+    unit: str
+    largest: tuple[Largest, ...]
 
     @property
     def total(self) -> float:
@@ -51,10 +60,21 @@ def worst(claim: Claim) -> Worst:
         float(claim.difference.flat[i]),
         float(numerical.flat[i]),
         claim.budget.model,
-        claim.largest,
-        _name(claim, claim.largest),
-        float(claim.difference.flat[claim.largest]),
+        claim.unit_of(i),
+        _largest(claim),
     )
+
+
+def _largest(claim: Claim) -> tuple[Largest, ...]:
+    """Return the largest difference of each unit: metres and radians are not compared."""
+    units = claim.units
+    found = []
+    for unit in dict.fromkeys(units):
+        own = np.resize([one == unit for one in units], claim.predicted.size)
+        difference = np.where(own, np.nan_to_num(claim.difference.ravel(), nan=np.inf), -1.0)
+        i = int(np.argmax(difference))
+        found.append(Largest(i, _name(claim, i), float(claim.difference.flat[i]), unit))
+    return tuple(found)
 
 
 def _name(claim: Claim, index: int) -> str:
@@ -84,7 +104,7 @@ def in_short(claim: Claim) -> str:
     element = worst(claim)
     if claim.answers:
         return f"{answers_text(element.measured)} of {answers_text(element.predicted)}"
-    unit = f" {claim.unit}" if claim.unit else ""
+    unit = f" {element.unit}" if element.unit else ""
     if claim.verdict is Verdict.DIFFERS:
         return f"by{SPACE}{error_text(element.difference)}{unit}"
     return f"±{SPACE}{error_text(element.total)}{unit}" if element.total > 0.0 else ""
@@ -93,3 +113,18 @@ def in_short(claim: Claim) -> str:
 def answers_text(count: float) -> str:
     """Return a number of answers, which is whole: "3", "1,000,000"."""
     return f"{round(count):,}"
+
+
+def account(claim: Claim) -> str:
+    """Return the numbers of the element that decides."""
+    element = worst(claim)
+    if claim.answers:
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
+    unit = f" {element.unit}" if element.unit else ""
+    largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
+    return (
+        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
+        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
+        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
+        f"largest difference of {element.count}: {largest}"
+    )

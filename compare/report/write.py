@@ -1,17 +1,25 @@
-"""Writes a report: ``index.html``, ``results.json``, ``junit.xml``, and the figures as files of their own."""
+"""Writes a report: the page, the files for programs, and figures and arrays as files of their own."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from compare.output.text_files import replacing, write_text
-from compare.report.junit import junit
+from compare.report.animation import still
+from compare.report.machines.arrays import tables
+from compare.report.machines.badge import badge
+from compare.report.machines.junit import junit
+from compare.report.machines.results_json import FILE, results
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
-from compare.report.results_json import results
 from compare.run.runner import Drawing, Run
 from compare.run.stamp import platform_stamp
+
+LINES = 4
+"""How deep lines are nested in ``results.json``: each claim has one."""
 
 
 def write_report(run: Run, output: Path) -> Matrix:
@@ -20,19 +28,39 @@ def write_report(run: Run, output: Path) -> Matrix:
     output.mkdir(parents=True, exist_ok=True)
     for drawing in run.drawings.values():
         if isinstance(drawing, Drawing):
-            _write_pictures(drawing, output / "figures")
-    content = json.dumps(results(run, verdicts, stamp), indent=1, ensure_ascii=False, allow_nan=False)
-    write_text(output / "results.json", content)
+            _write(_pictures(drawing), output)
+    arrays = tables(verdicts)
+    _write(dict(arrays.values()), output)
+    paths = {identity: path for identity, (path, _) in arrays.items()}
+    write_text(output / FILE, _lines(results(run, verdicts, stamp, paths), LINES) + "\n")
     write_text(output / "junit.xml", junit(run, verdicts).decode("utf-8"))
-    write_text(output / "index.html", page(run, verdicts, stamp))
+    write_text(output / "badge.svg", badge(verdicts))
+    write_text(output / "index.html", page(run, verdicts, stamp, paths))
     return verdicts
 
 
-def _write_pictures(drawing: Drawing, folder: Path) -> None:
-    folder.mkdir(exist_ok=True)
-    files = {f"{name}.gif": content for name, content in drawing.animations.items()}
-    for name, (svg, png) in drawing.figures.items():
-        files |= {f"{name}.svg": svg, f"{name}.png": png}
-    for name, content in files.items():
-        with replacing(folder / name, "wb") as stream:
+def _pictures(drawing: Drawing) -> dict[str, bytes]:
+    """Return figures and animations by their paths in the report's folder."""
+    figures = {f"figures/{name}.svg": content for name, content in drawing.figures.items()}
+    moving = {f"figures/{name}.gif": content for name, content in drawing.animations.items()}
+    return figures | moving | {f"figures/{name}.png": still(gif) for name, gif in drawing.animations.items()}
+
+
+def _lines(content: Any, depth: int) -> str:
+    """Return JSON with a line for each value down to ``depth``."""
+    if depth == 0 or not content or not isinstance(content, dict | list):
+        return json.dumps(content, ensure_ascii=False, allow_nan=False)
+    if isinstance(content, list):
+        return "[\n" + ",\n".join(_lines(one, depth - 1) for one in content) + "\n]"
+    parts = (
+        f"{json.dumps(name, ensure_ascii=False)}: {_lines(one, depth - 1)}" for name, one in content.items()
+    )
+    return "{\n" + ",\n".join(parts) + "\n}"
+
+
+def _write(contents: Mapping[str, bytes], output: Path) -> None:
+    for path, content in contents.items():
+        file = output / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(file, "wb") as stream:
             stream.write(content)

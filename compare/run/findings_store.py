@@ -1,10 +1,12 @@
-"""Findings on disk: claims as JSON, arrays as NPZ, valid for the version of the code that made them."""
+"""Findings on disk: claims as compressed JSON, arrays as NPZ, valid for the version of the code that made them."""
 
 from __future__ import annotations
 
 import json
+import lzma
 import re
 from dataclasses import dataclass
+from lzma import LZMAError
 from pathlib import Path
 from zipfile import BadZipFile
 
@@ -12,7 +14,7 @@ import numpy as np
 
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
-from compare.output.text_files import replacing, write_text
+from compare.output.text_files import replacing
 
 
 @dataclass(frozen=True)
@@ -42,21 +44,33 @@ class Store:
             "not_simulated": findings.not_simulated,
             "claims": [claim_as_json(claim) for claim in findings.claims],
         }
-        write_text(path.with_suffix(".json"), json.dumps(content, indent=1, ensure_ascii=False))
+        with replacing(self._json(study, engine), "wb") as stream:
+            stream.write(lzma.compress(json.dumps(content).encode(), preset=1))
 
     def find(self, study: str, engine: str, stamp: str | None) -> tuple[Findings, float] | None:
         """Return findings and their seconds if they are there, legible, and of this stamp."""
         path = self._path(study, engine)
         try:
-            content = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+            content = json.loads(lzma.decompress(self._json(study, engine).read_bytes()))
             if stamp is None or content["stamp"] != stamp:
                 return None
             claims = tuple(claim_from_json(claim) for claim in content["claims"])
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
                 data = {name: arrays[name] for name in arrays.files}
             return Findings(claims, data, content["not_simulated"]), float(content["seconds"])
-        except (OSError, EOFError, BadZipFile, ValueError, KeyError, TypeError):  # so it is computed again
+        except (
+            OSError,
+            EOFError,
+            LZMAError,
+            BadZipFile,
+            ValueError,
+            KeyError,
+            TypeError,
+        ):  # so it is computed again
             return None
+
+    def _json(self, study: str, engine: str) -> Path:
+        return self._path(study, engine).with_suffix(".json.xz")
 
     def _path(self, study: str, engine: str) -> Path:
         # no dot: with_suffix would take it for a suffix

@@ -11,11 +11,11 @@ from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, UnsupportedSystemError
-from compare.output.figures import paper_style, saved
+from compare.output.figures import as_svg, paper_style
 from compare.run.code_files import UnknownCodeError
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
-from compare.run.stamp import PACKAGES, stamp
+from compare.run.stamp import PACKAGES, engine_version, stamp
 from compare.run.workers import Done, Failure, Workers
 
 CODE = ("compare.run", "compare.claims.as_json")
@@ -24,9 +24,9 @@ CODE = ("compare.run", "compare.claims.as_json")
 
 @dataclass(frozen=True)
 class Drawing:
-    """Figures as (SVG, PNG) and animations as GIF, by name."""
+    """Figures as SVG and animations as GIF, by name."""
 
-    figures: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+    figures: dict[str, bytes] = field(default_factory=dict)
     animations: dict[str, bytes] = field(default_factory=dict)
 
 
@@ -54,6 +54,8 @@ class Run:
         Evidence or failure for each erratum, by its place in ``errata``.
     unknown : dict
         Why a study or an engine is always measured anew, by its name: what it depends on can't be seen.
+    versions : dict
+        Of the engines, by name; "" where none is known.
     interrupted : bool
         Whether Ctrl-C came before all was done.
 
@@ -69,6 +71,7 @@ class Run:
     drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
     evidence: dict[int, Evidence | Failure] = field(default_factory=dict)
     unknown: dict[str, str] = field(default_factory=dict)
+    versions: dict[str, str] = field(default_factory=dict)
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
@@ -139,6 +142,7 @@ def run(
         errata,
         tuple(engine.name for engine in engines if engine.contact_only),
         tuple(engine.about for engine in engines if engine.about),
+        versions={one.name: engine_version(one.name, one.kin, one.version) for one in engines},
     )
     with Workers(jobs, limit) as workers:
         try:
@@ -244,6 +248,6 @@ def measured(study: Study, engine: Engine | None) -> Findings:
 def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
     """Return the figures and animations of a study as bytes."""
     with paper_style():
-        figures = {name: saved(figure) for name, figure in study.draw(data).items()} if data else {}
+        figures = {name: as_svg(figure) for name, figure in study.draw(data).items()} if data else {}
         animations = dict(study.animations(data)) if data and study.animations is not None else {}
     return Drawing(figures, animations)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import platform
+import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from datetime import datetime, timezone
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,19 +35,59 @@ def platform_stamp() -> dict[str, str]:
     """Return versions, operating system, number of cores and date, ready to print; no name of a machine or folder."""
     return {
         "friction-discs": version_of("friction-discs"),
+        "commit": commit() or "not known",
         "Python": platform.python_version(),
         **{name: version_of(name) for name in LIBRARIES},
         "user settings of Exudyn": exudyn_user_settings(),
         "system": f"{platform.system()} {platform.machine()}",
+        "processor": processor(),
         "cores": str(os.cpu_count()),
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
     }
 
 
-def version_of(distribution: str) -> str:
+ENGINES = {"reference": "friction-discs", "plain": "friction-discs", "exudyn": "exudyn"}
+"""Distributions that bring this project's engines, or those whose code they share."""
+
+
+def engine_version(name: str, kin: str, own: str) -> str:
+    """Return an engine's version, its ``own`` or that of the distribution it is from; "" where none is known."""
+    source = ENGINES.get(kin or name)
+    return own or (version_of(source) if source else "")
+
+
+def commit() -> str:
+    """Return the commit of this project's code, with "-dirty" where files differ from it; "" where none is known."""
+    if (ROOT / ".git").exists():
+        try:
+            found = subprocess.run(
+                ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"],
+                capture_output=True,
+                encoding="utf-8",
+            )
+        except OSError:
+            return ""
+        return found.stdout.strip()
+    try:
+        source = distribution("friction-discs").read_text("direct_url.json") or "{}"
+    except PackageNotFoundError:
+        return ""
+    return str(json.loads(source).get("vcs_info", {}).get("commit_id", ""))
+
+
+def processor() -> str:
+    """Return what the processor calls itself, else its kind."""
+    with suppress(OSError):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def version_of(name: str) -> str:
     """Return the installed version, "none" where it isn't installed."""
     try:
-        return version(distribution)
+        return version(name)
     except PackageNotFoundError:
         return "none"
 

@@ -168,10 +168,10 @@ def _report() -> str:
     )
     lines = ["# Latest report", "", f'<a href="report/index.html">The report</a>: {totals}.', ""]
     for study in results["studies"]:
-        names = [name for name in study["figures"] if (REPORT / "figures" / f"{name}.png").exists()]
+        names = [name for name in study["figures"] if (REPORT / "figures" / f"{name}.svg").exists()]
         lines += [f"## {html.escape(study['title'])}", ""] if names else []
         for name in names:
-            picture = f"report/figures/{name}.png"
+            picture = f"report/figures/{name}.svg"
             lines += [f'<a href="{picture}"><img alt="{name}" loading="lazy" src="{picture}"></a>', ""]
     return "\n".join(lines) + "\n"
 

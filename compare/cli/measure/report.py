@@ -31,6 +31,7 @@ from compare.cli.door.options import (
 from compare.cli.door.progress import measurements
 
 if TYPE_CHECKING:
+    from compare.claims.study import Study
     from compare.engines import Engine
     from compare.report.matrix import Matrix
     from compare.run.runner import Run
@@ -85,9 +86,21 @@ LeastConclusive = Annotated[
 ]
 
 
+OneClaim = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ID",
+        help="Measure this one claim, as the report calls it, and print its numbers; --output is then the folder "
+        "claim, if nothing else is said.",
+        show_default=False,
+    ),
+]
+
+
 def report(
     context: typer.Context,
     names: Names = None,
+    claim: OneClaim = None,
     engine: Engines = None,
     level: Level = "full",
     study_limit: Limit = None,
@@ -107,40 +120,88 @@ def report(
       friction-discs report
       friction-discs report --level quick
       friction-discs report fig03 fig05 --engine exudyn --output fig
+      friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.engines import engines
 
-    studies = studies_of(context, names or [], level)
+    studies = _asked(context, names or [], claim, level, resume)
+    output = output if claim is None else _folder_of_claim(context, output)
     with refused():
         chosen = engines(dict.fromkeys(engine or []))
         check_folder(output)
+        check_folder(store := store_of(output))
 
     from compare.claims.errata import ERRATA
-    from compare.report.write import write_report
     from compare.run.runner import run
-    from compare.run.workers import interrupts_ignored
 
-    whole = context.obj is None and not names and level == "full"  # errata are part of the whole paper
+    part = context.obj is not None or names or claim is not None or level != "full"
     with measurements() as progress:
         result = run(
             studies,
             chosen,
-            folder=output / "data",
+            folder=store,
             jobs=jobs or cores(),
             limit=study_limit,
             resume=resume,
-            errata=ERRATA if whole else (),
+            errata=() if part else ERRATA,
             progress=progress,
         )
     if resume:
         _tell_unknown(result.unknown)
-    with interrupts_ignored():  # a second or so, and then nothing is half written
-        matrix = write_report(result, output)
+    matrix = _write(result, output)
     with printing():
+        if claim is not None:
+            _print_numbers(matrix)
         _print_summary(result, matrix, output / "index.html")
     if not result.interrupted:
         _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
     return _status(result, matrix, min_conclusive)
+
+
+def store_of(output: Path) -> Path:
+    """Return the folder beside the report's in which --resume finds what was measured: no reader needs it."""
+    return output.resolve().with_name(f"{output.resolve().name}.data")
+
+
+def _asked(
+    context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
+) -> tuple[Study, ...]:
+    """Return the studies to measure, or the one that makes a claim; refuse what doesn't go with it."""
+    from compare.cli.measure.claim import with_claim
+
+    studies = studies_of(context, names, level)
+    if claim is None:
+        return studies
+    with refused():
+        if names or level != "full" or resume:
+            raise ValueError(
+                f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
+            )
+        return (with_claim(studies, claim),)
+
+
+def _folder_of_claim(context: typer.Context, output: Path) -> Path:
+    """Return the folder that was asked for, else one of its own, so that a whole report stays as it is."""
+    source = context.get_parameter_source("output")
+    return Path("claim") if source is not None and source.name == "DEFAULT" else output
+
+
+def _write(result: Run, output: Path) -> Matrix:
+    """Write the report, without an interruption: that takes seconds, and then nothing is half written."""
+    from compare.report.write import write_report
+    from compare.run.workers import interrupts_ignored
+
+    with interrupts_ignored():
+        return write_report(result, output)
+
+
+def _print_numbers(matrix: Matrix) -> None:
+    """Print the numbers that decide each claim."""
+    from compare.report.worst import account
+
+    for group in matrix.groups:
+        for claim in group.claims:
+            print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
 
 
 def _is_suspect(matrix: Matrix, engine: str) -> bool:

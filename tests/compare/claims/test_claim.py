@@ -3,7 +3,7 @@ import pytest
 from fake_studies import claim
 
 from compare.claims.claim import ErrorBudget, Grade, Verdict
-from compare.report.worst import worst
+from compare.report.worst import in_short, worst
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,9 @@ def test_an_error_beyond_the_resolution_is_judged_by_the_size_of_what_is_predict
 
 def test_a_size_is_of_the_numbers_of_one_unit():
     predicted, error = np.array([[1e3, 1e-3], [0.0, 0.0]]), np.array([1.0, 1.0])
-    mixed = claim("c", "good", predicted, predicted, error, axes=((), ("x in m", "spin in rad/s")))
+    mixed = claim(
+        "c", "good", predicted, predicted, error, unit="m, rad/s", axes=((), ("x in m", "spin in rad/s"))
+    )
     alike = claim("c", "good", predicted, predicted, error, axes=((), ("x in m", "y in m")))
     assert (mixed.grade, alike.grade) == (None, Grade.COARSE)
 
@@ -103,7 +105,20 @@ def test_the_largest_difference_is_told_beside_the_one_that_decides():
     made = claim("c", "good", np.zeros(2), [9e-9, 1e-6], [1e-8, 1e-3], resolution=1.0)
     element = worst(made)
     assert (element.index, element.difference, element.total) == (0, 9e-9, 1e-8)
-    assert (element.largest_index, element.largest_difference) == (1, 1e-6)
+    (largest,) = element.largest
+    assert (largest.index, largest.difference) == (1, 1e-6)
+
+
+def test_numbers_of_several_units_are_compared_within_each_unit():
+    parts = {"unit": "m, rad", "axes": ((), ("x in m", "angle in rad")), "resolution": 100.0}
+    made = claim("c", "good", np.zeros((2, 2)), [[0.3, 2.0], [0.1, 9.0]], 10.0, **parts)
+    assert [(one.index, one.unit, one.difference) for one in worst(made).largest] == [
+        (0, "m", 0.3),
+        (3, "rad", 9.0),
+    ]
+    assert (worst(made).unit, in_short(made)) == ("rad", "±\N{NO-BREAK SPACE}10 rad")
+    with pytest.raises(ValueError, match="each component must say which"):
+        claim("c", "good", np.zeros(2), np.zeros(2), 1.0, **parts | {"axes": (("x in m", "angle"),)})
 
 
 def test_algebra_is_of_the_theory_alone():

@@ -184,9 +184,8 @@ def test_the_page_says_what_each_kind_means_and_from_what_a_verdict_follows(repo
     page = (reported[1] / "index.html").read_text(encoding="utf-8")
     (legend,) = re.findall(r'<dl class="legend kinds">(.*?)</dl>', page, flags=re.DOTALL)
     assert re.findall("<dt>(.*?)</dt>", legend) == ["independent", "self-check", "algebra", "implied"]
-    assert (
-        page.count(f'implied by <a href="#rests-2" title="{RESTS}">no.&nbsp;2</a>') == 2
-    )  # matrix and table
+    by = rf'implied by <a href="#(rests/[a-z0-9-]+)" title="{re.escape(RESTS)}">\1</a>'
+    assert len(re.findall(by, page)) == 2  # beside the claim, and in its table
     assert page.count("Exudyn with its built-in contact in place of the connector") == 1
 
 
@@ -211,7 +210,8 @@ def test_programs_see_the_kind_of_each_verdict(reported):
         }
         for case in ET.parse(folder / "junit.xml").iter("testcase")
     }
-    assert cases["rests.exudyn", CIRCLE] == {"kind": "formula", "evidence": "implied", "implied by": RESTS}
+    said = {"kind": "formula", "evidence": "implied", "implied by": RESTS}
+    assert cases["rests.exudyn", CIRCLE].items() >= said.items()
     assert cases["rests.theory", "The forms are one"]["evidence"] == "algebra"
     assert sum(matrix.of_evidence("independent").values()) == 4
 
@@ -233,13 +233,10 @@ def test_matrix_and_table_show_one_number(tmp_path):
     assert '<data value="9e-06">' in page
     assert 'largest <data value="2e-05">' in page
     (made,) = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"]
-    assert made["decided_by"] == {
-        "element": 1,
-        "element_name": "no. 2 of 3",
-        "difference": 9e-6,
-        "allowed": 1e-5,
-        "largest_difference": 2e-5,
-    }
+    decisive = made["decided_by"]
+    assert (decisive["element"], decisive["name"], decisive["unit"]) == (1, "no. 2 of 3", "m")
+    assert (decisive["difference"], decisive["allowed"]) == (9e-6, 1e-5)
+    assert made["largest"] == [{"element": 2, "name": "no. 3 of 3", "unit": "m", "difference": 2e-5}]
 
 
 def test_what_implies_a_claim_is_a_claim_of_the_same_study_that_follows_from_none():

@@ -53,6 +53,9 @@ DOCUMENTS = [
     (path.name, example)
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
     for example in examples(code(path))
+] + [
+    ("ci-workflow.yml", example.partition(" ||")[0])
+    for example in examples((ROOT / "docs" / "ci-workflow.yml").read_text(encoding="utf-8"))
 ]
 
 
@@ -78,6 +81,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.sweep.store.files.Files, "write", stop)
     monkeypatch.setattr("reference_model.smallest_shock", stop)
     monkeypatch.setattr("fmu_models.export", stop)
+    monkeypatch.setattr("compare.report.machines.results_json.read_results", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
     monkeypatch.setattr(compare.run.kernels, "kernels", stop)
 

@@ -38,31 +38,25 @@ def test_tables_stay_inside_of_the_page_or_scroll_in_their_own_container(opened)
     assert outside == 0
 
 
-def test_the_first_screen_shows_totals_what_differs_and_the_studies(opened):
-    box = opened[0].locator("#overview table").bounding_box()
-    assert 0 <= box["y"] < 400
-    assert opened[0].locator("#totals").bounding_box()["y"] < box["y"]
-    assert opened[0].locator(".exceptions .verdict.differs").bounding_box()["y"] < box["y"]
-    assert opened[0].locator("#overview .tally.short").last.bounding_box()["y"] < 800
+def test_the_first_screen_shows_totals_what_differs_and_a_grade_for_each_engine(opened):
+    page, _ = opened
+    page.evaluate(
+        "scrollTo(0, document.getElementById('glance').offsetTop)"
+    )  # below the contents on a telephone
+    top = page.locator("#glance").bounding_box()["y"]
+    table = page.locator("#engines table").bounding_box()
+    assert page.locator("#totals").bounding_box()["y"] < table["y"] < top + 500
+    assert page.locator(".exceptions .verdict.differs").bounding_box()["y"] < table["y"]
+    assert table["y"] + table["height"] < top + 800
+    assert page.locator("#engines .badge").all_inner_texts()[:2] == ["differs", "differs"]
 
 
-def test_a_claim_has_most_of_the_width_of_the_matrix_however_long_the_units(opened):
-    opened[0].evaluate(
-        """() => document.querySelectorAll('#matrix td[data-label]').forEach(
-               cell => cell.textContent = '± 1.2×10⁻⁹ m, rad, m/s, rad/s, or about as much')"""
-    )
-    assert overhang(opened[0]) <= 0
-    if opened[0].viewport_size["width"] > 720:  # stacked on a telephone
-        claim, engine = (
-            opened[0].locator(f"#matrix thead th:nth-child({i})").bounding_box()["width"] for i in (1, 3)
-        )
-        assert claim > 2.5 * engine
-
-
-def test_all_images_are_decoded(opened):
-    sizes = opened[0].evaluate("[...document.images].map(image => [image.complete, image.naturalWidth])")
-    assert len(sizes) == 2
-    assert all(complete and width > 0 for complete, width in sizes)
+def test_all_images_are_decoded_once_they_are_looked_at(opened):
+    page, _ = opened
+    page.evaluate("location.hash = '#verdicts'")
+    page.evaluate("[...document.images].forEach(image => { image.loading = 'eager'; })")
+    page.wait_for_function("[...document.images].every(image => image.complete)")
+    assert page.evaluate("[...document.images].map(image => image.naturalWidth > 0)") == [True, True]
 
 
 def test_nothing_is_asked_of_the_network(opened):
@@ -78,17 +72,142 @@ def test_text_is_large_enough_to_read(opened):
     assert smallest >= 11
 
 
-def test_links_of_the_overview_lead_to_the_studies(opened):
-    opened[0].locator("#overview tbody a").first.click()
-    assert opened[0].evaluate("location.hash") == "#verdicts"
-    assert -1 <= opened[0].locator("#verdicts").bounding_box()["y"] < 800
+CLAIM = "verdicts/the-equilibrium-is-lost-at-the-load-of-eq-5"
 
 
-def test_links_of_the_matrix_lead_to_the_claims(opened):
-    page = opened[0]
-    page.locator("#matrix tbody tr:not(.study) th a").nth(3).click()
-    assert page.evaluate("location.hash") == "#verdicts-4"
-    assert -1 <= page.locator("#verdicts-4").bounding_box()["y"] < 800
+def test_a_link_opens_what_it_leads_to(opened):
+    page, _ = opened
+    assert not page.locator("details[open]").count()
+    page.locator(".exceptions a").nth(1).click()
+    assert page.evaluate("location.hash") == f"#{CLAIM}"
+    table = page.locator(f'[data-claim="{CLAIM}"]')
+    assert table.is_visible()
+    assert -1 <= page.locator(f'[id="{CLAIM}"]').bounding_box()["y"] < 800
+    page.goto(page.url.partition("#")[0] + "#figure/fake-radius")
+    page.reload()
+    assert page.locator('[id="figure/fake-radius"]').is_visible()
+
+
+def test_the_way_from_an_engine_leads_to_its_claims(opened):
+    page, _ = opened
+    page.locator(".glance tbody a").first.click()
+    page.wait_for_url("**?engine=good#studies")
+    assert page.locator("#found").inner_text() == "5 of 6 claims"
+    assert page.locator("#studies").bounding_box()["y"] < 800
+
+
+def test_the_way_to_one_claim_opens_none_unasked(opened):
+    page, _ = opened
+    page.locator(".ways a", has_text="Check one claim").click()
+    assert page.locator("details[open]").count() == 0
+
+
+def test_without_a_script_all_can_be_read(browser, reported):
+    page = browser.new_page(java_script_enabled=False)
+    page.goto((reported[1] / "index.html").as_uri() + f"#{CLAIM}")
+    page.locator(f'[id="{CLAIM}"] > summary').click()  # the browser opens its study
+    assert page.locator(f'[data-claim="{CLAIM}"]').is_visible()
+    assert not page.locator("#find").is_visible()
+    page.close()
+
+
+def shown(page):
+    """Return the claims that a filter leaves."""
+    return page.evaluate("[...document.querySelectorAll('details.claim:not([hidden])')].map(one => one.id)")
+
+
+def test_filters_leave_what_is_asked_for_and_the_link_says_it(opened, reported):
+    page, _ = opened
+    everything = shown(page)
+    page.select_option("[name=verdict]", "differs")
+    assert shown(page) == [CLAIM]
+    assert page.locator("#found").inner_text() == f"1 of {len(everything)} claims"
+    assert "verdict=differs" in page.url
+    page.reload()
+    assert shown(page) == [CLAIM]
+    page.select_option("[name=engine]", "theory")
+    assert shown(page) == []
+    page.locator("[name=q]").press("Escape")
+    assert shown(page) == everything
+    assert "?" not in page.url
+
+
+@pytest.mark.parametrize(
+    "asked", ["q=semicircle", "q=release+eq.", "evidence=algebra", "equation=(4)", "study=agreement"]
+)
+def test_a_link_may_ask_for_claims(browser, reported, asked):
+    page = browser.new_page()
+    page.goto((reported[1] / "index.html").as_uri() + f"?{asked}")
+    assert len(shown(page)) == 1
+    page.close()
+
+
+def test_keys_lead_to_the_search_and_from_claim_to_claim(opened):
+    page, _ = opened
+    page.keyboard.press("/")
+    assert page.evaluate("document.activeElement.name") == "q"
+    page.keyboard.type("semicircle")
+    page.evaluate("document.activeElement.blur()")
+    for _ in range(2):
+        page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    assert page.locator("details.claim[open]").count() == 1
+
+
+def test_an_animation_plays_when_asked_and_pauses(opened):
+    page, _ = opened
+    page.evaluate("location.hash = '#figure/fake-motion'")
+    image, button = page.locator(".moves img"), page.locator(".moves .play")
+    assert image.get_attribute("src").endswith(".png")
+    button.click()
+    assert (image.get_attribute("src").endswith(".gif"), button.inner_text()) == (True, "Pause")
+    button.click()
+    assert (image.get_attribute("src").endswith(".png"), button.inner_text()) == (True, "Play")
+
+
+CONTRASTS = """() => {
+  const canvas = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+  const rgb = colour => {
+    canvas.clearRect(0, 0, 1, 1); canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1);
+    return [...canvas.getImageData(0, 0, 1, 1).data];
+  };
+  const light = ([r, g, b]) => [r, g, b].map(c => c / 255)
+    .map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = element => {
+    for (let it = element; it; it = it.parentElement) {
+      const colour = rgb(getComputedStyle(it).backgroundColor);
+      if (colour[3] === 255) return colour;
+    }
+    return [255, 255, 255, 255];
+  };
+  for (const one of document.querySelectorAll('details')) one.open = true;
+  return [...document.querySelectorAll('body *')]
+    .filter(e => [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim()) && e.offsetParent)
+    .map(e => {
+      const [a, b] = [light(rgb(getComputedStyle(e).color)), light(behind(e))].sort((x, y) => y - x);
+      return [(a + 0.05) / (b + 0.05), e.className, e.innerText.slice(0, 40)];
+    }).sort((x, y) => x[0] - y[0])[0];
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_from_its_paper(browser, reported, scheme):
+    page = browser.new_page(color_scheme=scheme)
+    page.goto((reported[1] / "index.html").as_uri())
+    contrast, *where = page.evaluate(CONTRASTS)
+    assert contrast >= 4.5, where
+    dark = page.evaluate("getComputedStyle(document.body).backgroundColor") != "rgb(255, 255, 255)"
+    assert dark == (scheme == "dark")
+    page.close()
+
+
+def test_tables_sections_and_fields_have_names(opened):
+    assert opened[0].evaluate(
+        """() => [...document.querySelectorAll('table')].every(table => table.caption)
+            && [...document.querySelectorAll('section, nav, input, select')].every(it => it.ariaLabel
+                || document.getElementById(it.getAttribute('aria-labelledby')))"""
+    )
 
 
 def test_the_print_fits_on_its_paper(browser, reported):
@@ -96,6 +215,8 @@ def test_the_print_fits_on_its_paper(browser, reported):
     page.goto((reported[1] / "index.html").as_uri())
     page.emulate_media(media="print")
     assert overhang(page) <= 0
-    assert page.locator("#matrix table").is_visible()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("#verdicts figure").first.is_visible()
+    assert not page.locator("#contents").is_visible()
     assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
     page.close()

@@ -87,10 +87,12 @@ def page_of(study, folder):
 
 def test_the_page_links_each_quote_to_its_claim_and_tells_its_error(tmp_path):
     page = page_of(STUDY, tmp_path)
-    first = re.escape(f'<a class="quote" href="#{STUDY.name}-1" title="± 1.0×10⁻⁷, one: The radius">')
+    first = re.escape(
+        f'<a class="quote" href="#{STUDY.name}/the-radius" title="± 1.0×10⁻⁷, one: The radius">'
+    )
     assert re.search(f"<li>It rests at {first}0.050</a> m\\.", page)
     assert re.search(f"<p>The radius is {first}0.0500000</a> m\\.", page)
-    assert f'<tbody id="{STUDY.name}-1">' in page
+    assert f'<details class="claim" id="{STUDY.name}/the-radius"' in page
 
 
 def test_a_finding_whose_number_was_not_measured_is_none(tmp_path):

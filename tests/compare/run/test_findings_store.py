@@ -52,7 +52,7 @@ def test_broken_files_are_computed_again(tmp_path):
     store.keep("fig03", "good", NOW, Findings(), 0.0)
     (tmp_path / "fig03--good.npz").write_bytes(b"")
     assert store.find("fig03", "good", NOW) is None
-    (tmp_path / "fig03--good.json").write_text("{")
+    (tmp_path / "fig03--good.json.xz").write_text("{")
     assert store.find("fig03", "good", NOW) is None
 
 

@@ -1,4 +1,5 @@
 import json
+import lzma
 import multiprocessing
 import os
 import signal
@@ -16,6 +17,7 @@ from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli import app as cli
+from compare.cli.measure.report import store_of
 from compare.engines import registry
 from compare.run import workers
 from compare.run.runner import Drawing, run
@@ -146,9 +148,10 @@ def test_resume_computes_only_what_is_not_there(tmp_path, count):
 
 def test_resume_does_not_take_what_another_version_found(tmp_path, count):
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
-    path = tmp_path / "counted--good.json"
-    content = json.loads(path.read_text())
-    path.write_text(json.dumps(content | {"stamp": content["stamp"].replace("numpy", "numpi")}))
+    path = tmp_path / "counted--good.json.xz"
+    content = json.loads(lzma.decompress(path.read_bytes()))
+    other = content | {"stamp": content["stamp"].replace("numpy", "numpi")}
+    path.write_bytes(lzma.compress(json.dumps(other).encode()))
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path, resume=True)
     assert count() == ["good", "good"]
 
@@ -191,7 +194,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
         start_new_session=True,
         preexec_fn=interruptible,
     )
-    wait_for(process, running, output / "data" / "unending--good.json")
+    wait_for(process, running, store_of(output) / "unending--good.json.xz")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
     out, err = process.communicate(timeout=PATIENCE)
     assert_that_the_rest_is_missing(process.returncode, out, err, output)

@@ -94,7 +94,7 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
-        components=("x", "y", "spin"),
+        components=("x in m", "y in m", "spin in rad/s"),
         data={"load": loads, "ring": found.value},
     )
 
@@ -250,7 +250,7 @@ def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
-        components=("x", "y", "spin"),
+        components=("x in m", "y in m", "spin in rad/s"),
         system=SIX,
         note=f"The spin differs from that on the continuous ring by {np.min(beside_ring):.1g} to "
         f"{np.max(beside_ring):.1g} rad/s.",
@@ -281,7 +281,7 @@ def corrected_26() -> Measured:
         value=places,
         error=np.abs(moved - places) + ROUNDING * RING.offset,
         at={"X0, μN": [f"{disc.offset:g} m, {disc.friction_force:.4g} N" for disc in discs]},
-        components=("x", "y", "spin"),
+        components=("x in m", "y in m", "spin in rad/s"),
         source=SOURCE_OF_GRID,
     )
 

@@ -17,9 +17,9 @@ CENTRED = f"{SOURCE}: 0 here"
 
 FROM_THE_CYCLE = f"{CENTRED}; start {START}"
 
-COMPONENTS = ("x", "y", "angle", "vx", "vy", "spin")
+COMPONENTS = ("x in m", "y in m", "angle in rad", "vx in m/s", "vy in m/s", "spin in rad/s")
 
-EXTREMES = ("least radius", "greatest radius", "least spin", "greatest spin")
+EXTREMES = ("least radius in m", "greatest radius in m", "least spin in rad/s", "greatest spin in rad/s")
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
 """From here no point of the contact comes to rest for 100 s (our choice)."""

@@ -225,7 +225,7 @@ def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
         value=found.value,
         error=float(np.max(found.error)) + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": times[1:]},
-        components=("x", "y", "angle", "vx", "vy", "spin"),
+        components=("x in m", "y in m", "angle in rad", "vx in m/s", "vy in m/s", "spin in rad/s"),
         system=scaled(disc),
         source=SOURCE.format("Fig. 11"),
     )

@@ -87,7 +87,7 @@ def _drift(contact: str, add_friction: Callable[..., Any]) -> Measured:
         predicted=total[0] / scale,
         value=total[-1] / scale,
         error=change / scale + ROUNDING,
-        components=("momentum in x", "momentum in y", "angular momentum"),
+        components=("momentum along x", "momentum along y", "angular momentum"),
         parameters={
             "friction_force": FRICTION,
             "contact_radius": RADIUS,

@@ -10,6 +10,19 @@ from compare.foreign.cases import CASES
 from compare.foreign.records import ERROR, STEPS, TOLERANCE, Recording, estimate
 from compare.studies.engines.foreign_engines.ladders import recorded
 
+OUR_FORCE = "our force"
+"""The setting of engines in which friction is none of theirs."""
+
+IN_SHORT = {
+    "slip": ("slides", "slip"),
+    "stick-slip": ("sticks 9 times", "stick"),
+    "whirl": ("whirls", "slip"),
+    "stuck": ("stays stuck", "stick"),
+    "release": ("lets go", "stick"),
+    "disc": ("disc, 6 points", "slip"),
+}
+"""Of each case a name and whether it slips or sticks."""
+
 
 def recorded_settings() -> tuple[Recorded, ...]:
     """Return what the report's matrix shows of each setting."""
@@ -41,4 +54,12 @@ def recorded_claims(recording: Recording) -> Recorded:
                 "friction, or a pin that lets go, would change.",
             )
         )
-    return Recorded(recording.engine, recording.setting, recording.version, recording.recorded, tuple(claims))
+    return Recorded(
+        recording.engine,
+        recording.setting,
+        recording.version,
+        recording.recorded,
+        tuple(claims),
+        own=recording.setting != OUR_FORCE,
+        cases={CASES[name].sentence: words for name, words in IN_SHORT.items()},
+    )

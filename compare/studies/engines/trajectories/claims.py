@@ -11,6 +11,7 @@ import numpy as np
 
 from compare.claims.error_estimates import TRUTH, Measurement, open_where_coarse, refined
 from compare.claims.measured import Measured
+from compare.claims.parameters import components_of
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
@@ -38,7 +39,7 @@ from compare.studies.engines.trajectories.theory import (
     times_of,
 )
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
-from reference_model.systems import COLUMNS, FloatArray, System
+from reference_model.systems import FloatArray
 
 STUDY = Study.beside(
     __file__,
@@ -134,7 +135,7 @@ def moves(engine: Engine, motion: Motion) -> Measured:
         error=bar,
         resolution=motion.resolution,
         at={"t in s": times},
-        components=names_of(motion.system),
+        components=components_of(motion.system),
         system=motion.system,
         source=motion.source,
         note=started(motion),
@@ -154,7 +155,13 @@ def moves(engine: Engine, motion: Motion) -> Measured:
 def kinematics(engine: Engine, motion: Motion) -> Measured | None:
     """Compare the change of places and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
-    return balance(engine, motion, lambda states: states[..., :half], lambda states: states[..., half:])
+    return balance(
+        engine,
+        motion,
+        lambda states: states[..., :half],
+        lambda states: states[..., half:],
+        components_of(motion.system)[:half],
+    )
 
 
 @of_bodies(
@@ -175,7 +182,11 @@ def momentum(engine: Engine, motion: Motion) -> Measured | None:
         [body.mass, body.mass, *([body.polar_inertia] if isinstance(body, DiscOnDisc) else [])]
     )
     return balance(
-        engine, motion, lambda states: inertia * states[..., half:], functools.partial(forces, body)
+        engine,
+        motion,
+        lambda states: inertia * states[..., half:],
+        functools.partial(forces, body),
+        ("along x in N s", "along y in N s", "of spin in N m s")[:half],
     )
 
 
@@ -184,6 +195,7 @@ def balance(
     motion: Motion,
     amounts: Callable[[FloatArray], FloatArray],
     rates: Callable[[FloatArray], FloatArray],
+    components: Sequence[str],
 ) -> Measured | None:
     """Compare what changes in each panel with the integral of what changes it; None where the motion sticks."""
     if motion.sticks:  # there friction holds, and is none of the contact's law
@@ -205,7 +217,7 @@ def balance(
         size=float(np.max(np.abs(amounts(by_reference(motion).states)))),
         resolution=motion.resolution,
         at={"from t in s": at_bounds(times_of(motion))[:-1]},
-        components=names_of(motion.system)[: found.value.shape[1]],
+        components=components,
         system=motion.system,
         source=motion.source,
         note=started(motion),
@@ -270,11 +282,6 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
 def started(motion: Motion) -> str:
     """Return from where, and until when, a motion is followed."""
     return f"To t = {motion.until:g} s from {motion.start}."
-
-
-def names_of(system: System) -> list[str]:
-    """Return the names of the components of a state."""
-    return [name for name, _ in COLUMNS[type(system)]]
 
 
 # ---------------------------------------------------------------- of other motions

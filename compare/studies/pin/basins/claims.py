@@ -90,7 +90,7 @@ def closes(engine: Engine) -> Measured:
         predicted=orbit.state,
         value=found.value,
         error=found.largest,
-        components=("x", "y", "vx", "vy"),
+        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
         note=f"Found by the map from release to release: period {orbit.period:.7g} s, of which it sticks "
         f"{orbit.stick_time:.5g} s; multipliers "
         f"{', '.join(f'{abs(value):.5g}' for value in orbit.multipliers)}.",
@@ -137,7 +137,7 @@ def returns(engine: Engine) -> Measured:
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
         value=found.value,
         error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
-        components=("period", "time of stick", "multiplier"),
+        components=("period in s", "time of stick in s", "multiplier in 1"),
     )
 
 

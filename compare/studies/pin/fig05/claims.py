@@ -11,6 +11,7 @@ import numpy as np
 from compare.claims.error_estimates import Measurement, open_where_coarse, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import components_of
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.fig05.parameters import (
@@ -75,7 +76,7 @@ def slides(engine: Engine) -> Measured:
         predicted=predicted,
         value=found.value,
         error=found.plus(np.abs(rougher - predicted)).largest,  # a single number may be right by chance
-        components=[f"{name} at t = {t:g} s" for t in SLIDING_TIMES for name in ("x", "y", "vx", "vy")],
+        components=[f"t = {t:g} s, {name}" for t in SLIDING_TIMES for name in components_of(FIG5)],
         source="Fig. 5; start (0.9, 0, 0, 0.9) is an assumption: near to the whirl, without sticking",
     )
 

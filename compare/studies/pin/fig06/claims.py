@@ -109,7 +109,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
         value=found.value,
         error=found.largest + miss * sharpness,
         at={"μN in N": loads},
-        components=("period", "least radius", "greatest radius"),
+        components=("period in s", "least radius in m", "greatest radius in m"),
         data={"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
     )
 
@@ -202,7 +202,7 @@ def cycle_exists(engine: Engine) -> Measured:
         value=found.value,
         error=found.largest + orbit.residual,
         at={"t in s": times},
-        components=("x", "y", "vx", "vy"),
+        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
         system=orbit.system,
         data={"cycle load": orbit.system.friction_force, "cycle extent": [np.min(radius), np.max(radius)]},
     )

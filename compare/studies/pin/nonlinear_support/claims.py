@@ -92,7 +92,7 @@ def circle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
         value=found.value,
         error=found.largest + miss,
         at=SUPPORTS | {"μN in N": loads},
-        components=("radius", "frequency"),
+        components=("radius in m", "frequency in rad/s"),
         data={"loads": loads, **radii},
     )
 
@@ -120,7 +120,7 @@ def orbit(engine: Engine) -> Measured:
         value=found.value,
         error=found.largest + max(one.residual for one in exact),
         at=SUPPORTS,
-        components=("period", "least radius", "greatest radius"),
+        components=("period in s", "least radius in m", "greatest radius in m"),
         parameters={"offset": OFFSET},
     )
 
@@ -184,7 +184,7 @@ def slides(engine: Engine) -> Measured:
         value=found.value,
         error=found.largest,
         at=SUPPORTS | {"t in s": SLIDING_TIMES},
-        components=("x", "y", "vx", "vy"),
+        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
         parameters={"offset": OFFSET},
     )
 
@@ -310,7 +310,7 @@ def disc_whirl(engine: Engine) -> Measured:
         predicted=[whirl.radius, whirl.frequency, whirl.spin],
         value=found.value,
         error=known(found.value, found.largest) + sharpness(DISC, whirl) * CONVERGED,
-        components=("radius", "frequency", "spin"),
+        components=("radius in m", "frequency in rad/s", "spin in rad/s"),
         system=DISC,
         source="Figs. 9 and 10 with X0 = 0; β, μN and C₃ are our choice",
     )

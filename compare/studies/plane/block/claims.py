@@ -63,7 +63,7 @@ STUDY = Study.beside(
     contact=True,
 )
 
-IN_SPACE = ("place along", "place across", "velocity along", "velocity across")
+IN_SPACE = ("place along in m", "place across in m", "velocity along in m/s", "velocity across in m/s")
 
 
 def moved(
@@ -233,7 +233,7 @@ def swings(engine: Engine) -> Measured:
         value=found.value[0] / unit,
         error=largest_by_component(found) / unit,
         at={"half swing": 0.5 * quarters[1:]},
-        components=IN_SPACE,
+        components=[name.replace("in m/s", "in k·μN/C").replace("in m", "in μN/C") for name in IN_SPACE],
         system=SWINGING,
         data={"half swings": 0.5 * quarters[1:], "way": found.value[0, :, 0] / length},
     )

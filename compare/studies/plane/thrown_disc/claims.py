@@ -30,12 +30,12 @@ from reference_model.systems import FloatArray
 STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, draw=draw, seconds=1.0, quick=True, contact=True)
 
 SEEN = (
-    "way along",
-    "way across",
-    "way of the rim",
-    "speed along",
-    "speed across",
-    "speed of the rim",
+    "way along in m",
+    "way across in m",
+    "way of the rim in m",
+    "speed along in m/s",
+    "speed across in m/s",
+    "speed of the rim in m/s",
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]

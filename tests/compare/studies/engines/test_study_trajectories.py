@@ -173,7 +173,7 @@ def test_pooled_claims_keep_every_number_and_its_own_error_bar():
         f"{mass:.3g}" for mass in sorted(motion.system.mass for motion in few)
     )
     ((*_, last),) = both.axes
-    assert last == f"ω = {few[1].system.disc_speed:g} rad/s, t = 3 s, vy"
+    assert last == f"ω = {few[1].system.disc_speed:g} rad/s, t = 3 s, vy in m/s"
 
 
 @pytest.mark.parametrize("name", MOTIONS)

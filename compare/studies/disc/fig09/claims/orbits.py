@@ -57,7 +57,14 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Meas
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
-        components=("period", "least radius", "greatest radius", "least spin", "greatest spin", "mean spin"),
+        components=(
+            "period in s",
+            "least radius in m",
+            "greatest radius in m",
+            "least spin in rad/s",
+            "greatest spin in rad/s",
+            "mean spin in rad/s",
+        ),
         data={"orbit load": loads, "orbit": found.value},
     )
 

@@ -36,7 +36,7 @@ def period_and_turn(engine: Engine) -> Measured:
         predicted=predicted_modulation()[0][:2],
         value=found.value[:2],
         error=found.error[:2],
-        components=("period", "turn"),
+        components=("period in s", "turn in rad"),
         data={"the continuous ring": _run(engine, OF_CYCLE).states},
     )
 

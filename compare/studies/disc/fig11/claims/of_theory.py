@@ -60,7 +60,7 @@ def shooting() -> Measured:
         predicted=predicted,
         value=found.value,
         error=found.error + error,
-        components=("period", "turn", *EXTREMES),
+        components=("period in s", "turn in rad", *EXTREMES),
         source=CENTRED,
     )
 

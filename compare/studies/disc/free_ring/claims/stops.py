@@ -50,7 +50,7 @@ def stops(engine: Engine, throws: Sequence[Throw] = INTEGRATED) -> Measured:
         value=found.value,
         error=found.largest + float(np.max(np.abs(predicted - nearly))),
         at={"throw": [throw.name for throw in throws]},
-        components=("time", "x", "y", "angle"),
+        components=("time in s", "x in m", "y in m", "angle in rad"),
     )
 
 

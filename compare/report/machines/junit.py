@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ET
 
 from compare.claims.claim import Claim
 from compare.report.matrix import Matrix, Row, State, state_of
-from compare.report.numbers import error_text
-from compare.report.worst import answers_text, in_short, worst
+from compare.report.worst import account, worst
 from compare.run.runner import Run
 from compare.run.workers import Failure
 
@@ -26,6 +25,7 @@ def junit(run: Run, matrix: Matrix) -> bytes:
         drawing = run.drawings.get(group.study.name)
         if isinstance(drawing, Failure):
             _error(_case(suite, group.study.name, "figures", "drawn"), drawing.reason, drawing)
+        _share_time(suite, run, group.study.name)
         _count(suite)
     _count(root)
     ET.indent(root)
@@ -38,20 +38,49 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
     for claim in cell.claims:
         case = _case(suite, study, column, row.sentence)
         properties = ET.SubElement(case, "properties")
-        said = {"kind": claim.kind, "evidence": cell.evidence, "implied by": cell.implied_by}
-        for name, value in said.items():
+        said = {
+            "id": row.identity,
+            "kind": claim.kind,
+            "evidence": cell.evidence,
+            "implied by": cell.implied_by,
+        }
+        for name, value in (said | _numbers(claim)).items():
             if value:
                 ET.SubElement(properties, "property", name=name, value=value)
         if state_of(claim) is State.DIFFERS:
-            ET.SubElement(case, "failure", message=_message(claim))
+            ET.SubElement(case, "failure", message=account(claim))
         elif state_of(claim) is State.INCONCLUSIVE:
-            ET.SubElement(case, "skipped", message=f"inconclusive: {_message(claim)}")
+            ET.SubElement(case, "skipped", message=f"inconclusive: {account(claim)}")
     if not cell.claims:
         case = _case(suite, study, column, row.sentence)
         if cell.state is State.FAILED:
             _error(case, cell.reason, run.outcomes.get((study, column)))
         else:
             ET.SubElement(case, "skipped", message=cell.reason)
+
+
+def _numbers(claim: Claim) -> dict[str, str]:
+    """Return the numbers of the element that decides, in full, and its unit."""
+    element = worst(claim)
+    numbers = {
+        "predicted": element.predicted,
+        "measured": element.measured,
+        "difference": element.difference,
+        "allowed": element.total,
+        "resolution": claim.budget.resolution,
+    }
+    return {"element": element.name, "unit": element.unit} | {name: repr(it) for name, it in numbers.items()}
+
+
+def _share_time(suite: ET.Element, run: Run, study: str) -> None:
+    """Share the time that a study took of an engine among its cases: no claim was timed by itself."""
+    cases: dict[str, list[ET.Element]] = {}
+    for case in suite.iter("testcase"):
+        cases.setdefault(case.get("classname", ""), []).append(case)
+    for name, own in cases.items():
+        seconds = run.seconds.get((study, name.removeprefix(f"{study}.")), 0.0)
+        for case in own:
+            case.set("time", f"{seconds / len(own):.3f}")
 
 
 def _case(suite: ET.Element, study: str, column: str, sentence: str) -> ET.Element:
@@ -64,22 +93,9 @@ def _error(case: ET.Element, reason: str, failure: object) -> None:
         error.text = "\n".join(failure.where)
 
 
-def _message(claim: Claim) -> str:
-    """Return the numbers of the element that decides."""
-    element = worst(claim)
-    if claim.answers:
-        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
-    unit = f" {claim.unit}" if claim.unit else ""
-    return (
-        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
-        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
-        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
-        f"largest difference of {element.count}: {error_text(element.largest_difference)}"
-    )
-
-
 def _count(element: ET.Element) -> None:
     cases = list(element.iter("testcase"))
     element.set("tests", str(len(cases)))
     for attribute, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
         element.set(attribute, str(sum(case.find(tag) is not None for case in cases)))
+    element.set("time", f"{sum(float(case.get('time', '0')) for case in cases):.3f}")

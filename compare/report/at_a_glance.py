@@ -1,0 +1,163 @@
+"""What the first screen says of each engine: a grade and a sentence, of claims and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from urllib.parse import quote
+
+from compare.claims.claim import GRADES, Evidence, Verdict
+from compare.claims.study import Recorded
+from compare.report.matrix import Cell, Matrix, RecordedMatrix, State
+from compare.report.numbers import error_text
+from compare.run.runner import Run
+
+OTHER_LAW = 10.0
+"""What another law of friction would change of a recorded motion, over the resolution of its claim."""
+
+ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
+"""Grades beside those of ``compare.claims.claim.Grade``: agrees with a larger error; differs; nothing agrees."""
+
+
+@dataclass(frozen=True)
+class Glance:
+    """One engine: ``cells`` are those of the recorded motions at its best setting, None where it simulates none.
+
+    ``where`` is the link to the place in the page that tells more.
+    """
+
+    engine: str
+    version: str
+    grade: str
+    sentence: str
+    where: str
+    cells: tuple[Cell | None, ...] = ()
+
+
+def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
+    """Return the engines of this run, then those that were recorded, each at its best setting."""
+    recorded = matrix.recorded[0] if matrix.recorded else None
+    found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
+    if recorded is not None:
+        others = {
+            engine: _best(settings)
+            for engine, settings in recorded.by_engine.items()
+            if engine not in run.engines
+        }
+        order = sorted(others, key=lambda name: (_RANKS.index(_grade(others[name])), _share(others[name])))
+        found += [_recorded(recorded, others[name], recorded.by_engine[name]) for name in order]
+    return tuple(found)
+
+
+_RANKS = [grade.value for grade in GRADES] + [ROUGH, OPEN, DIFFERS]
+"""Grades, the best first."""
+
+
+def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
+    """Return a heading for each recorded motion."""
+    first = recorded.settings[0]
+    return tuple(first.cases.get(claim.sentence, (claim.sentence, ""))[0] for claim in recorded.claims)
+
+
+def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:
+    """Return what is said of an engine of this run."""
+    counts = matrix.count(engine)
+    grades = matrix.grades(engine)
+    if counts[State.DIFFERS] or counts[State.FAILED]:
+        grade = DIFFERS
+    elif counts[State.AGREES]:
+        grade = next((one.value for one in reversed(GRADES) if grades[one]), ROUGH)
+    else:
+        grade = OPEN
+    independent = matrix.of_evidence(INDEPENDENT, engine)
+    agreeing = (
+        f"{independent[State.AGREES]} of {sum(independent.values())} claims agree on independent evidence"
+    )
+    gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
+    rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
+    settings = recorded.by_engine.get(engine, []) if recorded is not None else []
+    if settings and grade != DIFFERS:  # by the same motions as the others
+        grade = _grade(settings[0])
+    errors = _errors(settings[0]) if settings else ""
+    parts = [agreeing, *rest, *([errors] if errors else [])]
+    cells = recorded.cells(settings[0]) if recorded is not None and settings else ()
+    where = f"?engine={quote(engine)}#studies"  # its claims
+    return Glance(engine, run.versions.get(engine, ""), grade, f"{'; '.join(parts)}.", where, cells)
+
+
+INDEPENDENT: Evidence = "independent"
+
+
+def _verb(state: State, count: int) -> str:
+    return "differ" if state is State.DIFFERS and count > 1 else state.value
+
+
+def _best(settings: Sequence[Recorded]) -> Recorded:
+    """Return the setting with the fewest claims that differ or are open, and of these the one with most claims."""
+
+    def badness(setting: Recorded) -> tuple[int, int, float]:
+        agree = sum(claim.verdict is Verdict.AGREES for claim in setting.claims)
+        return len(setting.claims) - agree, -agree, _share(setting)
+
+    return min([setting for setting in settings if setting.own] or settings, key=badness)
+
+
+def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recorded]) -> Glance:
+    """Return what is said of a recorded engine: of its own friction's best setting, and of those that differ."""
+    cells = recorded.cells(best)
+    names = cases(recorded)
+    parts = [f"{best.setting}: {_errors(best)}" if best.setting else _errors(best)]
+    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to tell")):
+        listed = [name for name, cell in zip(names, cells, strict=True) if cell and cell.state is state]
+        parts += [f"{word}: {', '.join(listed)}"] if listed else []
+    lacking = [name for name, cell in zip(names, cells, strict=True) if cell is None]
+    parts += [f"cannot: {', '.join(lacking)}"] if lacking else []
+    wrong = [one.setting for one in settings if one is not best and _grade(one) == DIFFERS]
+    parts += [f"another law by {', '.join(wrong)}"] if wrong else []
+    return Glance(
+        best.engine,
+        best.version,
+        _grade(best),
+        f"{'; '.join(parts)}.",
+        f"#{recorded.study.name}-recorded",
+        cells,
+    )
+
+
+def _errors(setting: Recorded) -> str:
+    """Return the largest errors that agree, while it slips and where it sticks and lets go."""
+    words = []
+    for part, name in (("slip", "slipping"), ("stick", "in stick and release")):
+        claims = [
+            claim
+            for claim in setting.claims
+            if setting.cases.get(claim.sentence, ("", ""))[1] == part and claim.verdict is Verdict.AGREES
+        ]
+        if claims:
+            largest = max(claims, key=lambda claim: float(claim.difference.max()))
+            words.append(f"≤ {error_text(float(largest.difference.max()), 1)} {largest.unit} {name}")
+    return ", ".join(words)
+
+
+def _share(setting: Recorded) -> float:
+    """Return the largest error over what another law of friction would change, of those that agree."""
+    return max(
+        (
+            float(max(claim.difference.max(), claim.budget.total.max()))
+            / (OTHER_LAW * claim.budget.resolution)
+            for claim in setting.claims
+            if claim.verdict is Verdict.AGREES
+        ),
+        default=0.0,
+    )
+
+
+def _grade(setting: Recorded) -> str:
+    """Return the grade of a setting: how small its error is beside what another law of friction would change."""
+    verdicts = {claim.verdict for claim in setting.claims}
+    if Verdict.DIFFERS in verdicts:
+        return DIFFERS
+    if Verdict.AGREES not in verdicts:
+        return OPEN
+    share = _share(setting)
+    return next((grade.value for grade, largest in GRADES.items() if share <= largest), ROUGH)

@@ -1,0 +1,143 @@
+// Search, filters with their state in the link, keys, and animations that play when asked. All is readable without.
+(() => {
+  "use strict";
+  document.documentElement.classList.add("scripted");
+  const form = document.getElementById("find");
+  const found = document.getElementById("found");
+  const claims = [...document.querySelectorAll("details.claim")].map((element) => ({
+    element,
+    study: element.closest("details.study"),
+    text: element.textContent.toLowerCase() + " " + element.id,
+    equation: element.dataset.equation,
+    cells: element.dataset.cells.split(";").map((cell) => cell.split("|")),
+  }));
+  const studies = [...document.querySelectorAll("details.study")].map((element) => ({
+    element,
+    opened: false,
+    text: [...element.children].filter((child) => !child.matches("details")).map((child) => child.textContent)
+      .join(" ").toLowerCase(),
+  }));
+  const fields = [...form.elements].filter((field) => field.name);
+
+  function wanted() {
+    return Object.fromEntries(fields.filter((field) => field.value).map((field) => [field.name, field.value]));
+  }
+
+  function shows(claim, asked, words) {
+    if (asked.study && claim.study.id !== asked.study) return false;
+    if (asked.equation && claim.equation !== asked.equation) return false;
+    const cell = ([engine, verdict, evidence]) => (!asked.engine || engine === asked.engine)
+      && (!asked.verdict || verdict === asked.verdict) && (!asked.evidence || evidence === asked.evidence);
+    return claim.cells.some(cell) && words.every((word) => claim.text.includes(word));
+  }
+
+  function filter() {
+    const asked = wanted();
+    const words = (asked.q || "").toLowerCase().split(/\s+/).filter(Boolean);
+    const active = Object.keys(asked).length > 0;
+    const onlyWords = words.length > 0 && Object.keys(asked).length === 1;
+    const within = new Map();
+    let count = 0;
+    for (const claim of claims) {
+      const shown = shows(claim, asked, words);
+      claim.element.hidden = !shown;
+      count += shown;
+      within.set(claim.study, (within.get(claim.study) || 0) + shown);
+    }
+    for (const study of studies) {
+      const told = onlyWords && words.every((word) => study.text.includes(word));
+      study.element.hidden = active && !within.get(study.element) && !told;
+      if (active && within.get(study.element) && count <= 120 && !study.element.open) {
+        study.element.open = study.opened = true;
+      } else if (!active && study.opened) {
+        study.element.open = study.opened = false;
+      }
+    }
+    found.textContent = active ? `${count} of ${claims.length} claims` : "";
+    for (const heading of document.querySelectorAll("h3.section")) {
+      let next = heading.nextElementSibling;
+      let any = false;
+      for (; next && next.matches("details.study"); next = next.nextElementSibling) any = any || !next.hidden;
+      heading.hidden = !any;
+    }
+    return asked;
+  }
+
+  function remember() {
+    const state = new URLSearchParams(filter()).toString();
+    try {
+      history.replaceState(null, "", location.pathname + (state ? `?${state}` : "") + location.hash);
+    } catch {
+      // a browser that keeps the address of files as it is
+    }
+    show();
+  }
+
+  function show() {
+    const beside = matchMedia("screen and (min-width: 901px)").matches;
+    if (beside && Object.keys(wanted()).length) document.getElementById("studies").scrollIntoView();
+  }
+
+  function reveal() {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!target) return;
+    if (target === form) return void form.elements.q.focus();
+    for (let it = target; it; it = it.parentElement) {
+      it.hidden = false;
+      if (it.matches("details")) it.open = true;
+    }
+    const own = target.matches("section") ? target.querySelectorAll(":scope > details") : [];
+    if (own.length === 1) own[0].open = true;
+    target.scrollIntoView();
+  }
+
+  function step(by) {
+    const shown = [...document.querySelectorAll("details.study > summary, details.study[open] > details.claim > summary")]
+      .filter((one) => one.offsetParent !== null);
+    const at = shown.indexOf(document.activeElement);
+    const next = shown[Math.min(Math.max(at + by, 0), shown.length - 1)];
+    if (next) next.focus();
+  }
+
+  for (const [name, value] of new URLSearchParams(location.search)) {
+    if (form.elements[name]) form.elements[name].value = value;
+  }
+  form.addEventListener("input", remember);
+  form.addEventListener("submit", (event) => event.preventDefault());
+  addEventListener("hashchange", reveal);
+  addEventListener("keydown", (event) => {
+    const typing = event.target.matches("input, select");
+    if (event.key === "Escape" && wanted() && typing) {
+      form.reset();
+      remember();
+    } else if (typing || event.ctrlKey || event.metaKey || event.altKey) {
+      return;
+    } else if (event.key === "/") {
+      event.preventDefault();
+      form.elements.q.focus();
+    } else if (event.key === "j" || event.key === "k") {
+      step(event.key === "j" ? 1 : -1);
+    }
+  });
+  for (const link of document.querySelectorAll("a.play")) {
+    const image = link.closest("figure").querySelector("img");
+    const still = image.getAttribute("src");
+    link.setAttribute("role", "button");
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      const plays = image.getAttribute("src") !== still;
+      image.src = plays ? still : link.getAttribute("href");
+      link.textContent = plays ? "Play" : "Pause";
+    });
+  }
+  let closed = [];
+  addEventListener("beforeprint", () => {
+    closed = [...document.querySelectorAll("details.study:not([open])")];
+    for (const one of closed) one.open = true;
+    for (const image of document.images) image.loading = "eager";
+  });
+  addEventListener("afterprint", () => closed.forEach((one) => { one.open = false; }));
+  filter();
+  if (location.hash) reveal();
+  else show();
+})();

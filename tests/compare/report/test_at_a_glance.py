@@ -1,0 +1,118 @@
+"""A grade and a sentence for each engine, from verdicts and error bars and nothing else."""
+
+from dataclasses import replace
+
+import pytest
+from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS
+
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.study import Recorded
+from compare.report.at_a_glance import cases, glances
+from compare.report.matrix import matrix
+from compare.run.runner import Run, run
+
+SLIDES, STICKS, TURNS = "A pin slides", "A pin sticks", "A disc turns"
+IN_SHORT = {SLIDES: ("slides", "slip"), STICKS: ("sticks", "stick"), TURNS: ("disc", "slip")}
+RESOLUTION = 0.01
+"""In m: another law of friction changes ten times as much."""
+
+
+def setting(engine, name, own=True, **off):
+    """Return what was recorded of a setting: how far off it is in m, by the motion, and half of that as error bar."""
+    words = {"slides": SLIDES, "sticks": STICKS, "disc": TURNS}
+    claims = tuple(
+        Claim(
+            words[motion],
+            equation="",
+            engine=f"{engine}, {name}",
+            predicted=0.0,
+            measured=difference,
+            budget=ErrorBudget(error, resolution=RESOLUTION),
+            parameters={},
+            source="a test",
+            unit="m",
+        )
+        for motion, (difference, error) in off.items()
+    )
+    return Recorded(engine, name, "1.2", "2026-01-31", claims, own=own, cases=IN_SHORT)
+
+
+FINE = {"slides": (1e-6, 2e-6), "sticks": (3e-6, 4e-6), "disc": (1e-6, 1e-6)}
+WRONG = FINE | {"slides": (0.5, 1e-6)}
+
+
+def recorded():
+    return (
+        setting("ours", "", **dict.fromkeys(FINE, (1e-12, 1e-12))),
+        setting("Wrong", "box", **WRONG),
+        setting("Kite", "box", **WRONG),
+        setting("Kite", "a user's", own=False, **dict.fromkeys(FINE, (0.0, 0.0))),
+        setting("Kite", "cone", **FINE),
+        setting("Pins", "cone", slides=(1e-3, 2e-3), sticks=(1e-3, 9e-3)),
+        setting("Open", "cone", **FINE | {"disc": (0.0, 0.5)}),
+        setting("Blind", "cone", slides=(0.0, 0.5)),
+    )
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory):
+    study = replace(AGREEMENT, recorded=recorded)
+    result = run((study, VERDICTS), (GOOD, FAILING), folder=tmp_path_factory.mktemp("seen"))
+    result.versions["good"] = "3"
+    return result
+
+
+@pytest.fixture(scope="module")
+def found(seen):
+    return {one.engine: one for one in glances(seen, matrix(seen))}
+
+
+def test_engines_of_the_run_come_first_then_the_recorded_ones_the_best_before_the_others(found):
+    assert list(found) == ["good", "failing", "ours", "Kite", "Open", "Pins", "Blind", "Wrong"]
+
+
+def test_a_grade_is_the_largest_error_over_what_another_law_would_change(found):
+    grades = {name: one.grade for name, one in found.items()}
+    assert grades["ours"] == "exact"  # 1e-12 of 0.1 m
+    assert grades["Kite"] == "fine"  # 4e-6 of 0.1 m
+    assert grades["Pins"] == "rough"  # 9e-3 of 0.1 m, an error bar
+    assert grades["Blind"] == "open"
+    assert (grades["Wrong"], grades["good"], grades["failing"]) == ("differs",) * 3
+
+
+def test_the_best_setting_of_the_engines_own_friction_speaks_for_it(found):
+    assert found["Kite"].sentence == (
+        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another law by box."
+    )
+    assert found["Kite"].where == "#agreement-recorded"
+
+
+def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):
+    assert found["Pins"].sentence == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; cannot: disc."
+    assert found["Open"].sentence.endswith("; too coarse to tell: disc.")
+    assert "; differs: slides" in found["Wrong"].sentence
+    assert found["Pins"].cells[2] is None
+
+
+def test_an_engine_of_the_run_is_told_by_its_claims(found):
+    assert found["good"].sentence == "3 of 5 claims agree on independent evidence; 1 differs; 1 inconclusive."
+    assert found["good"].version == "3"
+    assert found["failing"].sentence == "1 of 1 claims agree on independent evidence; 4 failed."
+
+
+def test_one_that_was_recorded_too_has_the_grade_of_its_motions(seen):
+    one = Run(
+        (seen.studies[0],), ("ours",), outcomes={("agreement", "ours"): seen.outcomes["agreement", "good"]}
+    )
+    (ours, *_) = glances(one, matrix(one))
+    assert (ours.grade, len(ours.cells)) == ("exact", 3)
+    assert cases(matrix(one).recorded[0]) == ("slides", "sticks", "disc")
+
+
+def test_without_recorded_motions_the_coarsest_claim_grades(tmp_path):
+    plain = replace(AGREEMENT, recorded=None)
+    one = run((plain,), (GOOD,), folder=tmp_path)
+    (good,) = glances(one, matrix(one))
+    assert (good.grade, good.cells) == ("exact", ())
+    nothing = Run((plain,), ("good",))
+    assert glances(nothing, matrix(nothing))[0].grade == "open"

@@ -1,0 +1,168 @@
+"""What parts two reports, by their files, and the exit status of ``friction-discs diff``."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, measure_verdicts
+
+from compare.claims.study import Findings
+from compare.cli.app import status
+from compare.report.machines.results_json import read_results
+from compare.report.write import write_report
+from compare.run.runner import run
+
+PLACES = "the pin comes to rest at the point of eq. (3)"
+
+
+def written(folder, by_hand=measure_verdicts, studies=(), engine=GOOD):
+    """Return the folder of a report of one study, made by hand, and of ``studies``."""
+    study = replace(VERDICTS, by_hand=by_hand, theory=None, animations=None, figures={})
+    write_report(run((study, *studies), (engine,), folder=folder / "data"), folder)
+    return folder
+
+
+def with_first(**changes):
+    """Measure as always, but for the first two claims: numbers beside the old ones."""
+
+    def measure(engine):
+        first, second, *others = measure_verdicts(engine).claims
+        parts = [
+            replace_measured(one, changes[name]) if name in changes else one
+            for name, one in (("first", first), ("second", second))
+        ]
+        return Findings((*parts, *others))
+
+    return measure
+
+
+def replace_measured(one, measured):
+    return claim(
+        one.sentence, one.engine, one.predicted, measured, one.budget.numerical, equation=one.equation
+    )
+
+
+@pytest.fixture(scope="module")
+def old(tmp_path_factory):
+    return written(tmp_path_factory.mktemp("old"))
+
+
+def told(capsys, *arguments):
+    """Return the exit status and the lines of a comparison."""
+    capsys.readouterr()
+    return status(["diff", *map(str, arguments)], None), capsys.readouterr().out.splitlines()
+
+
+def test_nothing_parts_a_report_from_itself(old, capsys):
+    assert told(capsys, old, old) == (0, ["0 worse, 0 moved, 0 gone, 0 new, 0 better"])
+
+
+def test_what_stays_within_both_error_bars_has_not_moved(old, tmp_path, capsys):
+    new = written(tmp_path, with_first(first=0.08 + 3e-11 - 0.99e-10))
+    assert told(capsys, old, new / "results.json")[0] == 0
+
+
+def test_what_leaves_them_has_moved_though_both_agree(old, tmp_path, capsys):
+    verdicts = measure_verdicts(GOOD).claims
+    semicircle = verdicts[1].measured.copy()
+    semicircle[4] -= 5e-10  # allowed are 2e-10 of each report
+    wide = replace_measured(verdicts[1], semicircle)
+    new = written(tmp_path, lambda engine: Findings((verdicts[0], wide_as_it(wide), *verdicts[2:])))
+    found, lines = told(capsys, old, new)
+    assert found == 1
+    assert lines[0].startswith(
+        "moved: verdicts/equilibria-of-all-loads-lie-on-the-semicircle good: measured "
+    )
+    assert "by 5.0×10⁻¹⁰ m, allowed 4.4×10⁻¹⁰" in lines[0]
+    assert lines[-1] == "0 worse, 1 moved, 0 gone, 0 new, 0 better"
+
+
+def wide_as_it(one):
+    """Return a claim that allows what it is off by, a little."""
+    predicted = one.predicted.copy()
+    predicted[4] = one.measured[4]
+    return claim(one.sentence, one.engine, predicted, one.measured, 2.4e-10, equation=one.equation)
+
+
+def test_a_number_that_is_missing_has_moved(old, tmp_path, capsys):
+    new = written(tmp_path, with_first(first=np.nan))
+    found, lines = told(capsys, old, new)
+    assert (found, lines[0].partition(":")[0]) == (1, "worse")
+
+
+def test_verdicts_get_worse_and_better(old, tmp_path, capsys):
+    new = written(tmp_path, with_first(first=0.09))
+    found, lines = told(capsys, old, new)
+    assert found == 1
+    assert lines[0].startswith(
+        "worse: verdicts/the-pin-comes-to-rest-at-the-point-of-eq-3 good: agrees before, "
+    )
+    found, lines = told(capsys, new, old)
+    assert (found, lines[-1]) == (0, "0 worse, 0 moved, 0 gone, 0 new, 1 better")
+
+
+def test_what_is_gone_counts_and_what_is_new_does_not(old, tmp_path, capsys):
+    new = written(tmp_path, lambda engine: Findings(measure_verdicts(engine).claims[1:]), (AGREEMENT,))
+    found, lines = told(capsys, old, new)
+    assert (found, lines[-1]) == (1, "0 worse, 0 moved, 1 gone, 2 new, 0 better")
+    assert "gone: verdicts/the-pin-comes-to-rest-at-the-point-of-eq-3 good: " in lines[0]
+    found, lines = told(capsys, new, old)
+    assert lines[0] == "gone: agreement good: is no part of the new report"
+
+
+def test_a_study_that_fails_is_told_once(old, tmp_path, capsys):
+    new = written(tmp_path, engine=replace(FAILING, name="good"))
+    found, lines = told(capsys, old, new)
+    assert found == 1
+    assert [line.partition(": the")[0] for line in lines[:-1]] == [
+        "worse: verdicts good: was finished, failed",
+    ]
+
+
+def test_known_failures_do_not_count(old, tmp_path, capsys):
+    new, known = written(tmp_path, with_first(first=0.09)), tmp_path / "known.json"
+    assert told(capsys, old, new, "--write-baseline", known)[0] == 1
+    listed = json.loads(known.read_text(encoding="utf-8"))["known"]
+    assert [one["claim"].partition("/")[2][:11] for one in listed] == ["the-equilib", "the-pin-com"]
+    found, lines = told(capsys, old, new, "--baseline", known)
+    assert (found, lines[0].partition(":")[0]) == (0, "worse (known)")
+    _, lines = told(capsys, new, old, "--baseline", known)
+    assert lines[1].startswith("no longer fails: verdicts/the-pin-comes-to-rest")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (None, "can't read"),
+        ("{}", "is no baseline"),
+        ("[", "is no baseline"),
+        ('{"format": 1, "version": 1}', "is no"),
+    ],
+)
+def test_what_is_no_baseline_is_refused(old, tmp_path, capsys, content, sentence):
+    known = tmp_path / "known.json"
+    if content is not None:
+        known.write_text(content, encoding="utf-8")
+    assert status(["diff", str(old), str(old), "--baseline", str(known)], None) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_reports_with_other_numbers_are_not_compared_one_by_one(old, tmp_path, capsys):
+    new = written(tmp_path, with_first(first=0.08))
+    content = json.loads((new / "results.json").read_text(encoding="utf-8"))
+    assert read_results(new)["studies"][0]["claims"][0]["places"] == [("", "m")]
+    shorter = written(
+        tmp_path / "shorter",
+        lambda engine: Findings(
+            tuple(
+                claim(one.sentence, engine.name, one.predicted[:5], one.measured[:5], 2e-10, equation="(4)")
+                if one.predicted.size > 1
+                else one
+                for one in measure_verdicts(engine).claims
+            )
+        ),
+    )
+    found, lines = told(capsys, old, shorter)
+    assert (found, lines[0].endswith("they can't be compared one by one")) == (1, True)
+    assert content["format"] == "friction-discs results"

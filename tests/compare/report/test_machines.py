@@ -1,0 +1,125 @@
+"""What programs read of a report: results by their published schema, tables with every number, to the last bit."""
+
+import json
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import jsonschema
+import numpy as np
+import pytest
+from fake_studies import AGREEMENT, GOOD, VERDICTS, claim, measure_verdicts
+
+from compare.claims.as_json import claim_from_json
+from compare.claims.study import Findings
+from compare.report.machines import arrays
+from compare.report.machines.results_json import read_results, schema
+from compare.report.write import write_report
+from compare.run.runner import run
+
+CHECKED = jsonschema.Draft202012Validator(schema())
+
+
+@pytest.fixture
+def results(reported):
+    return json.loads((reported[1] / "results.json").read_text(encoding="utf-8"))
+
+
+def test_results_are_as_the_published_schema_says(results):
+    jsonschema.Draft202012Validator.check_schema(schema())
+    CHECKED.validate(results)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda it: it.pop("version"),
+        lambda it: it.update(version=2),
+        lambda it: it["studies"][0]["claims"][0].update(verdict="agreed"),
+        lambda it: it["studies"][0]["claims"][0].update(resolution="wide"),
+        lambda it: it["studies"][0]["claims"][0]["decided_by"].pop("unit"),
+        lambda it: it["stamp"].pop("commit"),
+    ],
+)
+def test_the_schema_refuses_other_files(results, wrong):
+    wrong(results)
+    assert not CHECKED.is_valid(results)
+
+
+def test_it_says_what_was_measured_with_what(results):
+    assert results["engine_versions"] == {"good": "", "failing": ""}
+    assert all(results["stamp"][name] for name in ("commit", "processor", "exudyn"))
+    assert "inf" not in results["stamp"].values()
+
+
+def test_all_numbers_of_a_claim_come_back_from_its_table(reported):
+    found = read_results(reported[1])["studies"][0]["claims"]
+    claims = {one["sentence"]: claim_from_json(one) for one in found if one["engine"] == "good"}
+    for made in measure_verdicts(GOOD).claims:
+        back = claims[made.sentence]
+        np.testing.assert_array_equal(back.predicted, made.predicted)
+        np.testing.assert_array_equal(back.measured, made.measured)
+        np.testing.assert_array_equal(
+            back.budget.numerical, np.broadcast_to(made.budget.numerical, made.predicted.shape)
+        )
+        assert back.verdict is made.verdict
+
+
+def mixed(engine):
+    """A claim with numbers of two units, one of them missing, which an engine makes twice."""
+    parts = {"unit": "m, rad", "axes": (("a", "b"), ("x in m", "angle in rad")), "size": [1.0, np.inf]}
+    values = np.array([[0.1, np.nan], [0.3, 1.0 / 3.0]])
+    return Findings(
+        tuple(claim("Both", engine.name, values, values + off, 0.5, **parts) for off in (0.0, 0.1))
+    )
+
+
+@pytest.mark.parametrize("large", [0, 10**9], ids=["compressed", "plain"])
+def test_a_table_says_unit_and_place_of_each_number(tmp_path, monkeypatch, large):
+    monkeypatch.setattr(arrays, "LARGE", large)
+    study = replace(VERDICTS, name="mixed", by_hand=mixed, theory=None, animations=None, figures={})
+    write_report(run((study,), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    first, second = read_results(tmp_path / "results.json")["studies"][0]["claims"]
+    assert (first["measurement"], second["measurement"]) == (1, 2)
+    assert first["arrays"] == second["arrays"] == "arrays/mixed/both.csv" + (".xz" if large == 0 else "")
+    np.testing.assert_array_equal(claim_from_json(second).measured, [[0.2, np.nan], [0.4, 1.0 / 3.0 + 0.1]])
+    assert first["size"][0][0] == 1.0
+    if large:
+        table = (tmp_path / first["arrays"]).read_text(encoding="utf-8").splitlines()
+        assert table[4] == f'good,1,3,"b, angle in rad",rad,{1 / 3!r},{1 / 3!r},0.5,inf'
+
+
+def test_a_badge_counts_what_agrees_and_is_red_where_something_differs(reported, tmp_path):
+    badge = ET.fromstring((reported[1] / "badge.svg").read_text(encoding="utf-8"))
+    assert badge.get("aria-label") == "friction-discs: 5 of 11 agree"
+    colours = [one.get("fill") for one in badge.iter() if one.tag.endswith("path")]
+    assert colours == ["#9c1c1c"]
+    write_report(run((AGREEMENT,), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    assert "#1d5c38" in (tmp_path / "badge.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (None, "can't read .*: No such file"),
+        ("{", "is no results.json of a report"),
+        ("[]", "is no results.json of a report"),
+        ('{"format": "friction-discs results", "version": 7}', "has version 7: this program reads version 1"),
+    ],
+)
+def test_another_file_is_refused(tmp_path, content, sentence):
+    if content is not None:
+        (tmp_path / "results.json").write_text(content, encoding="utf-8")
+    with pytest.raises(ValueError, match=sentence):
+        read_results(tmp_path)
+
+
+def test_a_table_of_another_report_is_refused(reported, tmp_path):
+    (tmp_path / "results.json").write_bytes((reported[1] / "results.json").read_bytes())
+    with pytest.raises(ValueError, match=r"can't read .*, a table of .*: No such file"):
+        read_results(tmp_path)
+    one = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"][0]
+    table = tmp_path / one["arrays"]
+    table.parent.mkdir(parents=True)
+    table.write_text(",".join(arrays.COLUMNS) + "\n", encoding="utf-8")
+    with pytest.raises(ValueError, match="has 0 numbers of theory"):
+        read_results(tmp_path)
