@@ -90,8 +90,7 @@ def follow(
     """
     tracer = _Tracer(equations, limits, np.asarray(scales, dtype=float), step)
     near = np.asarray(start, dtype=float) / tracer.scales
-    first, _ = tracer.corrected(near, tracer.tangent(near))
-    tangent = tracer.tangent(first)
+    first, tangent, _ = tracer.corrected(near, tracer.tangent(near))
     points, last = tracer.walk(first, tangent)
     if last is None:
         return Curve(np.array(points) * tracer.scales, ())
@@ -115,8 +114,7 @@ class _Tracer:
         points, tangent, step = [first], direction, self.step / 4.0
         while step > SHORTEST:
             try:
-                point, iterations = self.corrected(points[-1] + step * tangent, tangent)
-                turned = self.tangent(point)
+                point, turned, iterations = self.corrected(points[-1] + step * tangent, tangent)
             except (ContinuationError, ArithmeticError, ValueError, np.linalg.LinAlgError):
                 step /= 2.0
                 continue
@@ -150,26 +148,31 @@ class _Tracer:
         first = int(np.argmin(shares))
         return between(shares[first]), violated[first]
 
-    def corrected(self, near: FloatArray, across: FloatArray) -> tuple[FloatArray, int]:
-        """Return the point of the curve in the plane through ``near`` across a vector, after how many iterations."""
+    def corrected(self, near: FloatArray, across: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Return the point of the curve in the plane through ``near`` across a vector, the tangent, and iterations."""
 
         def excess(point: FloatArray) -> FloatArray:
             return np.append(self.equations(point * self.scales), across @ (point - near))
 
         point, converged = near, False
         for iteration in range(1, ITERATIONS + 1):
-            correction = np.linalg.solve(_slopes(excess, point), excess(point))
+            if not converged:  # the last slopes are off by less than CONVERGED, the tangent and a correction too
+                slopes = _slopes(excess, point)
+            correction = np.linalg.solve(slopes, excess(point))
             point = point - correction
             if converged:
-                return point, iteration - 1
+                return point, _along(slopes[:-1]), iteration - 1
             converged = bool(np.linalg.norm(correction) < CONVERGED)
         raise ContinuationError(f"Newton's method finds no point of the curve near {near * self.scales}")
 
     def tangent(self, point: FloatArray) -> FloatArray:
         """Return the unit vector along the curve, in one of its two directions."""
-        slopes = _slopes(lambda unknowns: self.equations(unknowns * self.scales), point)
-        slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
-        return np.asarray(np.linalg.svd(slopes)[2][-1])
+        return _along(_slopes(lambda unknowns: self.equations(unknowns * self.scales), point))
+
+
+def _along(slopes: FloatArray) -> FloatArray:
+    """Return the unit vector, shape (d,), in whose direction nothing of ``slopes``, shape (d − 1, d), changes."""
+    return np.asarray(np.linalg.svd(slopes / np.linalg.norm(slopes, axis=1, keepdims=True))[2][-1])
 
 
 def _slopes(function: Function, point: FloatArray) -> FloatArray:

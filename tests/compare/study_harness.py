@@ -146,10 +146,9 @@ class StudyTests:
                 continue
             figures = self.study.draw(present)
             assert set(figures) <= set(self.study.figures)
-            if case is alone or case is everything:
+            if case is everything:
                 for figure in figures.values():
-                    if case is alone:
-                        figure.set_layout_engine("none")  # once is enough of what takes longest
+                    figure.set_layout_engine("none")  # tests of reports and of saved figures lay out
                     figure.draw_without_rendering()  # all but the pixels, a quarter of the time
         assert set(self.study.figures) >= set(figures) > set() or not self.study.figures
 

@@ -80,7 +80,7 @@ def run(tolerance: float) -> FloatArray:
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # every step
     numerical = settings.timeIntegration
-    numerical.endTime, numerical.numberOfSteps, numerical.verboseMode = UNTIL, 1500, 0
+    numerical.endTime, numerical.numberOfSteps, numerical.verboseMode = UNTIL, 1125, 0
     numerical.absoluteTolerance, numerical.relativeTolerance = tolerance, 0.0
     breaks = sorted({*HAND_OVER, *TIMES[:-1].tolist()})
     solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=breaks)

@@ -25,7 +25,7 @@ LOAD = 4500.0
 HAND_OVER = (0.2, 0.5)
 """In s: the first clutch opens and the second closes, both by straight lines in this time."""
 
-UNTIL = 1.2
+UNTIL = 0.9
 """In s: the second clutch has stuck for a while."""
 
 START = 200.0
@@ -34,7 +34,7 @@ START = 200.0
 EPSILON = 2e-2
 """In m/s, 0.29 rad/s: the law is the same in both models, whatever ε is, and explicit steps are limited by it."""
 
-DENSE = np.linspace(0.0, UNTIL, 241).round(3)
+DENSE = np.linspace(0.0, UNTIL, 181).round(3)
 """When SciPy's states are asked for, in s."""
 
 OFTEN = 10
