@@ -97,10 +97,10 @@ class _Rotors:
         return np.column_stack((data[0], *(of_one[:, 1] for of_one in data[1:])))
 
 
-def with_our_contact(epsilon: float, step: float | None = None) -> Run:
-    """Return the run with ``add_ring_friction`` at ε in m/s, explicit or by implicit steps of ``step`` in s.
+def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
+    """Return the run to ``until`` in s with ``add_ring_friction`` at ε in m/s, explicit or by steps of ``step`` in s.
 
-    It ends, and goes on, at the times of ``SHOWN`` too: speeds there are the run's own, and not interpolated.
+    Such steps are implicit. It ends, and goes on, at the times of ``SHOWN`` too: speeds there are the run's own, and not interpolated.
     """
     import exudyn as exu
 
@@ -117,10 +117,11 @@ def with_our_contact(epsilon: float, step: float | None = None) -> Run:
             static_ratio=STATIC_RATIO,
             regularisation=epsilon,
         )
-    settings = rotors.settings(step or 1e-3)
+    settings = rotors.settings(step or 1e-3, end=until)
     settings.timeIntegration.absoluteTolerance, settings.timeIntegration.relativeTolerance = TOLERANCE, 0.0
     solver = exu.DynamicSolverType.GeneralizedAlpha if step else exu.DynamicSolverType.DOPRI5
-    solve_dynamic(rotors.mbs, settings, solver, breaks=sorted({*BREAKS, *SHOWN.tolist()}))
+    breaks = sorted(time for time in {*BREAKS, *SHOWN.tolist()} if time < until)
+    solve_dynamic(rotors.mbs, settings, solver, breaks=breaks)
     found = rotors.recorded()
     return Run(found[:, 0], found[:, 1:])
 
