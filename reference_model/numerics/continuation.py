@@ -149,14 +149,14 @@ class _Tracer:
         return between(shares[first]), violated[first]
 
     def corrected(self, near: FloatArray, across: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Return the point of the curve in the plane through ``near`` across a vector, the tangent, and iterations."""
+        """Return the point of the curve in the plane through ``near`` across a vector, tangent and iterations."""
 
         def excess(point: FloatArray) -> FloatArray:
             return np.append(self.equations(point * self.scales), across @ (point - near))
 
         point, converged = near, False
         for iteration in range(1, ITERATIONS + 1):
-            if not converged:  # the last slopes are off by less than CONVERGED, the tangent and a correction too
+            if not converged:  # the last ones are off by no more than CONVERGED, as is the tangent by them
                 slopes = _slopes(excess, point)
             correction = np.linalg.solve(slopes, excess(point))
             point = point - correction

@@ -100,7 +100,8 @@ class _Rotors:
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
     """Return the run to ``until`` in s with ``add_ring_friction`` at ε in m/s, explicit or by steps of ``step`` in s.
 
-    Such steps are implicit. It ends, and goes on, at the times of ``SHOWN`` too: speeds there are the run's own, and not interpolated.
+    Such steps are implicit. It ends, and goes on, at the times of ``SHOWN`` too: speeds there are the run's own, and
+    not interpolated.
     """
     import exudyn as exu
 
