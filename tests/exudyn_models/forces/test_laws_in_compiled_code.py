@@ -26,6 +26,12 @@ def all_of_them(time, radius, slip_speed, relative_spin):
     return 2.0 + time + 3.0 * radius + 5.0 * slip_speed + math.sin(relative_spin)
 
 
+# Compiled once for all pairs of bodies.
+TWO_BY_NUMBA, OF_TIME_BY_NUMBA = numba.njit(lambda radius: 2), numba.njit(lambda time: 1.0 + time)
+LAW = {"friction_coefficient": stribeck, "normal_load": all_of_them}
+LAW_BY_NUMBA = {name: numba.njit(function) for name, function in LAW.items()}
+
+
 def added(kinds, **law):
     mbs = exu.SystemContainer().AddSystem()
     nodes = [
@@ -52,28 +58,25 @@ def test_a_law_that_always_returns_the_same_is_that_number(kinds):
         {"friction_coefficient": lambda slip_speed: 0.3},
         {"normal_load": lambda time, relative_spin: 2.0},
         {"friction_coefficient": [[0.0, 0.3], [1.0, 0.3], [2.0, 0.3]]},
-        {"normal_load": numba.njit(lambda radius: 2)},
+        {"normal_load": TWO_BY_NUMBA},
     ):
         np.testing.assert_allclose(forces(kinds, **law), expected, rtol=1e-14, atol=1e-17)
 
 
 @pytest.mark.parametrize("kinds", [*PAIRS, *ON_GROUND], ids=str)
 def test_a_function_of_numba_gives_the_force_of_that_of_python(kinds):
-    law = {"friction_coefficient": stribeck, "normal_load": all_of_them}
-    by_python = forces(kinds, **law)
-    by_numba = forces(kinds, **{name: numba.njit(function) for name, function in law.items()})
+    by_python, by_numba = forces(kinds, **LAW), forces(kinds, **LAW_BY_NUMBA)
     np.testing.assert_allclose(by_numba, by_python, rtol=1e-14, atol=1e-17)
     constant = forces(kinds)
     assert np.abs(by_python - constant).max() > 0.1 * np.abs(constant).max()
 
 
 def test_a_contact_says_whether_python_is_asked():
-    of_time = numba.njit(lambda time: 1.0 + time)
     for law, compiled in (
         ({}, True),
-        ({"friction_coefficient": TABLE, "normal_load": of_time, "static_ratio": 1.2}, True),
+        ({"friction_coefficient": TABLE, "normal_load": OF_TIME_BY_NUMBA, "static_ratio": 1.2}, True),
         ({"friction_coefficient": TABLE, "normal_load": lambda time: 1.0}, False),
-        ({"friction_coefficient": stribeck, "normal_load": of_time}, False),
+        ({"friction_coefficient": stribeck, "normal_load": OF_TIME_BY_NUMBA}, False),
     ):
         _, friction = added(("planar", "planar"), **law)
         assert friction.compiled is compiled
