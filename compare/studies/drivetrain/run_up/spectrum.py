@@ -12,31 +12,29 @@ from compare.studies.drivetrain.run_up.parameters import SAMPLES, TURNS
 from compare.studies.toolkit.drivetrain_bench import centre
 from reference_model.systems import FloatArray
 
+HOP = 2 * SAMPLES
+"""From one window to the next: two turns."""
+
 
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return speeds in rad/s (m,), orders (n,) and amplitudes of x + iy in m (n, m).
 
     Sampled at equal angles of the engine, so that an order stays what it is while the speed rises.
     """
-    from scipy.signal import ShortTimeFFT  # takes long to load, and other studies do without
-
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
     times = np.interp(even, angle, found["times"])
     z = CubicSpline(found["times"], centre(found["disc"]))(times)
     window = np.hanning(TURNS * SAMPLES)
-    transform = ShortTimeFFT(
-        window / np.sum(window),
-        2 * SAMPLES,
-        SAMPLES,
-        fft_mode="centered",
-        mfft=2 * len(window),
-        phase_shift=None,
-    )
-    first, end = transform.lower_border_end[1], transform.upper_border_begin(len(z))[1]
-    amplitude = np.abs(transform.stft(z, p0=first, p1=end))
-    middles = even[0] + 2.0 * math.pi * transform.t(len(z), first, end)
-    return np.interp(middles, angle, speed), transform.f, amplitude
+    # scipy.signal has this too, but takes longer to load than a run-up to transform.
+    first = -(-(len(window) // 2) // HOP) * HOP  # the first middle whose window is within the run-up
+    samples = np.lib.stride_tricks.sliding_window_view(z, len(window))[first - len(window) // 2 :: HOP]
+    lines = 2 * len(window)
+    spectrum = np.fft.fft(samples * (window / np.sum(window)), lines)
+    amplitude = np.abs(np.fft.fftshift(spectrum, axes=1)).T
+    orders = np.fft.fftshift(np.fft.fftfreq(lines, 1.0 / SAMPLES))
+    middles = even[0] + 2.0 * math.pi / SAMPLES * (first + HOP * np.arange(len(samples)))
+    return np.interp(middles, angle, speed), orders, amplitude
 
 
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:

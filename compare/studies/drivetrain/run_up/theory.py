@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 
+@functools.lru_cache(maxsize=2)
 def whirls_above_onset(car: Drivetrain) -> FloatArray:
     """Return speed in rad/s, radius in m and frequency in rad/s of the reference's whirl, shape (30, 3)."""
     torque = transmitted(car)
@@ -31,12 +33,12 @@ def whirls_above_onset(car: Drivetrain) -> FloatArray:
     return np.array([(s, each.radius, each.frequency) for s, each in zip(speeds, circles, strict=True)])
 
 
-def curves() -> Data:
-    """Return what the reference predicts of the reduced disc at frozen speeds."""
+def curves(count: int = 120) -> Data:
+    """Return what the reference predicts of the reduced disc at frozen speeds, ``count`` of them below the onset."""
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
-    slow = np.linspace(IDLE * RPM, onset, 121)[:-1]
+    slow = np.linspace(IDLE * RPM, onset, count + 1)[:-1]
     rests = [rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
     # Small motions of the unbalanced disc: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist) at its own speed s.
     own = slow - SLIP

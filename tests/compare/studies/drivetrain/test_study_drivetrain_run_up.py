@@ -80,7 +80,7 @@ def heat_counted_wrong_by_a_thousandth(patch):
 
 class TestDrivetrainRunUp(WrongPartTests):
     study = claims.STUDY
-    few = {"balance": {"top": SHORT}, "lines": {"top": SHORT}}
+    few = {"balance": {"top": SHORT}, "lines": {"top": SHORT}, "curves": {"count": 40}}
     # A run-up shorter than a window claims nothing of the spectrum.
     not_claimed = {"exudyn": ("lines",)}
     few_of_faults = {"balance": {"top": 850.0}}
