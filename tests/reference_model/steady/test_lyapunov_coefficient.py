@@ -33,8 +33,10 @@ def simulated_growth(disc, whirl, law, amplitude):
     shift = (amplitude * whirl.radius / vectors[0, pair] * vectors[:, pair]).real
     period = 2.0 * np.pi / abs(values[pair].imag)
     times = np.linspace(0.0, 4.0 * period, 8001)
+    start = whirl.state + np.insert(shift, 2, 0.0)
+    own = law is RING  # whose motions are compiled
     radius = simulate(
-        disc, whirl.state + np.insert(shift, 2, 0.0), times, tolerance=1e-11, contact=law
+        disc, start, times, tolerance=1e-11, contact=None if own else law, compiled=own
     ).radius
     turns = np.flatnonzero(np.diff(np.sign(np.diff(radius)))) + 1
     sizes, instants = [], []
