@@ -33,11 +33,18 @@ TERMS = 13
 
 def mean_directions(slip: float, rim: float) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂W for U, W >= 0 in m/s, not both zero; both lie between 0 and 1."""
-    if slip >= rim:
-        ratio = rim / slip
-        return _by_larger(ratio), _by_smaller(ratio)
-    ratio = slip / rim
-    return _by_smaller(ratio), _by_larger(ratio)
+    faster = slip >= rim
+    ratio = rim / slip if faster else slip / rim
+    m = ratio * ratio
+    integral = float(ellipe(m))
+    by_larger = 2.0 / math.pi * integral
+    if m < SMALL:
+        by_smaller = 0.5 * ratio * _series(_B_SERIES, m)
+    else:
+        complement = 1.0 - m  # times a logarithm of itself, so that its rounding does not count
+        rest = complement * float(ellipkm1(complement)) if complement > 0.0 else 0.0
+        by_smaller = 2.0 / math.pi * (integral - rest) / ratio
+    return (by_larger, by_smaller) if faster else (by_smaller, by_larger)
 
 
 def mean_directions_at(slips: FloatArray, rims: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -66,20 +73,6 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)
-
-
-def _by_larger(ratio: float) -> float:
-    return 2.0 / math.pi * float(ellipe(ratio * ratio))
-
-
-def _by_smaller(ratio: float) -> float:
-    m = ratio * ratio
-    if m < SMALL:
-        return 0.5 * ratio * _series(_B_SERIES, m)
-    complement = 1.0 - m  # times a logarithm of itself, so that its rounding does not count
-    if complement == 0.0:
-        return 2.0 / math.pi
-    return 2.0 / math.pi * (float(ellipe(m)) - complement * float(ellipkm1(complement))) / ratio
 
 
 def _series(coefficients: Sequence[float], m: float) -> float:

@@ -35,9 +35,7 @@ def simulated_growth(disc, whirl, law, amplitude):
     times = np.linspace(0.0, 4.0 * period, 8001)
     start = whirl.state + np.insert(shift, 2, 0.0)
     own = law is RING  # whose motions are compiled
-    radius = simulate(
-        disc, start, times, tolerance=1e-11, contact=None if own else law, compiled=own
-    ).radius
+    radius = simulate(disc, start, times, tolerance=1e-11, contact=None if own else law, compiled=own).radius
     turns = np.flatnonzero(np.diff(np.sign(np.diff(radius)))) + 1
     sizes, instants = [], []
     for i in turns:
