@@ -6,7 +6,9 @@ from scipy.integrate import solve_ivp
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES
 from wrong_parts import WrongPartTests
 
+import compare.studies.drivetrain.judder.claims as claims
 import compare.studies.drivetrain.judder.model as model
+from compare.claims.claim import Verdict
 from compare.studies.drivetrain.judder.claims import STUDY
 from compare.studies.drivetrain.judder.parameters import (
     COEFFICIENT,
@@ -61,6 +63,19 @@ class TestJudder(WrongPartTests):
         # The slope is a straight line: elsewhere on it the same vibrations are about another place of rest.
         "drive 0.1 % too fast": (BLIND, SEES, BLIND, SEES),
     }
+
+    @classmethod
+    def measured_with(cls, fault, few, only):
+        """Measure with four times the ε, which takes a quarter of the steps in stick."""
+        with pytest.MonkeyPatch.context() as patch:
+            for module in (claims, model):
+                patch.setattr(module, "EPSILON", 4.0 * module.EPSILON)
+            return super().measured_with(fault, few, only)
+
+    def test_a_clutch_without_fault_ends_in_stick_at_the_wider_epsilon_too(self, monkeypatch):
+        monkeypatch.setitem(self.faults, "none", lambda patch: None)
+        (found,) = self.measured_with("none", {}, ("sticks",)).claims
+        assert found.verdict is Verdict.AGREES
 
 
 @pytest.mark.parametrize("gradient", GRADIENTS[[0, 3, 6]])
