@@ -428,7 +428,7 @@ def test_fig_5_ends_in_the_equilibrium_from_one_start_and_whirls_from_the_other(
 def test_stick_and_release_times_do_not_depend_on_any_threshold(fig_5, threshold, factor):
     start, trajectory, tight = fig_5
     other = replace(Thresholds(), **{threshold: factor * getattr(Thresholds(), threshold)})
-    changed = simulate_with(other, FIG_5, start, FIG_5_TIMES)
+    changed = simulate_with(other, FIG_5, start, FIG_5_TIMES[[0, -1]])
     assert kinds(changed) == kinds(trajectory) == kinds(tight)
     assert np.abs(event_times(changed) - event_times(trajectory)).max() < 1e-8
     assert np.abs(event_times(changed) - event_times(tight)).max() < 1e-8

@@ -210,7 +210,7 @@ def test_release_is_the_first_time_at_which_the_pull_exceeds_friction(stuck):
     turn = 2.0 * math.pi / abs(pin.disc_speed)
     pulls = [
         math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, stuck_state(pin, z.real, z.imag), time)))
-        for time in np.linspace(0.0, min(found, turn), 400)
+        for time in np.linspace(0.0, min(found, turn), 150)
     ]
     assert max(pulls) <= pin.friction_force * (1.0 + 1e-7)
     if found < math.inf:
