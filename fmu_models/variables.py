@@ -27,7 +27,8 @@ class Variable:
     about : str
         What it is.
     role : str
-        "time", "parameter", "state", "derivative", "input", "output" or "local".
+        "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
+        at events alone.
     start : float, optional
         Value before initialisation; None where it follows from others.
     least, most : float
@@ -204,6 +205,19 @@ def _supported(kind: type[System], values: Sequence[float], start: Sequence[floa
         *FRICTION,
         Variable("sticks", "", "whether the contact rests as a whole", "output", type="boolean"),
         Variable("indicator", "", "changes its sign where the contact begins or ends to stick", "local"),
+        *_stick_events(COLUMNS[kind]),
+    )
+
+
+def _stick_events(columns: Sequence[tuple[str, str]]) -> tuple[Variable, ...]:
+    """Return what an exact contact tells of when it stuck last: from there on it turned with the disc below."""
+    places = [(name, unit) for name, unit in columns if unit in ("m", "rad")]
+    return (
+        Variable("stick_count", "", "how often the contact began to stick", "event", type="whole"),
+        Variable("stick_time", "s", "when it did last, 0 if never", "event"),
+        *(Variable(f"stick_{name}", unit, f"{ABOUT[name]} then", "event") for name, unit in places),
+        Variable("release_count", "", "how often the contact was let go", "event", type="whole"),
+        Variable("release_time", "s", "when it was last, 0 if never", "event"),
     )
 
 

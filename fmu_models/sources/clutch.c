@@ -91,6 +91,11 @@ void model_tangent(const State *s, double d[]) {
     d[V_der_heat] = d[V_heat_rate];
 }
 
+int model_carried(const State *s, double t, double x[N_STATES]) {
+    (void)s, (void)t, (void)x;
+    return 0;
+}
+
 int model_change(State *s) {
     (void)s;
     return 0;

@@ -35,6 +35,7 @@ static void rates(State *s, double t, const double y[N], double f[N]) {
 /* Fills k[1..6] and the end of a step of which t, h, y and k[0] are there; returns its error over what is allowed. */
 static double attempt(State *s, Step *one) {
     double worst = 0.0;
+    if (model_carried(s, one->t + one->h, one->end)) return 0.0;
     for (int stage = 0; stage < 6; stage++) {
         for (int i = 0; i < N; i++) {
             double sum = 0.0;
@@ -60,7 +61,8 @@ static const double D[7] = {-12715105075.0 / 11282082432, 0.0, 87487479700.0 / 3
                             -1453857185.0 / 822651844,    69997945.0 / 29380423};
 
 /* The state at the share x of a step. */
-static void within(const Step *one, double x, double y[N]) {
+static void within(const State *s, const Step *one, double x, double y[N]) {
+    if (model_carried(s, one->t + x * one->h, y)) return;
     for (int i = 0; i < N; i++) {
         double rise = one->end[i] - one->y[i], first = one->h * one->k[0][i] - rise, last = 0.0;
         for (int j = 0; j < 7; j++) last += D[j] * one->k[j][i];
@@ -71,7 +73,7 @@ static void within(const Step *one, double x, double y[N]) {
 
 static double indicator(State *s, const Step *one, double x) {
     double y[N], f[N];
-    within(one, x, y);
+    within(s, one, x, y);
     rates(s, one->t + x * one->h, y, f);
     return s->v[V_indicator];
 }
@@ -88,7 +90,7 @@ static int event(State *s, Step *one) {
             if ((indicator(s, one, middle) > 0.0) == (before > 0.0)) low = middle;
             else high = middle;
         }
-        within(one, high, one->end);
+        within(s, one, high, one->end);
         one->h *= high;
         return 1;
     }

@@ -191,6 +191,22 @@ void model_tangent(const State *s, double d[]) {
 #endif
 }
 
+int model_carried(const State *s, double t, double x[N_STATES]) {
+    const double *v = s->v;
+    double w = v[V_disc_speed], turned = w * (t - v[V_stick_time]), carried[N_VARIABLES];
+    if (s->mode != STICKS) return 0;
+    carried[V_x] = cos(turned) * v[V_stick_x] - sin(turned) * v[V_stick_y];
+    carried[V_y] = sin(turned) * v[V_stick_x] + cos(turned) * v[V_stick_y];
+    carried[V_vx] = -w * carried[V_y];
+    carried[V_vy] = w * carried[V_x];
+#ifdef V_spin
+    carried[V_angle] = v[V_stick_angle] + turned;
+    carried[V_spin] = w;
+#endif
+    for (int i = 0; i < N_STATES; i++) x[i] = carried[STATES[i]];
+    return 1;
+}
+
 int model_change(State *s) {
     double *v = s->v, force[3], slip[3], slope[2], by[2], w = v[V_disc_speed], needed, speed;
     Contact contact = contact_of(s);
@@ -199,6 +215,8 @@ int model_change(State *s) {
     if (s->mode == STICKS) {
         if (needed < v[V_friction_force] * (1.0 - 1e-12)) return 0;
         s->mode = LEAVES;
+        v[V_release_count] += 1.0;
+        v[V_release_time] = v[V_time];
         return 1;
     }
     slip_of(v, slip);
@@ -209,9 +227,14 @@ int model_change(State *s) {
     }
     if (speed > 1.01 * s->epsilon || needed >= v[V_friction_force] * (1.0 - 1e-9)) return 0;
     s->mode = STICKS;
+    v[V_stick_count] += 1.0;
+    v[V_stick_time] = v[V_time];
+    v[V_stick_x] = v[V_x];
+    v[V_stick_y] = v[V_y];
     v[V_vx] = -w * v[V_y];
     v[V_vy] = w * v[V_x];
 #ifdef V_spin
+    v[V_stick_angle] = v[V_angle];
     v[V_spin] = w;
 #endif
     return 1;

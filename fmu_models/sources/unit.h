@@ -46,6 +46,8 @@ const char *model_refusal(const double v[]); /* what is wrong with parameters be
 void model_scales(const State *state, double *length, double *speed, double *rate);
 void model_evaluate(State *state); /* derivatives and outputs from states and inputs */
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
+/* The states at a time t in s of what rests, in closed form; returns 0, and has none, for what moves. */
+int model_carried(const State *state, double t, double x[N_STATES]);
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
 
 void unit_reset(Unit *unit);

@@ -1,6 +1,7 @@
 """Units as files: by both standards, with FMPy for an importer, judged as an engine, and without a compiler."""
 
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -101,6 +102,39 @@ def moves(file):
 @pytest.mark.parametrize("name", ["pin", "disc"])
 def test_a_judge_agrees_with_the_unit(unit, name):
     assert moves(unit(name)) is Verdict.AGREES
+
+
+@BOTH
+@pytest.mark.parametrize("times", [(0.0, 60.0), np.linspace(0.0, 60.0, 1201)], ids=["one step", "many steps"])
+def test_the_unit_tells_all_its_phases_whatever_the_communication_steps(unit, fmi, times):
+    (engine,) = engines([f"fmu:{unit('pin', fmi)}"])
+    found = engine.simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=1e-11)
+    expected = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 60.0], tolerance=1e-13)
+    assert engine.phases
+    assert [phase.kind for phase in found.phases] == [phase.kind for phase in expected.phases]
+    assert len(found.phases) > 8
+    for mine, theirs in zip(found.phases, expected.phases, strict=True):
+        np.testing.assert_allclose((mine.start, mine.end), (theirs.start, theirs.end), rtol=0.0, atol=1e-7)
+        np.testing.assert_allclose(mine.initial_state, theirs.initial_state, rtol=0.0, atol=1e-7)
+
+
+def test_a_disc_that_rests_from_the_start_turns_in_closed_form_until_it_is_let_go(unit):
+    (engine,) = engines([f"fmu:{unit('disc')}"])
+    place, speed = -0.01, FIG11.disc_speed
+    disc = replace(FIG11, shaft_damping=0.0, damping=0.0, offset=0.015)  # towards x > 0 holding it takes more
+    carried = (place, 0.0, 0.0, 0.0, speed * place, speed)
+    expected = reference_model.simulate(disc, carried, [0.0, 2.0], tolerance=1e-13)
+    found = engine.simulate(disc, carried, [0.0, 0.5, 2.0], tolerance=1e-6)
+    assert [phase.kind for phase in expected.phases][:2] == ["stick", "slip"]
+    assert [phase.kind for phase in found.phases][:2] == ["stick", "slip"]
+    assert abs(found.phases[0].end - expected.phases[0].end) < 1e-13
+    np.testing.assert_allclose(found.phases[1].initial_state, expected.phases[1].initial_state, atol=1e-14)
+
+
+def test_a_unit_that_creeps_tells_no_phases(needs_compiler, tmp_path):
+    file = export(PIN.starting(exact=0.0), tmp_path / "creeps.fmu").file
+    (engine,) = engines([f"fmu:{file}"])
+    assert not engine.phases
 
 
 MISTAKES = {

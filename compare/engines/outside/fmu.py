@@ -2,6 +2,7 @@
 
 Its parameters are called as those of the systems, and its outputs as their states: x, y, vx, vy, and angle and spin
 of a disc. A motion starts with ``x_start`` where there is such a variable, else with x itself, and so do the others.
+Phases are told by models that have the outputs of ``stick_events``; for all others stick is found from states.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
+from compare.engines.outside.stick_events import StickEvents, tells_stick
 from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -75,12 +77,11 @@ class Fmu(Unseen):
         ) as error:  # of the library: for another platform, or without what a model has to have
             raise FmuError(f"{name} can't be started: {error}") from None
         try:
-            states = _states(instance, model, values, system, at, **accuracy)
+            return _motion(instance, model, values, system, at, **accuracy)
         except Exception as error:  # of FMPy, which has one class for each version of the standard
             raise FmuError(f"{name}: {error}") from None
         finally:
             instance.freeInstance()
-        return Trajectory(system, at, states)
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,11 @@ class _Model:
     def newer(self) -> bool:
         """Whether it is of FMI 3, which calls the same things by other names."""
         return str(self.description.fmiVersion).startswith("3")
+
+    @property
+    def tells_stick(self) -> bool:
+        """Whether it tells when its contact sticks."""
+        return tells_stick(self.description, self.variables)
 
     def instance(self) -> Any:
         """Return a new instance, which has to be freed."""
@@ -141,7 +147,7 @@ def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> 
     }
 
 
-def _states(
+def _motion(
     instance: Any,
     model: _Model,
     values: Mapping[str, float],
@@ -149,8 +155,8 @@ def _states(
     times: FloatArray,
     tolerance: float | None = None,
     step: float = math.inf,
-) -> FloatArray:
-    """Return the states at ``times`` (n,) of an instance that was not asked before, of shape (n, 4) or (n, 6)."""
+) -> Trajectory:
+    """Return the motion at ``times`` (n,) of an instance that was not asked before."""
     for name, value in values.items():
         variable = model.variables[name]
         whole = "Int" in variable.type  # the number of points, by any of the standard's types
@@ -167,13 +173,19 @@ def _states(
     outputs = [model.variables[name].valueReference for name, _ in COLUMNS[type(system)]]
     states = np.empty((len(times), len(outputs)))
     states[0] = get(outputs)
+    events = (
+        StickEvents(instance, model.variables, system, times[0], states[0], newer=model.newer)
+        if model.tells_stick
+        else None
+    )
+    advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
     for i, (start, end) in enumerate(itertools.pairwise(times), 1):
         bounds = np.linspace(start, end, max(1, math.ceil((end - start) / step)) + 1)
         for at, until in itertools.pairwise(bounds):
-            instance.doStep(at, until - at)
+            advance(at, until)
         states[i] = get(outputs)
     instance.terminate()
-    return states
+    return Trajectory(system, times, states, () if events is None else events.phases(times[-1]))
 
 
 def fmu_engine(text: str) -> Engine:
@@ -186,7 +198,7 @@ def fmu_engine(text: str) -> Engine:
     experiment = model.description.defaultExperiment
     step = None if experiment is None or experiment.stepSize is None else float(experiment.stepSize)
     nonlinear = set(NONLINEAR) <= set(model.variables)
-    return Engine(file.stem, Fmu(str(file)), kinds, nonlinear=nonlinear, phases=False, step=step)
+    return Engine(file.stem, Fmu(str(file)), kinds, nonlinear=nonlinear, phases=model.tells_stick, step=step)
 
 
 def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:

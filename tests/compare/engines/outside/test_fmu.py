@@ -140,8 +140,9 @@ def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(po
     }
     model = fmu._Model(SimpleNamespace(fmiVersion="3.0"), None, variables)
     stub = Stub()
-    states = fmu._states(stub, model, fmu._values(disc, start, variables), disc, np.array([0.0, 1.0]))
-    np.testing.assert_array_equal(states, [start, start])
+    motion = fmu._motion(stub, model, fmu._values(disc, start, variables), disc, np.array([0.0, 1.0]))
+    np.testing.assert_array_equal(motion.states, [start, start])
+    assert motion.phases == ()
     assert stub.told.get("contact_points") == points
     assert fmu._kinds("disc.fmu", variables) == (kind,)
 
