@@ -24,7 +24,11 @@ def with_claim(studies: Sequence[Study], identity: str) -> Study:
         for declared in study.declared
         for case, _ in declared.cases()
     }
-    study, declared, case = found[one_of("claim", identity, found)]
+    name, _, _ = identity.partition("/")
+    one_of("study", name, [study.name for study in studies])
+    study, declared, case = found[
+        one_of("claim", identity, (one for one in found if one.startswith(f"{name}/")))
+    ]
     alone = replace(declared, each={case: declared.each[case]}) if declared.each else declared
     return replace(
         study,

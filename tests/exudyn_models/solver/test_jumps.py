@@ -83,7 +83,7 @@ def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance)
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize(
-    "load", [800.0, 6000.0, lambda time: 3e3 * time, lambda time: 3e3 * np.sin(20.0 * time) ** 2], ids=str
+    "load", [800.0, 6000.0, lambda time: 3e3 * time, lambda time: 3e3 * np.sin(20.0 * time) ** 2]
 )
 def test_no_jump_is_told_of_a_load_that_the_steps_resolve_nor_of_the_end_of_slip(solver, load):
     mbs, _ = brake(load)

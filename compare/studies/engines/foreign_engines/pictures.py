@@ -42,16 +42,21 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _legend(figure: Figure, panel: Axes) -> None:
-    """Put a legend below all panels, with our engines in the first column and those of others in one each."""
+    """Put a legend below all panels, with engines one after the other in as many columns as the longest allows."""
     from matplotlib.lines import Line2D
 
-    columns: dict[str, list[Any]] = {}
+    engines: dict[str, list[Any]] = {}
     for line in panel.get_lines():
         engine, _, setting = str(line.get_label()).partition(", ")
-        columns.setdefault(engine if setting else "", []).append(line)
-    rows = max(map(len, columns.values()))
+        engines.setdefault(engine if setting else "", []).append(line)
+    rows = max(map(len, engines.values()))
+    columns: list[list[Any]] = [[]]
+    for settings in engines.values():
+        if len(columns[-1]) + len(settings) > rows:
+            columns.append([])
+        columns[-1] += settings
     nothing = Line2D([], [], linestyle="none", label=" ")
-    lines = [line for column in columns.values() for line in column + [nothing] * (rows - len(column))]
+    lines = [line for column in columns for line in column + [nothing] * (rows - len(column))]
     figure.legend(
         handles=lines, loc="outside lower center", ncols=len(columns), fontsize=9.0, columnspacing=1.2
     )
