@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from reference_model.systems import COLUMNS, PARAMETERS, DiscOnDisc, PinOnDisc, System
+from reference_model.systems import COLUMNS, MOST_POINTS, PARAMETERS, DiscOnDisc, PinOnDisc, System
 
 MOST_PLATES = 1000
 
@@ -230,13 +230,23 @@ PIN = Model(
 
 DISC = Model(
     "disc",
-    "A friction disc on springs and dampers that a ring of contact couples to a turning master disc",
+    "A friction disc on springs and dampers that a ring of contact, or points on it, couples to a turning disc",
     "supported.c",
     (
         *_supported(
             DiscOnDisc,
             (1.0, 1.0, 0.5, 0.0225, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.12, 0.015, 1.25),
             (0.02, 0.0, 0.0, 0.0, 0.0, 1.3),
+        ),
+        Variable(
+            "contact_points",
+            "",
+            "points of the contact, at least 3, which creep below regularisation; 0 for the continuous ring",
+            "parameter",
+            0.0,
+            0.0,
+            MOST_POINTS,
+            type="whole",
         ),
         Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
     ),

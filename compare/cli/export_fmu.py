@@ -67,11 +67,12 @@ def export_pin(unit: Unit) -> None:
 @export_fmu.command("disc", cls=Command)
 @taking(Unit)
 def export_disc(unit: Unit) -> None:
-    """Write the friction disc on a continuous ring; what is not set is Fig. 11 with X0 = 0.
+    """Write the friction disc, on a continuous ring or on points; what is not set is Fig. 11 with X0 = 0.
 
     \b
     Parameters are those of `friction-discs simulate disc`, the start x, y, angle, vx, vy, spin, and:
       exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
+      contact_points=0 (a ring; at least 3 for points, which creep whatever exact is)
     \b
     Example:
       friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu

@@ -32,6 +32,11 @@ const char *model_refusal(const double v[]) {
     return 0;
 }
 
+int model_exact(const double v[]) {
+    (void)v;
+    return 0;
+}
+
 void model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
     *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), v[V_outer_radius]);
@@ -46,7 +51,7 @@ void model_evaluate(State *s) {
     Contact contact = contact_of(s);
     Support support = support_of(v);
     slip_of(v, slip);
-    v[V_slip_speed] = friction(&contact, slip, force);
+    s->slowest = v[V_slip_speed] = friction(&contact, slip, force);
     support_force(&support, z, velocity, elastic);
     v[V_torque_a] = z[1] * force[0] - z[0] * force[1] - force[2];
     v[V_torque_b] = force[2];

@@ -22,7 +22,7 @@ static const double C[6] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
 static const double E[7] = {71.0 / 57600,      0.0,          -71.0 / 16695, 71.0 / 1920,
                             -17253.0 / 339200, 22.0 / 525,   -1.0 / 40};
 typedef struct {
-    double t, h, y[N], k[7][N], end[N], slip; /* its speed where the step begins */
+    double t, h, y[N], k[7][N], end[N], slip; /* the slowest of the contact where the step begins */
 } Step;
 
 static void rates(State *s, double t, const double y[N], double f[N]) {
@@ -80,8 +80,9 @@ static double indicator(State *s, const Step *one, double x) {
 
 /* Whether the sign of the indicator changes in a step, which then ends just behind that. */
 static int event(State *s, Step *one) {
-    double before = indicator(s, one, 0.0);
-    if (s->v[V_exact] == 0.0) return 0;
+    double before;
+    if (!s->exact) return 0;
+    before = indicator(s, one, 0.0);
     for (int i = 1; i <= SAMPLES; i++) {
         double low = (i - 1.0) / SAMPLES, high = i / (double)SAMPLES;
         if ((indicator(s, one, high) > 0.0) == (before > 0.0)) continue;
@@ -119,7 +120,7 @@ int unit_advance(Unit *unit, double until) {
     one.t = begin;
     for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
     rates(s, one.t, one.y, one.k[0]);
-    one.slip = s->v[V_slip_speed];
+    one.slip = s->slowest;
     if (!(s->step > 0.0)) s->step = first_step(s, one.y, one.k[0], until - begin);
     while (until - one.t > least) {
         double error, factor, left = until - one.t;
@@ -155,7 +156,7 @@ int unit_advance(Unit *unit, double until) {
         if (happens && model_change(s)) /* it jumps onto what holds it, or away */
             for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
         rates(s, one.t, one.y, one.k[0]);
-        one.slip = s->v[V_slip_speed];
+        one.slip = s->slowest;
         if (unit->between && unit->between(unit, one.t) && until - one.t > least) return 2;
     }
     s->v[V_time] = until;

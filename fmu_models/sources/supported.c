@@ -1,6 +1,7 @@
 /* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
    takes more than friction has. */
 #include "contact.h"
+#include "points.h"
 #include "support.h"
 #include "unit.h"
 
@@ -16,6 +17,36 @@ static Contact contact_of(const State *s) {
     const double *v = s->v;
     Contact contact = {RADIUS, RADIUS, 0, v[V_friction_force], 1.0, s->epsilon};
     return contact;
+}
+
+#ifdef V_contact_points
+static Points points_of(const State *s) {
+    const double *v = s->v;
+    Points points = {(int)v[V_contact_points], RADIUS, v[V_friction_force], s->epsilon};
+    return points;
+}
+#endif
+
+/* Friction on the mass while it slips; returns the mean slip speed. */
+static double sliding(State *s, const double slip[3], double force[3]) {
+    Contact contact = contact_of(s);
+#ifdef V_contact_points
+    Points points = points_of(s);
+    if (points.points > 0) return points_friction(&points, s->v[V_angle], slip, force, &s->slowest);
+#endif
+    return s->slowest = friction(&contact, slip, force);
+}
+
+/* Their derivatives along those of the slip, and of the states in d. */
+static double sliding_tangent(const State *s, const double d[], const double slip[3], const double d_slip[3],
+                              double d_force[3]) {
+    Contact contact = contact_of(s);
+#ifdef V_contact_points
+    Points points = points_of(s);
+    if (points.points > 0) return points_tangent(&points, s->v[V_angle], d[V_angle], slip, d_slip, d_force);
+#endif
+    (void)d;
+    return friction_tangent(&contact, slip, d_slip, 0.0, d_force);
 }
 
 static Support support_of(const double v[]) {
@@ -36,7 +67,18 @@ static void slip_of(const double v[], double slip[3]) {
 
 const char *model_refusal(const double v[]) {
     (void)v;
+#ifdef V_contact_points
+    if (v[V_contact_points] == 1.0 || v[V_contact_points] == 2.0)
+        return "contact_points: it must be 0 for the continuous ring, or at least 3";
+#endif
     return 0;
+}
+
+int model_exact(const double v[]) {
+#ifdef V_contact_points
+    if (v[V_contact_points] > 0.0) return 0; /* single ones of them may rest, which is a motion of its own */
+#endif
+    return v[V_exact] != 0.0;
 }
 
 void model_scales(const State *s, double *length, double *speed, double *rate) {
@@ -112,13 +154,13 @@ void model_evaluate(State *s) {
     Contact contact = contact_of(s);
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        v[V_slip_speed] = friction(&contact, slip, force);
+        v[V_slip_speed] = sliding(s, slip, force);
         v[V_indicator] = v[V_slip_speed] - s->epsilon;
         slips(s, force);
     } else {
         double needed = held_by(s, force, by);
         if (s->mode == STICKS) {
-            v[V_slip_speed] = 0.0;
+            s->slowest = v[V_slip_speed] = 0.0;
             v[V_indicator] = v[V_friction_force] - needed;
             rests(s);
         } else { /* it ends where the slip is fast enough, or turns back */
@@ -127,7 +169,7 @@ void model_evaluate(State *s) {
                 along += force[i] / needed * slip[i];
                 force[i] *= v[V_friction_force] / needed;
             }
-            v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+            s->slowest = v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
             v[V_indicator] = fmin(s->leaving - v[V_slip_speed], s->epsilon - along);
             slips(s, force);
         }
@@ -151,7 +193,7 @@ void model_tangent(const State *s, double d[]) {
 #endif
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_force);
+        d[V_slip_speed] = sliding_tangent(s, d, slip, d_slip, d_force);
     } else {
         double needed = held_by(s, force, by), d_needed = held_tangent(s, dz, force, by, d_force), slope[2];
         d[V_slip_speed] = 0.0;
@@ -210,7 +252,7 @@ int model_carried(const State *s, double t, double x[N_STATES]) {
 int model_change(State *s) {
     double *v = s->v, force[3], slip[3], slope[2], by[2], w = v[V_disc_speed], needed, speed;
     Contact contact = contact_of(s);
-    if (v[V_exact] == 0.0) return 0;
+    if (!s->exact) return 0;
     needed = held_by(s, force, by);
     if (s->mode == STICKS) {
         if (needed < v[V_friction_force] * (1.0 - 1e-12)) return 0;

@@ -53,9 +53,8 @@ int unit_initialise(Unit *unit, double time) {
         s->nominal[i] = kind == 'x' ? length : kind == 'v' ? speed : 1.0;
     }
     s->epsilon = s->v[V_regularisation];
-#ifdef V_exact
-    if (s->v[V_exact] != 0.0) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
-#endif
+    s->exact = model_exact(s->v);
+    if (s->exact) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
     /* what is missed then falls like its power 3/2, with the tolerance */
     s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;

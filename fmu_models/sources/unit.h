@@ -15,8 +15,10 @@ typedef struct {
     double longest;    /* of its steps, in s */
     double tolerance;  /* of the integrator */
     double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
+    double slowest;    /* slip speed in m/s of the contact, of its slowest point if it has single ones */
     int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
+    int exact; /* whether the contact sticks by events */
     int initialised;
 } State;
 
@@ -42,6 +44,7 @@ struct Unit {
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */
 const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
+int model_exact(const double v[]); /* whether the contact sticks by events, or creeps */
 /* By which errors are measured: a length, a speed, and a rate in 1/s, 0 where inputs may have any. */
 void model_scales(const State *state, double *length, double *speed, double *rate);
 void model_evaluate(State *state); /* derivatives and outputs from states and inputs */

@@ -9,7 +9,7 @@ import pytest
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.cli import app as cli
-from compare.engines import engines
+from compare.engines import StatesOnly, engines
 from compare.studies.engines.trajectories import STUDY
 from fmu_models import CLUTCH, MODELS, PIN, HeadersMissingError, archive, export
 from fmu_models.archive import FOLDER, sources_of
@@ -92,9 +92,9 @@ def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
     instance.freeInstance()
 
 
-def moves(file):
+def moves(file, kind=""):
     (engine,) = engines([f"fmu:{file}"])
-    kind = "a pin" if "pin" in engine.name else "a disc on the continuous ring"
+    kind = kind or ("a pin" if "pin" in engine.name else "a disc on the continuous ring")
     (claim,) = STUDY.measure(engine, only=[f"moves/{kind}"]).claims
     return claim.verdict
 
@@ -102,6 +102,18 @@ def moves(file):
 @pytest.mark.parametrize("name", ["pin", "disc"])
 def test_a_judge_agrees_with_the_unit(unit, name):
     assert moves(unit(name)) is Verdict.AGREES
+
+
+def test_points_that_rest_creep_less_the_smaller_the_tolerance_and_tell_no_phases_of_their_own(unit):
+    (engine,) = engines([f"fmu:{unit('disc')}"])
+    six, start = replace(FIG11, contact_points=6), (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
+    expected = reference_model.simulate(six, start, [0.0, 40.0], tolerance=1e-12)
+    found = [engine.simulate(six, start, [0.0, 40.0], tolerance=tolerance) for tolerance in (8e-9, 1e-9)]
+    errors = [np.max(np.abs(one.at_end - expected.at_end)) for one in found]
+    assert {phase.kind for phase in expected.phases} == {"slip", "pivot"}
+    assert errors[1] < 1e-6
+    assert 7.0 < errors[0] / errors[1] < 9.0
+    assert all(isinstance(one, StatesOnly) for one in found)
 
 
 @BOTH

@@ -35,6 +35,16 @@ OPTIONAL = ("offset", *NONLINEAR)
 """Parameters that a model may leave out: then they are 0."""
 
 
+CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
+"""The parameter with the slip speed below which points creep, and that over tolerance times speed of the motion.
+
+A model that tells when its contact sticks does so for pins and rings. Errors of creep have to fall with tolerance.
+"""
+
+LEAST_CREEP = 1e-12
+"""In m/s: of a motion without any speed."""
+
+
 class FmuError(RuntimeError):
     """A model has no answer; the message says why."""
 
@@ -142,6 +152,8 @@ def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> 
         raise UnsupportedSystemError(f"the model has no {', '.join(lacking)}")
     starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
     known = {name: value for name, value in parameters.items() if name in variables}
+    if isinstance(system, DiscOnDisc) and POINTS in variables:
+        known[POINTS] = system.contact_points or 0
     return known | {
         f"{name}_start" if f"{name}_start" in variables else name: value for name, value in starts
     }
@@ -157,6 +169,10 @@ def _motion(
     step: float = math.inf,
 ) -> Trajectory:
     """Return the motion at ``times`` (n,) of an instance that was not asked before."""
+    tells = model.tells_stick
+    if tells and isinstance(system, DiscOnDisc) and system.contact_points is not None:
+        tells = False
+        values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
         whole = "Int" in variable.type  # the number of points, by any of the standard's types
@@ -175,7 +191,7 @@ def _motion(
     states[0] = get(outputs)
     events = (
         StickEvents(instance, model.variables, system, times[0], states[0], newer=model.newer)
-        if model.tells_stick
+        if tells
         else None
     )
     advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
@@ -186,6 +202,19 @@ def _motion(
         states[i] = get(outputs)
     instance.terminate()
     return Trajectory(system, times, states, () if events is None else events.phases(times[-1]))
+
+
+def _creep(
+    system: DiscOnDisc, values: Mapping[str, float], variables: Mapping[str, Any], tolerance: float | None
+) -> dict[str, float]:
+    """Return below which slip speed in m/s points creep, in proportion to the tolerance, if the model takes that."""
+    if CREEPS not in variables or tolerance is None:
+        return {}
+    x, y, _, vx, vy, _ = (
+        values.get(f"{name}_start", values.get(name, 0.0)) for name, _ in COLUMNS[DiscOnDisc]
+    )
+    turning = abs(system.disc_speed) * max(math.hypot(x, y), system.contact_radius)
+    return {CREEPS: max(min(CREEP * tolerance, MOST_CREEP) * max(math.hypot(vx, vy), turning), LEAST_CREEP)}
 
 
 def fmu_engine(text: str) -> Engine:
@@ -211,7 +240,12 @@ def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
         raise ValueError(
             f"{name} is no model of a {'disc' if disc else 'pin'}: it has no {', '.join(lacking)}"
         )
-    return (("points",) if POINTS in variables else ("ring",)) if disc else ("pin",)
+    if not disc:
+        return ("pin",)
+    if POINTS not in variables:
+        return ("ring",)
+    least = getattr(variables[POINTS], "min", None)
+    return ("ring", "points") if least is not None and float(least) <= 0.0 else ("points",)
 
 
 register_scheme("fmu", Scheme(fmu_engine, fmu_engine))

@@ -147,6 +147,15 @@ def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(po
     assert fmu._kinds("disc.fmu", variables) == (kind,)
 
 
+def test_a_disc_that_takes_no_points_is_one_on_the_ring_too():
+    variables = dict.fromkeys([*asdict(FIG11), *(name for name, _ in COLUMNS[type(FIG11)])])
+    variables["contact_points"] = SimpleNamespace(min="0")
+    assert fmu._kinds("disc.fmu", variables) == ("ring", "points")
+    start = np.zeros(6)
+    assert fmu._values(FIG11, start, variables)["contact_points"] == 0
+    assert fmu._values(replace(FIG11, contact_points=6), start, variables)["contact_points"] == 6
+
+
 def test_a_motion_may_start_at_any_time_and_is_the_same_each_time(right):
     times = np.array([0.0, 0.1, 0.1 + 1e-9, 1.0])
     found = [right.simulate(FIG5, START, shift + times).states for shift in (0.0, 0.0, 8.0)]
