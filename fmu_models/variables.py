@@ -194,6 +194,10 @@ def _parameters(kind: type[System], values: Sequence[float]) -> tuple[Variable, 
     )
 
 
+def _points(about: str) -> Variable:
+    return Variable("contact_points", "", about, "parameter", 0.0, 0.0, MOST_POINTS, type="whole")
+
+
 def _supported(kind: type[System], values: Sequence[float], start: Sequence[float]) -> tuple[Variable, ...]:
     return (
         TIME,
@@ -238,16 +242,7 @@ DISC = Model(
             (1.0, 1.0, 0.5, 0.0225, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.12, 0.015, 1.25),
             (0.02, 0.0, 0.0, 0.0, 0.0, 1.3),
         ),
-        Variable(
-            "contact_points",
-            "",
-            "points of the contact, at least 3, which creep below regularisation; 0 for the continuous ring",
-            "parameter",
-            0.0,
-            0.0,
-            MOST_POINTS,
-            type="whole",
-        ),
+        _points("points of the contact, at least 3, or 0 for a ring; each creeps below regularisation"),
         Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
     ),
 )
@@ -290,6 +285,18 @@ def _clutch() -> tuple[Variable, ...]:
             1.0,
             type="boolean",
         ),
+        *(
+            Variable(
+                f"pressure_{where}",
+                "",
+                f"of the annulus at its {where} radius, over any, times what wear makes it; in between a parabola",
+                "parameter",
+                1.0,
+                0.0,
+            )
+            for where in ("inner", "mean", "outer")
+        ),
+        _points("points at outer_radius that turn with flange b, or 0; each creeps below regularisation"),
         Variable("plates", "", "pairs of faces in contact", "parameter", 1.0, 1.0, MOST_PLATES, type="whole"),
         Variable("static_ratio", "", "of static to sliding friction", "parameter", 1.0, 1.0),
         REGULARISATION,

@@ -87,7 +87,8 @@ def export_clutch(unit: Unit) -> None:
 
     \b
     Parameters:
-      inner_radius=0.1 outer_radius=0.1 wear=0 plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
+      inner_radius=0.1 outer_radius=0.1 wear=0 pressure_inner=1 pressure_mean=1 pressure_outer=1 contact_points=0
+      plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
       mass=1 stiffness=1e6 damping=100 offset=0 hardening=0 stop_gap=0 stop_stiffness=0
     \b
     Example:

@@ -4,39 +4,39 @@
 
 #define TURN 6.28318530717958647693
 
-static void arm_of(const Points *c, int i, double angle, double arm[2]) {
-    double at = angle + TURN * i / c->points;
-    arm[0] = c->radius * cos(at);
-    arm[1] = c->radius * sin(at);
+static void arm_of(const Contact *c, int i, double arm[2]) {
+    double at = c->angle + TURN * i / c->points;
+    arm[0] = c->outer * cos(at);
+    arm[1] = c->outer * sin(at);
 }
 
-double points_friction(const Points *c, double angle, const double slip[3], double force[3], double *least) {
-    double sum = 0.0, share = c->friction / c->points;
-    force[0] = force[1] = force[2] = 0.0;
-    *least = HUGE_VAL;
+double points_slip(const Contact *c, const double slip[3], double mean[3], double *slowest) {
+    double sum = 0.0;
+    mean[0] = mean[1] = mean[2] = 0.0;
+    *slowest = HUGE_VAL;
     for (int i = 0; i < c->points; i++) {
-        double arm[2], speed, factor, x, y;
-        arm_of(c, i, angle, arm);
+        double arm[2], speed, share, x, y;
+        arm_of(c, i, arm);
         x = slip[0] - slip[2] * arm[1];
         y = slip[1] + slip[2] * arm[0];
         speed = hypot(x, y);
-        factor = -share / fmax(speed, c->epsilon);
-        force[0] += factor * x;
-        force[1] += factor * y;
-        force[2] += factor * (arm[0] * y - arm[1] * x);
+        share = 1.0 / (c->points * fmax(speed, c->epsilon));
+        mean[0] += share * x;
+        mean[1] += share * y;
+        mean[2] += share * (arm[0] * y - arm[1] * x);
         sum += speed;
-        *least = fmin(*least, speed);
+        *slowest = fmin(*slowest, speed);
     }
     return sum / c->points;
 }
 
-double points_tangent(const Points *c, double angle, double d_angle, const double slip[3], const double d[3],
-                      double d_force[3]) {
-    double sum = 0.0, share = c->friction / c->points;
-    d_force[0] = d_force[1] = d_force[2] = 0.0;
+double points_slip_tangent(const Contact *c, const double slip[3], const double d[3], double d_angle,
+                           double d_mean[3]) {
+    double sum = 0.0;
+    d_mean[0] = d_mean[1] = d_mean[2] = 0.0;
     for (int i = 0; i < c->points; i++) {
-        double arm[2], d_arm[2], speed, factor, x, y, dx, dy, along, d_factor, fx, fy;
-        arm_of(c, i, angle, arm);
+        double arm[2], d_arm[2], speed, share, x, y, dx, dy, along, d_share, fx, fy;
+        arm_of(c, i, arm);
         d_arm[0] = -d_angle * arm[1];
         d_arm[1] = d_angle * arm[0];
         x = slip[0] - slip[2] * arm[1];
@@ -45,13 +45,13 @@ double points_tangent(const Points *c, double angle, double d_angle, const doubl
         dy = d[1] + d[2] * arm[0] + slip[2] * d_arm[0];
         speed = hypot(x, y);
         along = speed > 0.0 ? (x * dx + y * dy) / speed : hypot(dx, dy); /* d_speed; at rest to the side of d */
-        factor = -share / fmax(speed, c->epsilon);
-        d_factor = speed > c->epsilon ? -factor * along / speed : 0.0;
-        fx = factor * dx + d_factor * x;
-        fy = factor * dy + d_factor * y;
-        d_force[0] += fx;
-        d_force[1] += fy;
-        d_force[2] += arm[0] * fy - arm[1] * fx + factor * (d_arm[0] * y - d_arm[1] * x);
+        share = 1.0 / (c->points * fmax(speed, c->epsilon));
+        d_share = speed > c->epsilon ? -share * along / speed : 0.0;
+        fx = share * dx + d_share * x;
+        fy = share * dy + d_share * y;
+        d_mean[0] += fx;
+        d_mean[1] += fy;
+        d_mean[2] += arm[0] * fy - arm[1] * fx + share * (d_arm[0] * y - d_arm[1] * x);
         sum += along;
     }
     return sum / c->points;

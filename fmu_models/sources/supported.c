@@ -1,7 +1,6 @@
 /* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
    takes more than friction has. */
 #include "contact.h"
-#include "points.h"
 #include "support.h"
 #include "unit.h"
 
@@ -15,38 +14,16 @@
 
 static Contact contact_of(const State *s) {
     const double *v = s->v;
-    Contact contact = {RADIUS, RADIUS, 0, v[V_friction_force], 1.0, s->epsilon};
+    Contact contact = {.inner = RADIUS,
+                       .outer = RADIUS,
+#ifdef V_contact_points
+                       .points = (int)v[V_contact_points],
+                       .angle = v[V_angle],
+#endif
+                       .friction = v[V_friction_force],
+                       .static_ratio = 1.0,
+                       .epsilon = s->epsilon};
     return contact;
-}
-
-#ifdef V_contact_points
-static Points points_of(const State *s) {
-    const double *v = s->v;
-    Points points = {(int)v[V_contact_points], RADIUS, v[V_friction_force], s->epsilon};
-    return points;
-}
-#endif
-
-/* Friction on the mass while it slips; returns the mean slip speed. */
-static double sliding(State *s, const double slip[3], double force[3]) {
-    Contact contact = contact_of(s);
-#ifdef V_contact_points
-    Points points = points_of(s);
-    if (points.points > 0) return points_friction(&points, s->v[V_angle], slip, force, &s->slowest);
-#endif
-    return s->slowest = friction(&contact, slip, force);
-}
-
-/* Their derivatives along those of the slip, and of the states in d. */
-static double sliding_tangent(const State *s, const double d[], const double slip[3], const double d_slip[3],
-                              double d_force[3]) {
-    Contact contact = contact_of(s);
-#ifdef V_contact_points
-    Points points = points_of(s);
-    if (points.points > 0) return points_tangent(&points, s->v[V_angle], d[V_angle], slip, d_slip, d_force);
-#endif
-    (void)d;
-    return friction_tangent(&contact, slip, d_slip, 0.0, d_force);
 }
 
 static Support support_of(const double v[]) {
@@ -154,7 +131,7 @@ void model_evaluate(State *s) {
     Contact contact = contact_of(s);
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        v[V_slip_speed] = sliding(s, slip, force);
+        v[V_slip_speed] = friction(&contact, slip, force, &s->slowest);
         v[V_indicator] = v[V_slip_speed] - s->epsilon;
         slips(s, force);
     } else {
@@ -188,12 +165,14 @@ void model_tangent(const State *s, double d[]) {
     Support support = support_of(v);
     double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, dz[2] = {d[V_x], d[V_y]}, dv[2] = {d[V_vx], d[V_vy]};
     double slip[3], d_slip[3] = {dv[0] + w * dz[1], dv[1] - w * dz[0], 0.0}, force[3], d_force[3], by[2], elastic[2];
+    double d_angle = 0.0;
 #ifdef V_spin
     d_slip[2] = d[V_spin];
+    d_angle = d[V_angle];
 #endif
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        d[V_slip_speed] = sliding_tangent(s, d, slip, d_slip, d_force);
+        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_angle, d_force);
     } else {
         double needed = held_by(s, force, by), d_needed = held_tangent(s, dz, force, by, d_force), slope[2];
         d[V_slip_speed] = 0.0;

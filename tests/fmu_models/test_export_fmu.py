@@ -92,16 +92,19 @@ def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
     instance.freeInstance()
 
 
-def moves(file, kind=""):
+PLAIN = {"pin": "a pin", "ring": "a disc on the continuous ring", "points": "a disc on six points"}
+"""Of kinds of contact: which motion shows whether one moves as it should."""
+
+
+def moves(file, kind):
     (engine,) = engines([f"fmu:{file}"])
-    kind = kind or ("a pin" if "pin" in engine.name else "a disc on the continuous ring")
-    (claim,) = STUDY.measure(engine, only=[f"moves/{kind}"]).claims
+    (claim,) = STUDY.measure(engine, only=[f"moves/{PLAIN[kind]}"]).claims
     return claim.verdict
 
 
-@pytest.mark.parametrize("name", ["pin", "disc"])
-def test_a_judge_agrees_with_the_unit(unit, name):
-    assert moves(unit(name)) is Verdict.AGREES
+@pytest.mark.parametrize("kind", PLAIN)
+def test_a_judge_agrees_with_the_unit(unit, kind):
+    assert moves(unit("pin" if kind == "pin" else "disc"), kind) is Verdict.AGREES
 
 
 def test_points_that_rest_creep_less_the_smaller_the_tolerance_and_tell_no_phases_of_their_own(unit):
@@ -155,10 +158,16 @@ MISTAKES = {
     "friction weaker along y": ("contact.c", "along * slip[1]", "0.99 * along * slip[1]"),
     "friction pushes": (
         "contact.c",
-        "double factor = -contact->friction",
-        "double factor = contact->friction",
+        "factor = -contact->friction * law",
+        "factor = contact->friction * law",
     ),
     "a ring as slippery as its peak": ("contact.c", "k * (0.5 - T) / A", "k * (0.5 + T) / A"),
+    "points not a turn apart": ("points.c", "TURN * i / c->points", "TURN * i / (c->points + 1)"),
+    "points that push across": (
+        "points.c",
+        "arm[0] * y - arm[1] * x);\n        sum",
+        "arm[1] * x);\n        sum",
+    ),
     "a weight of the pair": ("integrator.c", "500.0 / 1113", "501.0 / 1113"),
 }
 """Of the C sources: a file, what stands in it, and what takes its place."""
@@ -176,9 +185,9 @@ def test_a_judge_sees_a_mistake_in_the_sources(needs_compiler, tmp_path, monkeyp
     (sources / file).write_text(text.replace(right, wrong))
     monkeypatch.setattr(archive, "FOLDER", sources)
     monkeypatch.setattr(archive, "OPTIONS", ("-std=c99", "-O0", "-fPIC", "-shared"))
-    model = "disc" if "ring" in mistake else "pin"
-    unit = export(MODELS[model], tmp_path / f"{model}.fmu").file
-    assert moves(unit) is Verdict.DIFFERS
+    kind = next((kind for kind in PLAIN if kind in mistake), "pin")
+    model = "pin" if kind == "pin" else "disc"
+    assert moves(export(MODELS[model], tmp_path / f"{model}.fmu").file, kind) is Verdict.DIFFERS
 
 
 @BOTH

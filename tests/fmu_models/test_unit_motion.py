@@ -121,6 +121,12 @@ def test_communication_steps_change_nothing_that_counts(instance):
     np.testing.assert_allclose(often.state, whole.state, rtol=0.0, atol=1e-9)
 
 
+NO_PRESSURE = (
+    "pressure_inner, pressure_mean, pressure_outer: the parabola through them must be >= 0 from the inner to the "
+    "outer radius, and not 0 everywhere"
+)
+
+
 @pytest.mark.parametrize(
     ("name", "values", "sentence"),
     [
@@ -133,6 +139,12 @@ def test_communication_steps_change_nothing_that_counts(instance):
             "contact_points: it must be 0 for the continuous ring, or at least 3",
         ),
         ("clutch", {"inner_radius": 0.2}, "inner_radius: it must be at most outer_radius"),
+        (
+            "clutch",
+            {"inner_radius": 0.05, "contact_points": 3.0},
+            "contact_points: points are on a ring, where inner_radius is outer_radius",
+        ),
+        ("clutch", {"pressure_mean": 0.1, "pressure_outer": 0.0}, NO_PRESSURE),
         ("clutch", {"engagement": 1.5}, "engagement = 1.5 : it must be <= 1"),
         ("clutch", {"plates": 0.0}, "plates = 0 : it must be >= 1"),
     ],
@@ -169,6 +181,7 @@ def inside(unit, mode):
         "points creep",
         "clutch slips",
         "clutch creeps",
+        "clutch points",
     ],
 )
 def test_directional_derivatives_are_derivatives(instance, case):
@@ -189,10 +202,11 @@ def test_directional_derivatives_are_derivatives(instance, case):
     elif name == "disc":
         unit = instance("disc", x=0.05, y=-0.02, spin=1.6, stop_gap=0.01, stop_stiffness=5.0).started()
     else:
-        speed = 30.0 if how == "slips" else 20.01
+        speed = {"slips": 30.0, "creeps": 20.01, "points": 21.5}[how]
+        shape = {"contact_points": 5.0, "angle_b": 0.3} if how == "points" else {"inner_radius": 0.07}
         unit = instance(
             "clutch", speed_a=20.0, speed_b=speed, x=1e-3, y=-2e-3, vx=0.05, vy=0.03, stiffness=100.0,
-            inner_radius=0.07, regularisation=0.1, static_ratio=1.2, plates=3.0,
+            regularisation=0.1, static_ratio=1.2, plates=3.0, **shape,
         ).started()  # fmt: skip
     model = MODELS[name]
     knowns = [one.name for one in model.having("state", "input") if one.name != "heat"]
