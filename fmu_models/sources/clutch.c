@@ -54,13 +54,14 @@ int model_exact(const double v[]) {
     return 0;
 }
 
-void model_scales(const State *s, double *length, double *speed, double *rate) {
+double model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
     *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), v[V_outer_radius]);
     if (*length == 0.0) *length = 1.0;
     *speed = fmax(hypot(v[V_vx], v[V_vy]), fmax(fabs(v[V_speed_a]), fabs(v[V_speed_b])) * *length);
     if (*speed == 0.0) *speed = *length;
     *rate = 0.0;
+    return 1.0;
 }
 
 void model_evaluate(State *s) {

@@ -4,11 +4,12 @@
 #include "support.h"
 #include "unit.h"
 
+/* Share of the size of the motion by which errors are measured at least, well above rounding. */
+#define LEAST_FELT 0.1
+
 #ifdef V_spin
-#define SPIN v[V_spin]
 #define RADIUS v[V_contact_radius]
 #else
-#define SPIN 0.0
 #define RADIUS 0.0
 #endif
 
@@ -58,9 +59,12 @@ int model_exact(const double v[]) {
     return v[V_exact] != 0.0;
 }
 
-void model_scales(const State *s, double *length, double *speed, double *rate) {
+/* What friction does is as large as the offset and what the spring gives way under it. Small states are those of a
+   whirl that is larger, as they pass 0. */
+double model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
-    double slip[3];
+    double slip[3], felt = fabs(v[V_offset]);
+    if (v[V_stiffness] > 0.0) felt = fmax(felt, v[V_friction_force] / v[V_stiffness]);
     slip_of(v, slip);
     *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), RADIUS);
     if (*length == 0.0) *length = 1.0;
@@ -68,6 +72,7 @@ void model_scales(const State *s, double *length, double *speed, double *rate) {
     *speed = fmax(*speed, RADIUS * fabs(slip[2]));
     if (*speed == 0.0) *speed = *length;
     *rate = fmax(sqrt(v[V_stiffness] / v[V_mass]), fmax(fabs(v[V_disc_speed]), v[V_damping] / v[V_mass]));
+    return fmin(fmax(felt / *length, LEAST_FELT), 1.0);
 }
 
 /* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */

@@ -21,7 +21,7 @@ int unit_initialise(Unit *unit, double time) {
     State *s = &unit->state;
     char sentence[INTERNAL_DIGITS];
     const char *reason;
-    double length, speed, rate;
+    double length, speed, rate, share;
     for (int i = 0; i < N_VARIABLES; i++) {
         const Variable *one = &VARIABLES[i];
         double value = s->v[i];
@@ -45,12 +45,12 @@ int unit_initialise(Unit *unit, double time) {
     if (reason) return refuse(unit, reason);
     s->v[V_time] = time;
     s->tolerance = s->v[V_tolerance];
-    model_scales(s, &length, &speed, &rate);
+    share = model_scales(s, &length, &speed, &rate);
     /* Errors are to fall with the tolerance also where communication steps are shorter than it needs. */
     s->longest = rate > 0.0 ? pow(s->tolerance, 0.2) / rate : HUGE_VAL;
     for (int i = 0; i < N_STATES; i++) {
         char kind = STATE_KINDS[i];
-        s->nominal[i] = kind == 'x' ? length : kind == 'v' ? speed : 1.0;
+        s->nominal[i] = share * (kind == 'x' ? length : kind == 'v' ? speed : 1.0);
     }
     s->epsilon = s->v[V_regularisation];
     s->exact = model_exact(s->v);

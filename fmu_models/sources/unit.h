@@ -18,7 +18,7 @@ typedef struct {
     double slowest;    /* slip speed in m/s of the contact, of its slowest point if it has single ones */
     int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
-    int exact; /* whether the contact sticks by events */
+    int exact;         /* whether the contact sticks by events */
     int initialised;
 } State;
 
@@ -44,9 +44,10 @@ struct Unit {
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */
 const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
-int model_exact(const double v[]); /* whether the contact sticks by events, or creeps */
-/* By which errors are measured: a length, a speed, and a rate in 1/s, 0 where inputs may have any. */
-void model_scales(const State *state, double *length, double *speed, double *rate);
+int model_exact(const double v[]);           /* whether the contact sticks by events, or creeps */
+/* The size of what moves, in m and m/s, and its rate in 1/s, 0 where inputs may have any. Returns the share of that size
+   by which errors of small states are measured. */
+double model_scales(const State *state, double *length, double *speed, double *rate);
 void model_evaluate(State *state); /* derivatives and outputs from states and inputs */
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
 /* The states at a time t in s of what rests, in closed form; returns 0, and has none, for what moves. */
