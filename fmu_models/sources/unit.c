@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Share of the speed below which slip counts as rest where the solver is the importer's, whose errors are larger. */
+/* Share of the speed below which slip counts as rest, unless the unit's own solver has smaller errors. */
 #define AS_REST 1e-9
 
 void unit_reset(Unit *unit) {
@@ -54,10 +54,11 @@ int unit_initialise(Unit *unit, double time) {
     }
     s->epsilon = s->v[V_regularisation];
     s->exact = model_exact(s->v);
-    if (s->exact) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
+    if (s->exact) s->epsilon = speed * (unit->exchange ? AS_REST : fmin(s->tolerance, AS_REST));
     /* what is missed then falls like its power 3/2, with the tolerance */
     s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;
+    s->held_up = 0;
     s->mode = SLIPS;
     s->initialised = 1;
     model_change(s);

@@ -16,6 +16,7 @@ typedef struct {
     double tolerance;  /* of the integrator */
     double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
     double slowest;    /* slip speed in m/s of the contact, of its slowest point if it has single ones */
+    int held_up;       /* steps in a row, by and large, that an explicit method can't take longer */
     int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
     int exact;         /* whether the contact sticks by events */

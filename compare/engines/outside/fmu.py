@@ -210,11 +210,13 @@ def _creep(
     """Return below which slip speed in m/s points creep, in proportion to the tolerance, if the model takes that."""
     if CREEPS not in variables or tolerance is None:
         return {}
-    x, y, _, vx, vy, _ = (
+    x, y, _, vx, vy, spin = (
         values.get(f"{name}_start", values.get(name, 0.0)) for name, _ in COLUMNS[DiscOnDisc]
     )
-    turning = abs(system.disc_speed) * max(math.hypot(x, y), system.contact_radius)
-    return {CREEPS: max(min(CREEP * tolerance, MOST_CREEP) * max(math.hypot(vx, vy), turning), LEAST_CREEP)}
+    radius = system.contact_radius
+    turning = max(abs(system.disc_speed) * max(math.hypot(x, y), radius), abs(spin) * radius)
+    creep = min(CREEP * tolerance, MOST_CREEP) * max(math.hypot(vx, vy), turning)
+    return {CREEPS: max(creep, LEAST_CREEP)}
 
 
 def fmu_engine(text: str) -> Engine:
