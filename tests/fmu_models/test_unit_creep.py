@@ -1,4 +1,4 @@
-"""What creeps is stiff: the integrator of co-simulation goes through it by another method, at no cost and no error."""
+"""What creeps is stiff: co-simulation goes through it by another method, in few steps and without error."""
 
 from dataclasses import asdict
 
