@@ -102,6 +102,16 @@ def test_errors_of_a_point_that_rests_are_of_first_order_in_its_creep(instance):
     assert abs(np.log10(errors[0] / errors[1]) - 1.0) < 0.1, errors
 
 
+def test_a_pin_on_a_plane_stops_in_time_even_at_a_coarse_tolerance(instance):
+    unit = instance(
+        "pin", vx=0.3, x=0.0, vy=0.0, disc_speed=0.0, stiffness=0.0, damping=0.0, offset=0.0, friction_force=0.1,
+        tolerance=1e-6,
+    ).started()  # fmt: skip
+    unit.to(4.0)
+    assert abs(unit["stick_time"] - 3.0) < 1e-8
+    assert abs(unit["x"] - 0.45) < 1e-12
+
+
 def test_a_step_can_be_taken_back(instance):
     unit = started(instance, FIG5, FIG5_STARTS["whirl"])
     unit.to(4.0)

@@ -156,6 +156,13 @@ def test_a_disc_that_takes_no_points_is_one_on_the_ring_too():
     assert fmu._values(replace(FIG11, contact_points=6), start, variables)["contact_points"] == 6
 
 
+def test_points_of_a_disc_that_only_spins_creep_in_proportion_to_the_speed_of_its_rim():
+    disc = replace(FIG11, contact_points=6, disc_speed=0.0)
+    (creep,) = fmu._creep(disc, {"spin": -2.0}, {fmu.CREEPS: None}, 1e-9).values()
+    assert creep == pytest.approx(1e2 * 1e-9 * 2.0 * FIG11.contact_radius)
+    assert fmu._creep(disc, {"spin": -2.0}, {}, 1e-9) == {}
+
+
 def test_a_motion_may_start_at_any_time_and_is_the_same_each_time(right):
     times = np.array([0.0, 0.1, 0.1 + 1e-9, 1.0])
     found = [right.simulate(FIG5, START, shift + times).states for shift in (0.0, 0.0, 8.0)]
