@@ -208,8 +208,7 @@ def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
 
 
 @STUDY.claim(
-    "Friction for each axis of the world lets a stuck pin go later than Coulomb's law, and friction along the "
-    "nearest axis at once",
+    "A box around Coulomb's cone lets a stuck pin go later than the cone does, a pyramid within it at once",
     equation="(6), (7)",
     unit="s",
     resolution=1e-2,
