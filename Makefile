@@ -3,6 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
+# Where it is set, as in many images, each of the many processes would compile all of these modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: report readme test lint docs paper dist benchmarks clean
 
 report: $(VENV)/installed

@@ -211,7 +211,7 @@ class ClaimTest(pytest.Item):
         from compare.claims.claim import Verdict
         from compare.run.workers import Failure
 
-        outcome = self.config.stash[_BENCH].outcome(self.study, self.engine)
+        outcome = self.config.stash[_BENCH].outcome(self.study, self.engine, self._asked_with())
         if isinstance(outcome, Failure):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
@@ -229,13 +229,20 @@ class ClaimTest(pytest.Item):
                 INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE], self.engine)
             )
 
+    def _asked_with(self) -> tuple[str, ...]:
+        """Return the parts of the study that the tests of this run are about, be it by -k, -m or their names."""
+        parts = self.study.sentences()
+        tests = (test for test in self.session.items if isinstance(test, ClaimTest))
+        mine = (test for test in tests if (test.study, test.engine) == (self.study, self.engine))
+        return tuple(parts[test.sentence] for test in mine)
+
     def _without_verdict(self, why: str, reason: str) -> NoReturn:
         self.user_properties.append((PROPERTY, why))
         pytest.skip(reason)
 
 
 class Bench:
-    """Measures each study with each engine once, when its first claim is asked for."""
+    """Measures each study with each engine once, as far as it is asked for, when its first claim is."""
 
     def __init__(self, limit: float) -> None:
         from compare.run.workers import Workers
@@ -243,11 +250,11 @@ class Bench:
         self._workers = Workers(1, limit)
         self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
 
-    def outcome(self, study: Study, engine: str) -> Findings | Failure:
-        """Return what ``study`` finds about the engine of that name, or why it finds nothing."""
+    def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
+        """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._workers.submit(key, _measured, study, engine)
+            self._workers.submit(key, _measured, study, engine, parts)
             for done in self._workers.finished():
                 self._outcomes[key] = done.value
         return self._outcomes[key]
@@ -260,12 +267,12 @@ class Bench:
 _BENCH = pytest.StashKey[Bench]()
 
 
-def _measured(study: Study, name: str) -> Findings:
-    """Return what ``study`` finds; the engine is imported here, in a process that may hang or crash."""
+def _measured(study: Study, name: str, parts: tuple[str, ...]) -> Findings:
+    """Return what ``parts`` of ``study`` find; the engine is imported here, in a process that may hang or crash."""
     from compare.engines import engines
     from compare.run.runner import measured
 
-    return measured(study, engines([name])[0])
+    return measured(study, engines([name])[0], parts)
 
 
 def _account(study: Study, claim: Claim, engine: str) -> str:

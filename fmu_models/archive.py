@@ -21,7 +21,7 @@ from fmu_models.variables import Model
 
 FOLDER = Path(__file__).parent / "sources"
 
-SHARED = ("contact.c", "unit.c", "integrator.c")
+SHARED = ("contact.c", "points.c", "unit.c", "integrator.c", "implicit.c")
 
 MADE = "variables.c"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Sequence
 from xml.etree import ElementTree as Xml
 
@@ -39,6 +40,7 @@ CAUSALITY = {
     "input": "input",
     "output": "output",
     "local": "local",
+    "event": "output",
 }
 TYPES = {
     2: {"real": "Real", "whole": "Integer", "boolean": "Boolean"},
@@ -123,7 +125,7 @@ def _variable(parent: Xml.Element, model: Model, place: int, one: Variable, fmi:
     variability = "continuous"
     if one.role == "parameter":
         variability = "fixed"
-    elif one.type != "real":
+    elif one.type != "real" or one.role == "event":
         variability = "discrete"
     known = {
         "name": one.name,
@@ -134,12 +136,12 @@ def _variable(parent: Xml.Element, model: Model, place: int, one: Variable, fmi:
     }
     if one.role in ("parameter", "state"):
         known["initial"] = "exact"
-    elif one.role in ("output", "derivative", "local"):
+    elif one.role in ("output", "derivative", "local", "event"):
         known["initial"] = "calculated"
     typed = {"unit": one.unit} if one.unit else {}
     if one.type != "boolean" and one.role != "time":
-        typed |= {name: _text(one, value) for name, value in (("min", one.least), ("max", one.most))}
-        typed = {name: value for name, value in typed.items() if "inf" not in value}
+        bounds = {"min": one.least, "max": one.most}
+        typed |= {name: _text(one, value) for name, value in bounds.items() if math.isfinite(value)}
     if one.settable and one.start is not None:
         typed["start"] = _text(one, one.start)
     if one.role == "derivative":
@@ -160,8 +162,8 @@ def _text(one: Variable, value: float) -> str:
 def _structure(root: Xml.Element, model: Model, fmi: int) -> None:
     structure = Xml.SubElement(root, "ModelStructure")
     places = {one.name: place for place, one in enumerate(model.variables)}
-    outputs = model.having("state", "output")
-    unknowns = [*model.having("output"), *model.derivatives]
+    outputs = model.having("state", "output", "event")
+    unknowns = [*model.having("output", "event"), *model.derivatives]
     indicators = [one for one in model.variables if one.name == "indicator"]
     groups: tuple[tuple[str, str, Sequence[Variable]], ...] = (
         ("Outputs", "Output", outputs),

@@ -19,6 +19,7 @@ CAUSALITY = {
     "input": "i",
     "output": "o",
     "local": "d",
+    "event": "o",
 }
 TYPE = {"real": "r", "whole": "n", "boolean": "b"}
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from reference_model.systems import COLUMNS, PARAMETERS, DiscOnDisc, PinOnDisc, System
+from reference_model.systems import COLUMNS, MOST_POINTS, PARAMETERS, DiscOnDisc, PinOnDisc, System
 
 MOST_PLATES = 1000
 
@@ -27,7 +27,8 @@ class Variable:
     about : str
         What it is.
     role : str
-        "time", "parameter", "state", "derivative", "input", "output" or "local".
+        "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
+        at events alone.
     start : float, optional
         Value before initialisation; None where it follows from others.
     least, most : float
@@ -193,6 +194,10 @@ def _parameters(kind: type[System], values: Sequence[float]) -> tuple[Variable, 
     )
 
 
+def _points(about: str) -> Variable:
+    return Variable("contact_points", "", about, "parameter", 0.0, 0.0, MOST_POINTS, type="whole")
+
+
 def _supported(kind: type[System], values: Sequence[float], start: Sequence[float]) -> tuple[Variable, ...]:
     return (
         TIME,
@@ -204,6 +209,19 @@ def _supported(kind: type[System], values: Sequence[float], start: Sequence[floa
         *FRICTION,
         Variable("sticks", "", "whether the contact rests as a whole", "output", type="boolean"),
         Variable("indicator", "", "changes its sign where the contact begins or ends to stick", "local"),
+        *_stick_events(COLUMNS[kind]),
+    )
+
+
+def _stick_events(columns: Sequence[tuple[str, str]]) -> tuple[Variable, ...]:
+    """Return what an exact contact tells of when it stuck last: from there on it turned with the disc below."""
+    places = [(name, unit) for name, unit in columns if unit in ("m", "rad")]
+    return (
+        Variable("stick_count", "", "how often the contact began to stick", "event", type="whole"),
+        Variable("stick_time", "s", "when it did last, 0 if never", "event"),
+        *(Variable(f"stick_{name}", unit, f"{ABOUT[name]} then", "event") for name, unit in places),
+        Variable("release_count", "", "how often the contact was let go", "event", type="whole"),
+        Variable("release_time", "s", "when it was last, 0 if never", "event"),
     )
 
 
@@ -216,7 +234,7 @@ PIN = Model(
 
 DISC = Model(
     "disc",
-    "A friction disc on springs and dampers that a ring of contact couples to a turning master disc",
+    "A friction disc on springs and dampers that a ring of contact, or points on it, couples to a turning disc",
     "supported.c",
     (
         *_supported(
@@ -224,6 +242,7 @@ DISC = Model(
             (1.0, 1.0, 0.5, 0.0225, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.12, 0.015, 1.25),
             (0.02, 0.0, 0.0, 0.0, 0.0, 1.3),
         ),
+        _points("points of the contact, at least 3, or 0 for a ring; each creeps below regularisation"),
         Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
     ),
 )
@@ -266,6 +285,18 @@ def _clutch() -> tuple[Variable, ...]:
             1.0,
             type="boolean",
         ),
+        *(
+            Variable(
+                f"pressure_{where}",
+                "",
+                f"of the annulus at its {where} radius, over any, times what wear makes it; in between a parabola",
+                "parameter",
+                1.0,
+                0.0,
+            )
+            for where in ("inner", "mean", "outer")
+        ),
+        _points("points at outer_radius that turn with flange b, or 0; each creeps below regularisation"),
         Variable("plates", "", "pairs of faces in contact", "parameter", 1.0, 1.0, MOST_PLATES, type="whole"),
         Variable("static_ratio", "", "of static to sliding friction", "parameter", 1.0, 1.0),
         REGULARISATION,

@@ -129,6 +129,10 @@ class Declared:
         """Return the sentence of one member of the family."""
         return self.sentence.format(case) if self.each else self.sentence
 
+    def part(self, case: str) -> str:
+        """Return what chooses one member of the family, "function/case", or the claim, "function"."""
+        return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
+
     def identity(self, study: str, case: str) -> str:
         """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
         parts = (study, self.function.__name__.strip("_"), case)
@@ -326,7 +330,7 @@ class Study:
             if declared.of_engine != (engine is not None):
                 continue
             for case, arguments in declared.cases():
-                if only and not {name, f"{name}/{case}"} & set(only):
+                if only and not {name, declared.part(case)} & set(only):
                     continue
                 try:
                     ask = partial(self._asked, declared, case, arguments, few.get(name, {}))
@@ -381,14 +385,10 @@ class Study:
             axes=measured.axes,
         )
 
-    def sentences(self) -> dict[str, Declared]:
-        """Return the sentences that are claimed of engines, known without measuring."""
-        return {
-            declared.sentence_of(case): declared
-            for declared in self.declared
-            if declared.of_engine
-            for case, _ in declared.cases()
-        }
+    def sentences(self) -> dict[str, str]:
+        """Return the sentences that are claimed of engines, and for each what ``only`` of ``measure`` calls it."""
+        of_engines = (declared for declared in self.declared if declared.of_engine)
+        return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 
 
 def _is_open(found: tuple[Claim, Data] | None) -> bool:

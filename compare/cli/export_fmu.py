@@ -67,11 +67,12 @@ def export_pin(unit: Unit) -> None:
 @export_fmu.command("disc", cls=Command)
 @taking(Unit)
 def export_disc(unit: Unit) -> None:
-    """Write the friction disc on a continuous ring; what is not set is Fig. 11 with X0 = 0.
+    """Write the friction disc, on a continuous ring or on points; what is not set is Fig. 11 with X0 = 0.
 
     \b
     Parameters are those of `friction-discs simulate disc`, the start x, y, angle, vx, vy, spin, and:
       exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
+      contact_points=0 (a ring; at least 3 for points, which creep whatever exact is)
     \b
     Example:
       friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu
@@ -86,7 +87,8 @@ def export_clutch(unit: Unit) -> None:
 
     \b
     Parameters:
-      inner_radius=0.1 outer_radius=0.1 wear=0 plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
+      inner_radius=0.1 outer_radius=0.1 wear=0 pressure_inner=1 pressure_mean=1 pressure_outer=1 contact_points=0
+      plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
       mass=1 stiffness=1e6 damping=100 offset=0 hardening=0 stop_gap=0 stop_stiffness=0
     \b
     Example:

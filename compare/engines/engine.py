@@ -89,8 +89,8 @@ class Engine:
     nonlinear : bool
         Whether it simulates supports that harden or have a stop.
     phases : bool
-        Whether its trajectories tell when bodies stick. Otherwise stick is found from the states of a trajectory that
-        tells none, see ``compare.engines.stick``.
+        Whether its trajectories tell when bodies stick. Otherwise, and where one has no phases at all, stick is found
+        from the states, see ``compare.engines.stick``.
     precision : float
         What its states may be off by whatever the tolerance, relative to the motion's own lengths and speeds:
         1e-6 for single precision. See ``compare.engines.precision``.
@@ -239,7 +239,7 @@ class Engine:
             return looked_at(self.function(system, start, times, **self._accuracy(tolerance)), times).states
 
         found = looked_at(answer, times)
-        if self.phases or any(phase.kind != "slip" for phase in found.phases):
+        if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):
             return found
         coarseness = tolerance / USUAL_TOLERANCE
         if self.step is not None:

@@ -89,11 +89,8 @@ def _pieces(study: Study) -> Iterator[tuple[str, ...]]:
     if study.by_hand is not None:
         yield ()
         return
-    for declared in study.declared:
-        if declared.of_engine:
-            for case, _ in declared.cases():
-                name = declared.function.__name__
-                yield (f"{name}/{case}" if declared.each else name,)
+    for part in study.sentences().values():
+        yield (part,)
 
 
 def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], only: tuple[str, ...]) -> int:

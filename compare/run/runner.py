@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -230,16 +230,19 @@ class _Runner:
             self._workers.submit(("draw", name), drawn, study, self._result.data(study), first=True)
 
 
-def measured(study: Study, engine: Engine | None) -> Findings:
-    """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``."""
+def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:
+    """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``.
+
+    ``only`` are the parts of it that are asked for, as ``Study.measure`` has them; empty for all.
+    """
     findings: object = None
     if engine is not None:
         try:
-            findings = study.measure(engine)
+            findings = study.measure(engine, only=only)
         except UnsupportedSystemError as error:
             findings = Findings(not_simulated=str(error))
     elif study.has_theory:
-        findings = study.measure_theory()
+        findings = study.measure_theory(only=only)
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
     return findings

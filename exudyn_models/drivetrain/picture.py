@@ -34,6 +34,9 @@ LINING, BRASS = (0.80, 0.42, 0.16, 1.0), (0.95, 0.75, 0.25, 1.0)
 SHAFT = 0.11
 """Radius of the shaft over that of the disc."""
 
+BEARING = 1.5
+"""Distance of the shaft's bearing from the disc over the radius of the disc."""
+
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 """Of the model: the engine is behind on the right, the gearbox in front on the left."""
 
@@ -70,18 +73,14 @@ def draw_drivetrain(
     outer = drivetrain.outer_radius
     x, y, angle = np.asarray(disc, dtype=float).tolist()
     place = np.array([magnification * x, magnification * y, 0.0])
-    bearing = np.array([magnification * drivetrain.offset, 0.0, 1.5 * outer])
-    through = place - 0.15 * (bearing - place)
-    shaft = graphics.Cylinder(
-        through.tolist(), (bearing - through).tolist(), SHAFT * outer, list(STEEL), nTiles=48
-    )
-    housing = _ring(2.2 * SHAFT * outer, SHAFT * outer, -0.15 * outer, 0.0, IRON)
-    engine_parts, disc_parts = _parts(drivetrain, magnification * drivetrain.stop_gap)
+    bearing = np.array([magnification * drivetrain.offset, 0.0, BEARING * outer])
+    tilt, _ = Rotation.align_vectors([bearing - place], [[0.0, 0.0, 1.0]])
+    engine_parts, disc_parts, shaft, housing = _parts(drivetrain, magnification * drivetrain.stop_gap)
     return _rendered(
         [
             *(_moved(part, np.zeros(3), engine_angle) for part in engine_parts),
             *(_moved(part, place, angle) for part in disc_parts),
-            shaft,
+            graphics.Move(shaft, place.tolist(), tilt.as_matrix()),
             _moved(housing, bearing, 0.0),
         ],
         3.0 * outer,
@@ -91,8 +90,11 @@ def draw_drivetrain(
 
 
 @functools.lru_cache(maxsize=4)
-def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Return what turns with the engine and what is on the disc: most of a picture's time goes into these."""
+def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any, Any]:
+    """Return what turns with the engine, what is on the disc, shaft and bearing: they take most of a picture's time.
+
+    The shaft is as long as it is where it is not tilted.
+    """
     outer, inner, shaft = drivetrain.outer_radius, drivetrain.inner_radius, SHAFT * drivetrain.outer_radius
     on_engine = (
         _ring(1.25 * outer, play + shaft, -0.3 * outer, -0.04 * outer, IRON),
@@ -106,7 +108,12 @@ def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[
         _ring(2.0 * shaft, shaft, -0.1 * outer, 0.1 * outer, STEEL),
         *(_spring(0.45 * outer, 2.0 * math.pi * i / SPRINGS, 0.07 * outer) for i in range(SPRINGS)),
     )
-    return on_engine, on_disc
+    through, bearing = -0.15 * BEARING * outer, BEARING * outer
+    on_axis = graphics.Cylinder(
+        [0.0, 0.0, through], [0.0, 0.0, bearing - through], SHAFT * outer, list(STEEL), nTiles=48
+    )
+    housing = _ring(2.2 * SHAFT * outer, SHAFT * outer, -0.15 * outer, 0.0, IRON)
+    return on_engine, on_disc, on_axis, housing
 
 
 def _ring(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:

@@ -6,12 +6,17 @@
 
 static Contact contact_of(const State *s) {
     const double *v = s->v;
-    Contact contact = {v[V_inner_radius],
-                       v[V_outer_radius],
-                       v[V_wear] != 0.0,
-                       v[V_friction_coefficient] * v[V_engagement] * v[V_normal_load] * v[V_plates],
-                       v[V_static_ratio],
-                       s->epsilon};
+    Contact contact = {
+        .inner = v[V_inner_radius],
+        .outer = v[V_outer_radius],
+        .points = (int)v[V_contact_points],
+        .angle = v[V_angle_b],
+        .wear = v[V_wear] != 0.0,
+        .pressure = {v[V_pressure_inner], v[V_pressure_mean], v[V_pressure_outer]},
+        .friction = v[V_friction_coefficient] * v[V_engagement] * v[V_normal_load] * v[V_plates],
+        .static_ratio = v[V_static_ratio],
+        .epsilon = s->epsilon,
+    };
     return contact;
 }
 
@@ -27,18 +32,36 @@ static void slip_of(const double v[], double slip[3]) {
     slip[2] = v[V_speed_b] - v[V_speed_a];
 }
 
+/* Whether a parabola with these values at 0, 1/2 and 1 is negative in between, or 0 everywhere. */
+static int no_pressure(double inner, double mean, double outer) {
+    double slope = 4.0 * mean - 3.0 * inner - outer, bend = 2.0 * (inner - 2.0 * mean + outer);
+    double at = bend > 0.0 ? fmin(fmax(-0.5 * slope / bend, 0.0), 1.0) : 0.0;
+    return inner + at * (slope + at * bend) < 0.0 || inner + mean + outer == 0.0;
+}
+
 const char *model_refusal(const double v[]) {
+    if (v[V_contact_points] > 0.0 && v[V_inner_radius] != v[V_outer_radius])
+        return "contact_points: points are on a ring, where inner_radius is outer_radius";
+    if (no_pressure(v[V_pressure_inner], v[V_pressure_mean], v[V_pressure_outer]))
+        return "pressure_inner, pressure_mean, pressure_outer: the parabola through them must be >= 0 from the inner to "
+               "the outer radius, and not 0 everywhere";
     if (v[V_inner_radius] > v[V_outer_radius]) return "inner_radius: it must be at most outer_radius";
     return 0;
 }
 
-void model_scales(const State *s, double *length, double *speed, double *rate) {
+int model_exact(const double v[]) {
+    (void)v;
+    return 0;
+}
+
+double model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
     *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), v[V_outer_radius]);
     if (*length == 0.0) *length = 1.0;
     *speed = fmax(hypot(v[V_vx], v[V_vy]), fmax(fabs(v[V_speed_a]), fabs(v[V_speed_b])) * *length);
     if (*speed == 0.0) *speed = *length;
     *rate = 0.0;
+    return 1.0;
 }
 
 void model_evaluate(State *s) {
@@ -46,7 +69,7 @@ void model_evaluate(State *s) {
     Contact contact = contact_of(s);
     Support support = support_of(v);
     slip_of(v, slip);
-    v[V_slip_speed] = friction(&contact, slip, force);
+    v[V_slip_speed] = friction(&contact, slip, force, &s->slowest);
     support_force(&support, z, velocity, elastic);
     v[V_torque_a] = z[1] * force[0] - z[0] * force[1] - force[2];
     v[V_torque_b] = force[2];
@@ -65,7 +88,7 @@ void model_evaluate(State *s) {
 void model_tangent(const State *s, double d[]) {
     const double *v = s->v;
     double z[2] = {v[V_x], v[V_y]}, dz[2] = {d[V_x], d[V_y]}, dv[2] = {d[V_vx], d[V_vy]}, slip[3], force[3];
-    double d_force[3], elastic[2], w = v[V_speed_a], dw = d[V_speed_a], d_friction;
+    double d_force[3], elastic[2], unused, w = v[V_speed_a], dw = d[V_speed_a], d_friction;
     Contact contact = contact_of(s);
     Support support = support_of(v);
     double d_slip[3] = {dv[0] + w * dz[1] + dw * z[1], dv[1] - w * dz[0] - dw * z[0], d[V_speed_b] - dw};
@@ -73,8 +96,8 @@ void model_tangent(const State *s, double d[]) {
                                 v[V_friction_coefficient] * d[V_engagement] * v[V_normal_load] +
                                 v[V_friction_coefficient] * v[V_engagement] * d[V_normal_load]);
     slip_of(v, slip);
-    friction(&contact, slip, force);
-    d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, d_friction, d_force);
+    friction(&contact, slip, force, &unused);
+    d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, d_friction, d[V_angle_b], d_force);
     support_tangent(&support, z, dz, dv, elastic);
     d[V_torque_a] = dz[1] * force[0] + z[1] * d_force[0] - dz[0] * force[1] - z[0] * d_force[1] - d_force[2];
     d[V_torque_b] = d_force[2];
@@ -89,6 +112,11 @@ void model_tangent(const State *s, double d[]) {
     d[V_der_vx] = (d_force[0] + elastic[0]) / v[V_mass];
     d[V_der_vy] = (d_force[1] + elastic[1]) / v[V_mass];
     d[V_der_heat] = d[V_heat_rate];
+}
+
+int model_carried(const State *s, double t, double x[N_STATES]) {
+    (void)s, (void)t, (void)x;
+    return 0;
 }
 
 int model_change(State *s) {

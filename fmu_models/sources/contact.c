@@ -6,6 +6,7 @@
    K - E = K (k^2/2 + k^2 T), k^2 T = sum over n >= 1 of 2^(n-1) c_n^2 (DLMF 19.8.6): none of what follows subtracts
    numbers that are nearly alike but where a logarithm outgrows it. */
 #include "contact.h"
+#include "points.h"
 #include "variables.h"
 #include <math.h>
 
@@ -51,6 +52,15 @@ void ring_curvatures(double U, double W, double curvature[3]) {
     curvature[2] = U > W ? sharp : k * k * sharp;
 }
 
+/* Share of the load on the ring of a radius in m, per m: by Simpson's rule, which is exact for a cubic, it is 1. */
+static double share_at(const Contact *c, double r) {
+    double width = c->outer - c->inner, s = (r - c->inner) / width, a = c->inner, b = c->outer, whole;
+    double inner = c->pressure[0], mean = c->pressure[1], outer = c->pressure[2];
+    double pressure = inner * (1.0 - s) * (1.0 - 2.0 * s) + 4.0 * mean * s * (1.0 - s) + outer * s * (2.0 * s - 1.0);
+    whole = c->wear ? inner + 4.0 * mean + outer : a * inner + 2.0 * (a + b) * mean + b * outer;
+    return 6.0 * (c->wear ? pressure : r * pressure) / (width * whole);
+}
+
 /* Adds slopes and curvatures of the rings of one side of the annulus, from the radius at rest. */
 static void add_side(const Contact *c, double U, double S, double rest, double near, double far, double slope[2],
                      double *curvature) {
@@ -58,9 +68,7 @@ static void add_side(const Contact *c, double U, double S, double rest, double n
     double length = far - rest, from = cbrt((near - rest) / length);
     for (int i = 0; i < N_GAUSS; i++) {
         double t = from + (1.0 - from) * GAUSS_PLACES[i], r = rest + length * t * t * t, by[2], twice[3];
-        double share = (1.0 - from) * GAUSS_WEIGHTS[i] * 3.0 * t * t * fabs(length);
-        share *= c->wear ? 1.0 / (c->outer - c->inner)
-                         : 2.0 * r / ((c->outer - c->inner) * (c->outer + c->inner));
+        double share = (1.0 - from) * GAUSS_WEIGHTS[i] * 3.0 * t * t * fabs(length) * share_at(c, r);
         ring_slopes(U, r * S, by);
         slope[0] += share * by[0];
         slope[1] += share * r * by[1];
@@ -104,14 +112,12 @@ double slip_potential(const Contact *contact, double U, double S, double slope[2
     return slope[0] * U + slope[1] * fabs(S);
 }
 
-/* Friction over mu N at P/epsilon, and its derivative by that: viscous up to 1, falling like a root to 2. */
-static double law(double share, double static_ratio, double *by_share) {
+/* Friction of what slips as fast over that of sliding, and its derivative by P/epsilon: falling like a root from 1 to
+   2. */
+static double peak(double share, double static_ratio, double *by_share) {
     double root, full;
-    if (share < 1.0) {
-        *by_share = static_ratio;
-        return static_ratio * share;
-    }
     *by_share = 0.0;
+    if (share < 1.0) return static_ratio;
     if (share >= 2.0) return 1.0;
     root = sqrt(share - 1.0 + ROUNDING * ROUNDING);
     full = sqrt(1.0 + ROUNDING * ROUNDING) - ROUNDING;
@@ -119,27 +125,53 @@ static double law(double share, double static_ratio, double *by_share) {
     return static_ratio - (static_ratio - 1.0) * (root - ROUNDING) / full;
 }
 
-double friction(const Contact *contact, const double slip[3], double force[3]) {
-    double slope[2], unused, U = hypot(slip[0], slip[1]), P = slip_potential(contact, U, slip[2], slope);
-    double factor = -contact->friction * law(P / contact->epsilon, contact->static_ratio, &unused);
-    double along = U > 0.0 ? factor * slope[0] / U : 0.0;
+/* Friction over mu N of a contact that is viscous as a whole, below 1. */
+static double law(double share, double static_ratio, double *by_share) {
+    double found = peak(share, static_ratio, by_share);
+    if (share >= 1.0) return found;
+    *by_share = static_ratio;
+    return static_ratio * share;
+}
+
+double friction(const Contact *contact, const double slip[3], double force[3], double *slowest) {
+    double slope[2], unused, U = hypot(slip[0], slip[1]), P, factor, along;
+    if (contact->points > 0) {
+        P = points_slip(contact, slip, force, slowest);
+        factor = -contact->friction * peak(P / contact->epsilon, contact->static_ratio, &unused);
+        for (int i = 0; i < 3; i++) force[i] *= factor;
+        return P;
+    }
+    *slowest = P = slip_potential(contact, U, slip[2], slope);
+    factor = -contact->friction * law(P / contact->epsilon, contact->static_ratio, &unused);
+    along = U > 0.0 ? factor * slope[0] / U : 0.0;
     force[0] = along * slip[0];
     force[1] = along * slip[1];
     force[2] = factor * (slip[2] < 0.0 ? -slope[1] : slope[1]);
     return P;
 }
 
+static double tangent_of_points(const Contact *contact, const double slip[3], const double d[3], double d_friction,
+                                double d_angle, double d_force[3]) {
+    double mean[3], slowest, by_share, P = points_slip(contact, slip, mean, &slowest);
+    double factor = peak(P / contact->epsilon, contact->static_ratio, &by_share);
+    double dP = points_slip_tangent(contact, slip, d, d_angle, d_force);
+    double d_factor = d_friction * factor + contact->friction * by_share * dP / contact->epsilon;
+    for (int i = 0; i < 3; i++) d_force[i] = -contact->friction * factor * d_force[i] - d_factor * mean[i];
+    return dP;
+}
+
 double friction_tangent(const Contact *contact, const double slip[3], const double d[3], double d_friction,
-                        double d_force[3]) {
+                        double d_angle, double d_force[3]) {
     double U = hypot(slip[0], slip[1]), S = fabs(slip[2]), sign = slip[2] < 0.0 ? -1.0 : 1.0;
-    double slope[2], twice[3], by_share, ex, ey, dU, dS, dP, factor, d_factor, d_along, across;
+    double slope[2], twice[3], by_share, ex, ey, dU, dS, dP, factor, d_factor, d_along, across, unused;
+    if (contact->points > 0) return tangent_of_points(contact, slip, d, d_friction, d_angle, d_force);
     if (U == 0.0 && S == 0.0) { /* of degree 1 below epsilon: along d it grows as it is there */
         Contact one = *contact;
         dP = slip_potential(contact, hypot(d[0], d[1]), d[2], slope);
         one.friction *= contact->static_ratio * dP / contact->epsilon;
         one.static_ratio = 1.0;
         one.epsilon = 0.5 * dP > 0.0 ? 0.5 * dP : 1.0;
-        friction(&one, d, d_force);
+        friction(&one, d, d_force, &unused);
         return dP;
     }
     derivatives(contact, U, S, slope, twice);

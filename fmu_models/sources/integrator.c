@@ -1,6 +1,7 @@
 /* Dormand and Prince's pair of orders 5 and 4 with error control, and the events of exact Coulomb friction by its
-   continuous extension of order 4 (Hairer, Norsett, Wanner, Solving ODE I, II.5 and II.6). */
-#include "unit.h"
+   continuous extension of order 4 (Hairer, Norsett, Wanner, Solving ODE I, II.5 and II.6). What creeps is stiff, and
+   then goes by Radau's method. */
+#include "step.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +9,8 @@
 #define MOST_STEPS 20000000L /* between two communication points */
 #define SAMPLES 8 /* of a step, between which an event is looked for */
 #define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
-#define N (N_STATES)
+#define AT_LIMIT 3.25 /* h times the largest eigenvalue, where explicit steps are about to be unstable (IV.2 of II) */
+#define IN_A_ROW 15   /* such steps, from which on steps are implicit */
 
 static const double A[6][6] = {
     {1.0 / 5},
@@ -21,21 +23,37 @@ static const double A[6][6] = {
 static const double C[6] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
 static const double E[7] = {71.0 / 57600,      0.0,          -71.0 / 16695, 71.0 / 1920,
                             -17253.0 / 339200, 22.0 / 525,   -1.0 / 40};
-typedef struct {
-    double t, h, y[N], k[7][N], end[N], slip; /* its speed where the step begins */
-} Step;
 
-static void rates(State *s, double t, const double y[N], double f[N]) {
+void rates(State *s, double t, const double y[N], double f[N]) {
     s->v[V_time] = t;
     for (int i = 0; i < N; i++) s->v[STATES[i]] = y[i];
     model_evaluate(s);
     for (int i = 0; i < N; i++) f[i] = s->v[DERIVATIVES[i]];
 }
 
+double allowed(const State *s, const Step *one, int i) {
+    double size = s->tolerance * (s->nominal[i] + fmax(fabs(one->y[i]), fabs(one->end[i])));
+    return STATE_KINDS[i] == 'v' ? fmin(size, DIRECTION * fmax(one->slip, s->epsilon)) : size;
+}
+
+/* Counts explicit steps that are as long as they can be; last is where the last but one stage was. */
+static void watch(State *s, const Step *one, const double last[N]) {
+    double slopes = 0.0, ways = 0.0;
+    for (int i = 0; i < N; i++) {
+        double size = allowed(s, one, i);
+        slopes = fmax(slopes, fabs(one->k[6][i] - one->k[5][i]) / size);
+        ways = fmax(ways, fabs(one->end[i] - last[i]) / size);
+    }
+    if (one->h * slopes > AT_LIMIT * ways) s->held_up++;
+    else if (s->held_up > 0) s->held_up--;
+}
+
 /* Fills k[1..6] and the end of a step of which t, h, y and k[0] are there; returns its error over what is allowed. */
-static double attempt(State *s, Step *one) {
-    double worst = 0.0;
+static double explicit_attempt(State *s, Step *one) {
+    double worst = 0.0, last[N];
+    if (model_carried(s, one->t + one->h, one->end)) return 0.0;
     for (int stage = 0; stage < 6; stage++) {
+        memcpy(last, one->end, sizeof last);
         for (int i = 0; i < N; i++) {
             double sum = 0.0;
             for (int j = 0; j <= stage; j++) sum += A[stage][j] * one->k[j][i];
@@ -44,14 +62,22 @@ static double attempt(State *s, Step *one) {
         rates(s, one->t + C[stage] * one->h, one->end, one->k[stage + 1]);
     }
     for (int i = 0; i < N; i++) {
-        double error = 0.0, size = s->nominal[i] + fmax(fabs(one->y[i]), fabs(one->end[i]));
+        double error = 0.0;
         for (int j = 0; j < 7; j++) error += E[j] * one->k[j][i];
-        size *= s->tolerance;
-        if (STATE_KINDS[i] == 'v') size = fmin(size, DIRECTION * fmax(one->slip, s->epsilon));
-        error = fabs(one->h * error) / size;
+        error = fabs(one->h * error) / allowed(s, one, i);
         if (!(error <= worst)) worst = error; /* what is no number, too */
     }
+    if (worst <= 1.0 && !s->exact) watch(s, one, last);
     return worst;
+}
+
+static double attempt(State *s, Step *one) {
+    double J[N][N];
+    if (s->held_up < IN_A_ROW) return explicit_attempt(s, one);
+    memcpy(one->end, one->y, sizeof one->end);
+    if (is_stiff(s, one, J)) return implicit_attempt(s, one, J);
+    s->held_up = 0;
+    return explicit_attempt(s, one);
 }
 
 #ifdef V_indicator
@@ -60,7 +86,8 @@ static const double D[7] = {-12715105075.0 / 11282082432, 0.0, 87487479700.0 / 3
                             -1453857185.0 / 822651844,    69997945.0 / 29380423};
 
 /* The state at the share x of a step. */
-static void within(const Step *one, double x, double y[N]) {
+static void within(const State *s, const Step *one, double x, double y[N]) {
+    if (model_carried(s, one->t + x * one->h, y)) return;
     for (int i = 0; i < N; i++) {
         double rise = one->end[i] - one->y[i], first = one->h * one->k[0][i] - rise, last = 0.0;
         for (int j = 0; j < 7; j++) last += D[j] * one->k[j][i];
@@ -71,15 +98,16 @@ static void within(const Step *one, double x, double y[N]) {
 
 static double indicator(State *s, const Step *one, double x) {
     double y[N], f[N];
-    within(one, x, y);
+    within(s, one, x, y);
     rates(s, one->t + x * one->h, y, f);
     return s->v[V_indicator];
 }
 
 /* Whether the sign of the indicator changes in a step, which then ends just behind that. */
 static int event(State *s, Step *one) {
-    double before = indicator(s, one, 0.0);
-    if (s->v[V_exact] == 0.0) return 0;
+    double before;
+    if (!s->exact) return 0;
+    before = indicator(s, one, 0.0);
     for (int i = 1; i <= SAMPLES; i++) {
         double low = (i - 1.0) / SAMPLES, high = i / (double)SAMPLES;
         if ((indicator(s, one, high) > 0.0) == (before > 0.0)) continue;
@@ -88,7 +116,7 @@ static int event(State *s, Step *one) {
             if ((indicator(s, one, middle) > 0.0) == (before > 0.0)) low = middle;
             else high = middle;
         }
-        within(one, high, one->end);
+        within(s, one, high, one->end);
         one->h *= high;
         return 1;
     }
@@ -117,7 +145,7 @@ int unit_advance(Unit *unit, double until) {
     one.t = begin;
     for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
     rates(s, one.t, one.y, one.k[0]);
-    one.slip = s->v[V_slip_speed];
+    one.slip = s->slowest;
     if (!(s->step > 0.0)) s->step = first_step(s, one.y, one.k[0], until - begin);
     while (until - one.t > least) {
         double error, factor, left = until - one.t;
@@ -132,7 +160,7 @@ int unit_advance(Unit *unit, double until) {
             return 1;
         }
         error = attempt(s, &one);
-        factor = error > 0.0 ? 0.9 * pow(error, -0.2) : 5.0;
+        factor = error > 0.0 ? 0.9 * pow(error, -0.2) : error == 0.0 ? 5.0 : 0.2;
         if (!(error <= 1.0)) { /* or no number */
             s->step = one.h * (factor > 0.1 ? fmin(factor, 0.9) : 0.1);
             if (s->step < least) {
@@ -153,7 +181,7 @@ int unit_advance(Unit *unit, double until) {
         if (happens && model_change(s)) /* it jumps onto what holds it, or away */
             for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
         rates(s, one.t, one.y, one.k[0]);
-        one.slip = s->v[V_slip_speed];
+        one.slip = s->slowest;
         if (unit->between && unit->between(unit, one.t) && until - one.t > least) return 2;
     }
     s->v[V_time] = until;

@@ -4,17 +4,26 @@
 #include "support.h"
 #include "unit.h"
 
+/* Share of the size of the motion by which errors are measured at least, well above rounding. */
+#define LEAST_FELT 0.1
+
 #ifdef V_spin
-#define SPIN v[V_spin]
 #define RADIUS v[V_contact_radius]
 #else
-#define SPIN 0.0
 #define RADIUS 0.0
 #endif
 
 static Contact contact_of(const State *s) {
     const double *v = s->v;
-    Contact contact = {RADIUS, RADIUS, 0, v[V_friction_force], 1.0, s->epsilon};
+    Contact contact = {.inner = RADIUS,
+                       .outer = RADIUS,
+#ifdef V_contact_points
+                       .points = (int)v[V_contact_points],
+                       .angle = v[V_angle],
+#endif
+                       .friction = v[V_friction_force],
+                       .static_ratio = 1.0,
+                       .epsilon = s->epsilon};
     return contact;
 }
 
@@ -36,12 +45,26 @@ static void slip_of(const double v[], double slip[3]) {
 
 const char *model_refusal(const double v[]) {
     (void)v;
+#ifdef V_contact_points
+    if (v[V_contact_points] == 1.0 || v[V_contact_points] == 2.0)
+        return "contact_points: it must be 0 for the continuous ring, or at least 3";
+#endif
     return 0;
 }
 
-void model_scales(const State *s, double *length, double *speed, double *rate) {
+int model_exact(const double v[]) {
+#ifdef V_contact_points
+    if (v[V_contact_points] > 0.0) return 0; /* single ones of them may rest, which is a motion of its own */
+#endif
+    return v[V_exact] != 0.0;
+}
+
+/* What friction does is as large as the offset and what the spring gives way under it. Small states are those of a
+   whirl that is larger, as they pass 0. */
+double model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
-    double slip[3];
+    double slip[3], felt = fabs(v[V_offset]);
+    if (v[V_stiffness] > 0.0) felt = fmax(felt, v[V_friction_force] / v[V_stiffness]);
     slip_of(v, slip);
     *length = fmax(fmax(hypot(v[V_x], v[V_y]), fabs(v[V_offset])), RADIUS);
     if (*length == 0.0) *length = 1.0;
@@ -49,6 +72,7 @@ void model_scales(const State *s, double *length, double *speed, double *rate) {
     *speed = fmax(*speed, RADIUS * fabs(slip[2]));
     if (*speed == 0.0) *speed = *length;
     *rate = fmax(sqrt(v[V_stiffness] / v[V_mass]), fmax(fabs(v[V_disc_speed]), v[V_damping] / v[V_mass]));
+    return fmin(fmax(felt / *length, LEAST_FELT), 1.0);
 }
 
 /* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */
@@ -112,13 +136,13 @@ void model_evaluate(State *s) {
     Contact contact = contact_of(s);
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        v[V_slip_speed] = friction(&contact, slip, force);
+        v[V_slip_speed] = friction(&contact, slip, force, &s->slowest);
         v[V_indicator] = v[V_slip_speed] - s->epsilon;
         slips(s, force);
     } else {
         double needed = held_by(s, force, by);
         if (s->mode == STICKS) {
-            v[V_slip_speed] = 0.0;
+            s->slowest = v[V_slip_speed] = 0.0;
             v[V_indicator] = v[V_friction_force] - needed;
             rests(s);
         } else { /* it ends where the slip is fast enough, or turns back */
@@ -127,7 +151,7 @@ void model_evaluate(State *s) {
                 along += force[i] / needed * slip[i];
                 force[i] *= v[V_friction_force] / needed;
             }
-            v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
+            s->slowest = v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
             v[V_indicator] = fmin(s->leaving - v[V_slip_speed], s->epsilon - along);
             slips(s, force);
         }
@@ -146,12 +170,14 @@ void model_tangent(const State *s, double d[]) {
     Support support = support_of(v);
     double w = v[V_disc_speed], z[2] = {v[V_x], v[V_y]}, dz[2] = {d[V_x], d[V_y]}, dv[2] = {d[V_vx], d[V_vy]};
     double slip[3], d_slip[3] = {dv[0] + w * dz[1], dv[1] - w * dz[0], 0.0}, force[3], d_force[3], by[2], elastic[2];
+    double d_angle = 0.0;
 #ifdef V_spin
     d_slip[2] = d[V_spin];
+    d_angle = d[V_angle];
 #endif
     slip_of(v, slip);
     if (s->mode == SLIPS) {
-        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_force);
+        d[V_slip_speed] = friction_tangent(&contact, slip, d_slip, 0.0, d_angle, d_force);
     } else {
         double needed = held_by(s, force, by), d_needed = held_tangent(s, dz, force, by, d_force), slope[2];
         d[V_slip_speed] = 0.0;
@@ -191,14 +217,32 @@ void model_tangent(const State *s, double d[]) {
 #endif
 }
 
+int model_carried(const State *s, double t, double x[N_STATES]) {
+    const double *v = s->v;
+    double w = v[V_disc_speed], turned = w * (t - v[V_stick_time]), carried[N_VARIABLES];
+    if (s->mode != STICKS) return 0;
+    carried[V_x] = cos(turned) * v[V_stick_x] - sin(turned) * v[V_stick_y];
+    carried[V_y] = sin(turned) * v[V_stick_x] + cos(turned) * v[V_stick_y];
+    carried[V_vx] = -w * carried[V_y];
+    carried[V_vy] = w * carried[V_x];
+#ifdef V_spin
+    carried[V_angle] = v[V_stick_angle] + turned;
+    carried[V_spin] = w;
+#endif
+    for (int i = 0; i < N_STATES; i++) x[i] = carried[STATES[i]];
+    return 1;
+}
+
 int model_change(State *s) {
     double *v = s->v, force[3], slip[3], slope[2], by[2], w = v[V_disc_speed], needed, speed;
     Contact contact = contact_of(s);
-    if (v[V_exact] == 0.0) return 0;
+    if (!s->exact) return 0;
     needed = held_by(s, force, by);
     if (s->mode == STICKS) {
         if (needed < v[V_friction_force] * (1.0 - 1e-12)) return 0;
         s->mode = LEAVES;
+        v[V_release_count] += 1.0;
+        v[V_release_time] = v[V_time];
         return 1;
     }
     slip_of(v, slip);
@@ -209,9 +253,14 @@ int model_change(State *s) {
     }
     if (speed > 1.01 * s->epsilon || needed >= v[V_friction_force] * (1.0 - 1e-9)) return 0;
     s->mode = STICKS;
+    v[V_stick_count] += 1.0;
+    v[V_stick_time] = v[V_time];
+    v[V_stick_x] = v[V_x];
+    v[V_stick_y] = v[V_y];
     v[V_vx] = -w * v[V_y];
     v[V_vy] = w * v[V_x];
 #ifdef V_spin
+    v[V_stick_angle] = v[V_angle];
     v[V_spin] = w;
 #endif
     return 1;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Share of the speed below which slip counts as rest where the solver is the importer's, whose errors are larger. */
+/* Share of the speed below which slip counts as rest, unless the unit's own solver has smaller errors. */
 #define AS_REST 1e-9
 
 void unit_reset(Unit *unit) {
@@ -21,7 +21,7 @@ int unit_initialise(Unit *unit, double time) {
     State *s = &unit->state;
     char sentence[INTERNAL_DIGITS];
     const char *reason;
-    double length, speed, rate;
+    double length, speed, rate, share;
     for (int i = 0; i < N_VARIABLES; i++) {
         const Variable *one = &VARIABLES[i];
         double value = s->v[i];
@@ -45,20 +45,20 @@ int unit_initialise(Unit *unit, double time) {
     if (reason) return refuse(unit, reason);
     s->v[V_time] = time;
     s->tolerance = s->v[V_tolerance];
-    model_scales(s, &length, &speed, &rate);
+    share = model_scales(s, &length, &speed, &rate);
     /* Errors are to fall with the tolerance also where communication steps are shorter than it needs. */
     s->longest = rate > 0.0 ? pow(s->tolerance, 0.2) / rate : HUGE_VAL;
     for (int i = 0; i < N_STATES; i++) {
         char kind = STATE_KINDS[i];
-        s->nominal[i] = kind == 'x' ? length : kind == 'v' ? speed : 1.0;
+        s->nominal[i] = share * (kind == 'x' ? length : kind == 'v' ? speed : 1.0);
     }
     s->epsilon = s->v[V_regularisation];
-#ifdef V_exact
-    if (s->v[V_exact] != 0.0) s->epsilon = speed * (unit->exchange ? AS_REST : s->tolerance);
-#endif
+    s->exact = model_exact(s->v);
+    if (s->exact) s->epsilon = speed * (unit->exchange ? AS_REST : fmin(s->tolerance, AS_REST));
     /* what is missed then falls like its power 3/2, with the tolerance */
     s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;
+    s->held_up = 0;
     s->mode = SLIPS;
     s->initialised = 1;
     model_change(s);

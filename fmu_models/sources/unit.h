@@ -15,8 +15,11 @@ typedef struct {
     double longest;    /* of its steps, in s */
     double tolerance;  /* of the integrator */
     double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
+    double slowest;    /* slip speed in m/s of the contact, of its slowest point if it has single ones */
+    int held_up;       /* steps in a row, by and large, that an explicit method can't take longer */
     int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
+    int exact;         /* whether the contact sticks by events */
     int initialised;
 } State;
 
@@ -42,10 +45,14 @@ struct Unit {
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */
 const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
-/* By which errors are measured: a length, a speed, and a rate in 1/s, 0 where inputs may have any. */
-void model_scales(const State *state, double *length, double *speed, double *rate);
+int model_exact(const double v[]);           /* whether the contact sticks by events, or creeps */
+/* The size of what moves, in m and m/s, and its rate in 1/s, 0 where inputs may have any. Returns the share of that size
+   by which errors of small states are measured. */
+double model_scales(const State *state, double *length, double *speed, double *rate);
 void model_evaluate(State *state); /* derivatives and outputs from states and inputs */
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
+/* The states at a time t in s of what rests, in closed form; returns 0, and has none, for what moves. */
+int model_carried(const State *state, double t, double x[N_STATES]);
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
 
 void unit_reset(Unit *unit);

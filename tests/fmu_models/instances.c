@@ -17,6 +17,8 @@ int main(int count, char **arguments) {
         units[i]->say = say;
         unit_reset(units[i]);
         unit_set(units[i], V_inner_radius, 'r', i % 2 ? 0.1 : 0.08);
+        if (i % 4 == 1) unit_set(units[i], V_contact_points, 'n', 3 + i % 5);
+        unit_set(units[i], V_pressure_mean, 'r', 1.0 + 0.1 * (i % 4));
         unit_set(units[i], V_regularisation, 'r', 1e-3);
         unit_set(units[i], V_static_ratio, 'r', 1.0 + 0.1 * (i % 3));
         unit_set(units[i], V_mass, 'r', 1.0 + i);

@@ -1,6 +1,7 @@
 """Units as files: by both standards, with FMPy for an importer, judged as an engine, and without a compiler."""
 
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.cli import app as cli
-from compare.engines import engines
+from compare.engines import StatesOnly, engines
 from compare.studies.engines.trajectories import STUDY
 from fmu_models import CLUTCH, MODELS, PIN, HeadersMissingError, archive, export
 from fmu_models.archive import FOLDER, sources_of
@@ -20,6 +21,7 @@ from fmpy.validation import validate_fmu  # noqa: E402
 
 import reference_model  # noqa: E402
 
+SIX = replace(FIG11, contact_points=6)
 BOTH = pytest.mark.parametrize("fmi", [2, 3])
 NAMES = {"pin": ["x", "y", "vx", "vy"], "disc": ["x", "y", "angle", "vx", "vy", "spin"]}
 
@@ -38,12 +40,18 @@ def simulated(file, kind, names, **more):
 @BOTH
 @pytest.mark.parametrize(
     ("name", "system", "start"),
-    [("pin", FIG5, (0.9, 0.0, 0.0, 0.9)), ("disc", FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3))],
+    [
+        ("pin", FIG5, (0.9, 0.0, 0.0, 0.9)),
+        ("disc", FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)),
+        ("disc", SIX, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)),
+    ],
+    ids=["pin", "ring", "six points"],
 )
 def test_slip_by_a_solver_of_others_is_that_of_the_reference(unit, name, system, start, fmi):
+    points = {"contact_points": 6} if system is SIX else {}
     run = simulated(
         unit(name, fmi), "ModelExchange", NAMES[name], stop_time=100.0, output_interval=1.0, solver="CVode",
-        relative_tolerance=1e-12, start_values=dict(zip(NAMES[name], start, strict=True)),
+        relative_tolerance=1e-10, start_values=dict(zip(NAMES[name], start, strict=True)) | points,
     )  # fmt: skip
     reference = reference_model.simulate(system, start, [0.0, 100.0], tolerance=1e-13)
     found = [run[one][-1] for one in NAMES[name]]
@@ -91,16 +99,64 @@ def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
     instance.freeInstance()
 
 
-def moves(file):
+PLAIN = {"pin": "a pin", "ring": "a disc on the continuous ring", "points": "a disc on six points"}
+"""Of kinds of contact: which motion shows whether one moves as it should."""
+
+
+def moves(file, kind):
     (engine,) = engines([f"fmu:{file}"])
-    kind = "a pin" if "pin" in engine.name else "a disc on the continuous ring"
-    (claim,) = STUDY.measure(engine, only=[f"moves/{kind}"]).claims
+    (claim,) = STUDY.measure(engine, only=[f"moves/{PLAIN[kind]}"]).claims
     return claim.verdict
 
 
-@pytest.mark.parametrize("name", ["pin", "disc"])
-def test_a_judge_agrees_with_the_unit(unit, name):
-    assert moves(unit(name)) is Verdict.AGREES
+@pytest.mark.parametrize("kind", PLAIN)
+def test_a_judge_agrees_with_the_unit(unit, kind):
+    assert moves(unit("pin" if kind == "pin" else "disc"), kind) is Verdict.AGREES
+
+
+def test_points_that_rest_creep_less_the_smaller_the_tolerance_and_tell_no_phases_of_their_own(unit):
+    (engine,) = engines([f"fmu:{unit('disc')}"])
+    start = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
+    expected = reference_model.simulate(SIX, start, [0.0, 40.0], tolerance=1e-12)
+    found = [engine.simulate(SIX, start, [0.0, 40.0], tolerance=tolerance) for tolerance in (8e-9, 1e-9)]
+    errors = [np.max(np.abs(one.at_end - expected.at_end)) for one in found]
+    assert {phase.kind for phase in expected.phases} == {"slip", "pivot"}
+    assert errors[1] < 1e-6
+    assert 7.0 < errors[0] / errors[1] < 9.0
+    assert all(isinstance(one, StatesOnly) for one in found)
+
+
+@BOTH
+@pytest.mark.parametrize("times", [(0.0, 60.0), np.linspace(0.0, 60.0, 1201)], ids=["one step", "many steps"])
+def test_the_unit_tells_all_its_phases_whatever_the_communication_steps(unit, fmi, times):
+    (engine,) = engines([f"fmu:{unit('pin', fmi)}"])
+    found = engine.simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=1e-11)
+    expected = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 60.0], tolerance=1e-13)
+    assert engine.phases
+    assert [phase.kind for phase in found.phases] == [phase.kind for phase in expected.phases]
+    assert len(found.phases) > 8
+    for mine, theirs in zip(found.phases, expected.phases, strict=True):
+        np.testing.assert_allclose((mine.start, mine.end), (theirs.start, theirs.end), rtol=0.0, atol=1e-7)
+        np.testing.assert_allclose(mine.initial_state, theirs.initial_state, rtol=0.0, atol=1e-7)
+
+
+def test_a_disc_that_rests_from_the_start_turns_in_closed_form_until_it_is_let_go(unit):
+    (engine,) = engines([f"fmu:{unit('disc')}"])
+    place, speed = -0.01, FIG11.disc_speed
+    disc = replace(FIG11, shaft_damping=0.0, damping=0.0, offset=0.015)  # towards x > 0 holding it takes more
+    carried = (place, 0.0, 0.0, 0.0, speed * place, speed)
+    expected = reference_model.simulate(disc, carried, [0.0, 2.0], tolerance=1e-13)
+    found = engine.simulate(disc, carried, [0.0, 0.5, 2.0], tolerance=1e-6)
+    assert [phase.kind for phase in expected.phases][:2] == ["stick", "slip"]
+    assert [phase.kind for phase in found.phases][:2] == ["stick", "slip"]
+    assert abs(found.phases[0].end - expected.phases[0].end) < 1e-13
+    np.testing.assert_allclose(found.phases[1].initial_state, expected.phases[1].initial_state, atol=1e-14)
+
+
+def test_a_unit_that_creeps_tells_no_phases(needs_compiler, tmp_path):
+    file = export(PIN.starting(exact=0.0), tmp_path / "creeps.fmu").file
+    (engine,) = engines([f"fmu:{file}"])
+    assert not engine.phases
 
 
 MISTAKES = {
@@ -109,10 +165,16 @@ MISTAKES = {
     "friction weaker along y": ("contact.c", "along * slip[1]", "0.99 * along * slip[1]"),
     "friction pushes": (
         "contact.c",
-        "double factor = -contact->friction",
-        "double factor = contact->friction",
+        "factor = -contact->friction * law",
+        "factor = contact->friction * law",
     ),
     "a ring as slippery as its peak": ("contact.c", "k * (0.5 - T) / A", "k * (0.5 + T) / A"),
+    "points not a turn apart": ("points.c", "TURN * i / c->points", "TURN * i / (c->points + 1)"),
+    "points that push across": (
+        "points.c",
+        "arm[0] * y - arm[1] * x);\n        sum",
+        "arm[1] * x);\n        sum",
+    ),
     "a weight of the pair": ("integrator.c", "500.0 / 1113", "501.0 / 1113"),
 }
 """Of the C sources: a file, what stands in it, and what takes its place."""
@@ -130,9 +192,9 @@ def test_a_judge_sees_a_mistake_in_the_sources(needs_compiler, tmp_path, monkeyp
     (sources / file).write_text(text.replace(right, wrong))
     monkeypatch.setattr(archive, "FOLDER", sources)
     monkeypatch.setattr(archive, "OPTIONS", ("-std=c99", "-O0", "-fPIC", "-shared"))
-    model = "disc" if "ring" in mistake else "pin"
-    unit = export(MODELS[model], tmp_path / f"{model}.fmu").file
-    assert moves(unit) is Verdict.DIFFERS
+    kind = next((kind for kind in PLAIN if kind in mistake), "pin")
+    model = "pin" if kind == "pin" else "disc"
+    assert moves(export(MODELS[model], tmp_path / f"{model}.fmu").file, kind) is Verdict.DIFFERS
 
 
 @BOTH

@@ -3,6 +3,7 @@
 import itertools
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from compare.studies.drivetrain.coupled_clutches import parameters as modelica
@@ -12,25 +13,29 @@ INERTIA_A, INERTIA_B = 0.3, 0.2
 
 
 def free_bodies(unit):
-    """Return the rates of (ω_a, ω_b) and of the unit's states: two free rotors, and its disc without support."""
+    """Return the rates of (ω_a, ω_b, φ_b) and of the unit's states: two free rotors, and its disc without support."""
 
     def rates(time, state):
-        unit.set(speed_a=state[0], speed_b=state[1])
-        unit.state = state[2:]
-        return np.concatenate(([unit["torque_a"] / INERTIA_A, unit["torque_b"] / INERTIA_B], unit.rates))
+        unit.set(speed_a=state[0], speed_b=state[1], angle_b=state[2])
+        unit.state = state[3:]
+        speeds = unit["torque_a"] / INERTIA_A, unit["torque_b"] / INERTIA_B, state[1]
+        return np.concatenate((speeds, unit.rates))
 
     return rates
 
 
-def test_two_free_rotors_and_a_free_disc_keep_their_angular_momentum_and_energy(instance):
+@pytest.mark.parametrize(
+    "contact", [{"inner_radius": 0.08}, {"contact_points": 5.0}], ids=["annulus", "points"]
+)
+def test_two_free_rotors_and_a_free_disc_keep_their_angular_momentum_and_energy(instance, contact):
     mass = 0.7
     unit = instance(
-        "clutch", mass=mass, stiffness=0.0, damping=0.0, inner_radius=0.08, outer_radius=0.12, plates=2.0,
-        normal_load=1.5, friction_coefficient=0.3, regularisation=1e-4,
+        "clutch", mass=mass, stiffness=0.0, damping=0.0, plates=2.0, normal_load=1.5, friction_coefficient=0.3,
+        regularisation=1e-4, **({"inner_radius": 0.12, "outer_radius": 0.12} | contact),
     ).started()  # fmt: skip
-    start = np.array([12.0, -5.0, 0.02, -0.01, 0.03, 0.2, 0.0])
+    start = np.array([12.0, -5.0, 0.3, 0.02, -0.01, 0.03, 0.2, 0.0])
     run = solve_ivp(free_bodies(unit), (0.0, 0.3), start, "DOP853", rtol=1e-13, atol=1e-15)
-    a, b, x, y, vx, vy, heat = run.y
+    a, b, _, x, y, vx, vy, heat = run.y
     momentum = INERTIA_A * a + INERTIA_B * b + mass * (x * vy - y * vx)
     energy = 0.5 * (INERTIA_A * a**2 + INERTIA_B * b**2 + mass * (vx**2 + vy**2))
     assert heat[-1] > 0.4

@@ -13,18 +13,29 @@ class Contact(ctypes.Structure):
     _fields_ = [
         ("inner", ctypes.c_double),
         ("outer", ctypes.c_double),
+        ("points", ctypes.c_int),
+        ("angle", ctypes.c_double),
         ("wear", ctypes.c_int),
+        ("pressure", ctypes.c_double * 3),
         ("friction", ctypes.c_double),
         ("static_ratio", ctypes.c_double),
         ("epsilon", ctypes.c_double),
     ]
 
 
-RING = Contact(0.12, 0.12, 0, 2.0, 1.0, 1e-3)
-ANNULUS = Contact(0.05, 0.12, 0, 2.0, 1.2, 1e-3)
-WORN = Contact(0.05, 0.12, 1, 2.0, 1.2, 1e-3)
-PIN = Contact(0.0, 0.0, 0, 2.0, 1.3, 1e-3)
 Three = ctypes.c_double * 3
+
+
+def contact(inner, outer, static_ratio=1.0, points=0, wear=0, pressure=(1.0, 1.0, 1.0)):
+    return Contact(inner, outer, points, 0.3, wear, Three(*pressure), 2.0, static_ratio, 1e-3)
+
+
+RING = contact(0.12, 0.12)
+ANNULUS = contact(0.05, 0.12, 1.2)
+WORN = contact(0.05, 0.12, 1.2, wear=1)
+TAPERED = contact(0.05, 0.12, 1.2, pressure=(0.0, 2.0, 3.0))
+PIN = contact(0.0, 0.0, 1.3)
+FIVE = contact(0.12, 0.12, 1.2, points=5)
 
 
 def floats(*values):
@@ -82,12 +93,20 @@ def test_the_ring_has_thirteen_digits(law):
 
 def force(law, contact, slip):
     found = Three()
-    potential = law.friction(ctypes.byref(contact), Three(*slip), found)
+    potential = law.friction(ctypes.byref(contact), Three(*slip), found, ctypes.byref(ctypes.c_double()))
     return np.array(found), potential
 
 
 @pytest.mark.parametrize("slip", [(0.3, -0.2, 1.0), (0.01, 0.02, -4.0), (0.2, 0.1, 2.5)])
-@pytest.mark.parametrize(("contact", "share"), [(ANNULUS, lambda r: r), (WORN, lambda r: 1.0)])
+@pytest.mark.parametrize(
+    ("contact", "share"),
+    [
+        (ANNULUS, lambda r: r),
+        (WORN, lambda r: 1.0),
+        (TAPERED, lambda r: r * (r - 0.05) * (0.225 - r)),  # 0, 2 and 3 of any unit
+    ],
+    ids=["uniform", "worn", "tapered"],
+)
 def test_an_annulus_is_what_its_points_add_up_to(law, contact, share, slip):
     radii, weights = np.polynomial.legendre.leggauss(60)
     radii = contact.inner + (contact.outer - contact.inner) * (0.5 + 0.5 * radii)
@@ -103,19 +122,42 @@ def test_an_annulus_is_what_its_points_add_up_to(law, contact, share, slip):
     np.testing.assert_allclose(found, expected, atol=2e-4)  # of this sum, where a point rests
 
 
-@pytest.mark.parametrize("contact", [PIN, RING, ANNULUS, WORN], ids=["pin", "ring", "annulus", "worn"])
+@pytest.mark.parametrize(
+    "contact",
+    [PIN, RING, ANNULUS, WORN, TAPERED, FIVE],
+    ids=["pin", "ring", "annulus", "worn", "tapered", "points"],
+)
 @pytest.mark.parametrize("size", [0.2, 1.5, 30.0])
 def test_tangents_are_derivatives_creeping_falling_and_sliding(law, contact, size):
     slip = np.array([0.6, -0.5, 4.0]) * size * contact.epsilon
-    way, step = np.array([0.3, 0.7, -2.0]), 1e-6 * size * contact.epsilon
-    ahead, behind = (force(law, contact, slip + sign * step * way) for sign in (1.0, -1.0))
+    way, turn, step = (
+        np.array([0.3, 0.7, -2.0]),
+        0.4 / (size * contact.epsilon),
+        1e-6 * size * contact.epsilon,
+    )
+    ahead, behind = (
+        force(law, turned(contact, sign * step * turn), slip + sign * step * way) for sign in (1.0, -1.0)
+    )
     found = Three()
     potential = law.friction_tangent(
-        ctypes.byref(contact), Three(*slip), Three(*way), ctypes.c_double(0.0), found
+        ctypes.byref(contact), Three(*slip), Three(*way), *floats(0.0, turn), found
     )
     expected = (ahead[0] - behind[0]) / (2.0 * step)
     np.testing.assert_allclose(found, expected, atol=2e-7 * np.abs(expected).max())
     assert potential == pytest.approx((ahead[1] - behind[1]) / (2.0 * step), rel=1e-6)
+
+
+def turned(contact, angle):
+    found = Contact.from_buffer_copy(contact)
+    found.angle += angle
+    return found
+
+
+def test_many_points_are_the_ring(law):
+    slip = (0.3, -0.2, 1.0)
+    np.testing.assert_allclose(
+        force(law, contact(0.12, 0.12, points=64), slip)[0], force(law, RING, slip)[0], rtol=1e-12
+    )
 
 
 def test_friction_is_of_first_degree_below_epsilon_and_at_its_peak_there(law):
@@ -126,9 +168,7 @@ def test_friction_is_of_first_degree_below_epsilon_and_at_its_peak_there(law):
         creeping = force(law, ANNULUS, slip * share * ANNULUS.epsilon / potential)[0]
         np.testing.assert_allclose(creeping, full * ANNULUS.static_ratio * share, rtol=1e-9)
     found = Three()
-    law.friction_tangent(
-        ctypes.byref(ANNULUS), Three(0.0, 0.0, 0.0), Three(*slip), ctypes.c_double(0.0), found
-    )
+    law.friction_tangent(ctypes.byref(ANNULUS), Three(0.0, 0.0, 0.0), Three(*slip), *floats(0.0, 0.0), found)
     np.testing.assert_allclose(found, full * ANNULUS.static_ratio * potential / ANNULUS.epsilon, rtol=1e-12)
 
 

@@ -14,6 +14,7 @@ from reference_model.systems import COLUMNS, PARAMETERS, DiscOnDisc, PinOnDisc
 SLIPS, STICKS, LEAVES = range(3)
 STATES = {kind: [name for name, _ in columns] for kind, columns in COLUMNS.items()}
 MODEL = {PinOnDisc: "pin", DiscOnDisc: "disc"}
+SIX = replace(FIG11, contact_points=6)
 RESTING = DiscOnDisc(
     mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.4, disc_speed=1.2, offset=0.1,
     contact_radius=0.12, shaft_damping=0.005, shaft_speed=0.0,
@@ -22,7 +23,7 @@ RESTING = DiscOnDisc(
 
 def started(instance, system, start, **more):
     """Return the unit of a system from where it starts."""
-    parameters = {name: value for name, value in asdict(system).items() if name != "contact_points"}
+    parameters = {name: value for name, value in asdict(system).items() if value is not None}
     states = dict(zip(STATES[type(system)], start, strict=True))
     return instance(MODEL[type(system)], **parameters, **states, **more).started()
 
@@ -36,7 +37,13 @@ def test_parameters_and_states_are_those_of_the_systems():
 
 
 @pytest.mark.parametrize(
-    ("system", "start"), [(FIG5, (0.9, 0.0, 0.0, 0.9)), (FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3))]
+    ("system", "start"),
+    [
+        (FIG5, (0.9, 0.0, 0.0, 0.9)),
+        (FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)),
+        (SIX, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)),
+    ],
+    ids=["pin", "ring", "six points"],
 )
 def test_what_slips_for_long_has_eight_digits(instance, system, start):
     unit = started(instance, system, start)
@@ -81,6 +88,30 @@ def test_errors_of_creep_are_of_first_order_in_epsilon(instance):
     assert np.all(np.abs(orders - 1.0) < 0.25), (errors, orders)
 
 
+def test_errors_of_a_point_that_rests_are_of_first_order_in_its_creep(instance):
+    start, errors = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664), []
+    reference = reference_model.simulate(SIX, start, [0.0, 40.0], tolerance=1e-12)
+    assert [phase.kind for phase in reference.phases] == ["slip", "pivot", "slip", "pivot", "slip"]
+    for epsilon in (
+        1e-7,
+        1e-8,
+    ):  # steps that are right for the mean slip alone miss the direction of a slow point
+        unit = started(instance, SIX, start, regularisation=epsilon, tolerance=1e-9)
+        unit.to(40.0)
+        errors.append(np.max(np.abs(unit.state - reference.states[-1])))
+    assert abs(np.log10(errors[0] / errors[1]) - 1.0) < 0.1, errors
+
+
+def test_a_pin_on_a_plane_stops_in_time_even_at_a_coarse_tolerance(instance):
+    unit = instance(
+        "pin", vx=0.3, x=0.0, vy=0.0, disc_speed=0.0, stiffness=0.0, damping=0.0, offset=0.0, friction_force=0.1,
+        tolerance=1e-6,
+    ).started()  # fmt: skip
+    unit.to(4.0)
+    assert abs(unit["stick_time"] - 3.0) < 1e-8
+    assert abs(unit["x"] - 0.45) < 1e-12
+
+
 def test_a_step_can_be_taken_back(instance):
     unit = started(instance, FIG5, FIG5_STARTS["whirl"])
     unit.to(4.0)
@@ -100,13 +131,30 @@ def test_communication_steps_change_nothing_that_counts(instance):
     np.testing.assert_allclose(often.state, whole.state, rtol=0.0, atol=1e-9)
 
 
+NO_PRESSURE = (
+    "pressure_inner, pressure_mean, pressure_outer: the parabola through them must be >= 0 from the inner to the "
+    "outer radius, and not 0 everywhere"
+)
+
+
 @pytest.mark.parametrize(
     ("name", "values", "sentence"),
     [
         ("pin", {"mass": -1.0}, "mass = -1 kg: it must be > 1e-50"),
         ("pin", {"regularisation": 0.0}, "regularisation = 0 m/s: it must be > 0"),
         ("disc", {"damping": np.nan}, "damping = nan N.s/m: it must be finite"),
+        (
+            "disc",
+            {"contact_points": 2.0},
+            "contact_points: it must be 0 for the continuous ring, or at least 3",
+        ),
         ("clutch", {"inner_radius": 0.2}, "inner_radius: it must be at most outer_radius"),
+        (
+            "clutch",
+            {"inner_radius": 0.05, "contact_points": 3.0},
+            "contact_points: points are on a ring, where inner_radius is outer_radius",
+        ),
+        ("clutch", {"pressure_mean": 0.1, "pressure_outer": 0.0}, NO_PRESSURE),
         ("clutch", {"engagement": 1.5}, "engagement = 1.5 : it must be <= 1"),
         ("clutch", {"plates": 0.0}, "plates = 0 : it must be >= 1"),
     ],
@@ -133,7 +181,18 @@ def inside(unit, mode):
 
 
 @pytest.mark.parametrize(
-    "case", ["pin slips", "pin sticks", "pin leaves", "disc slips", "clutch slips", "clutch creeps"]
+    "case",
+    [
+        "pin slips",
+        "pin sticks",
+        "pin leaves",
+        "disc slips",
+        "points slip",
+        "points creep",
+        "clutch slips",
+        "clutch creeps",
+        "clutch points",
+    ],
 )
 def test_directional_derivatives_are_derivatives(instance, case):
     name, how = case.split()
@@ -143,13 +202,21 @@ def test_directional_derivatives_are_derivatives(instance, case):
         )
         if how != "slips":
             inside(unit, {"sticks": STICKS, "leaves": LEAVES}[how])
+    elif name == "points":
+        name, slow = "disc", {"vx": 0.0302, "vy": 0.075, "spin": 1.51}
+        moves = {"vx": 0.03, "spin": 1.6} if how == "slip" else slow
+        # of the slow one two points slip, and three are below regularisation
+        unit = instance(
+            "disc", x=0.05, y=-0.02, angle=0.3, contact_points=5.0, regularisation=1.2e-3, **moves
+        ).started()  # fmt: skip
     elif name == "disc":
         unit = instance("disc", x=0.05, y=-0.02, spin=1.6, stop_gap=0.01, stop_stiffness=5.0).started()
     else:
-        speed = 30.0 if how == "slips" else 20.01
+        speed = {"slips": 30.0, "creeps": 20.01, "points": 21.5}[how]
+        shape = {"contact_points": 5.0, "angle_b": 0.3} if how == "points" else {"inner_radius": 0.07}
         unit = instance(
             "clutch", speed_a=20.0, speed_b=speed, x=1e-3, y=-2e-3, vx=0.05, vy=0.03, stiffness=100.0,
-            inner_radius=0.07, regularisation=0.1, static_ratio=1.2, plates=3.0,
+            regularisation=0.1, static_ratio=1.2, plates=3.0, **shape,
         ).started()  # fmt: skip
     model = MODELS[name]
     knowns = [one.name for one in model.having("state", "input") if one.name != "heat"]

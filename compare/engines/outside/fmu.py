@@ -2,6 +2,7 @@
 
 Its parameters are called as those of the systems, and its outputs as their states: x, y, vx, vy, and angle and spin
 of a disc. A motion starts with ``x_start`` where there is such a variable, else with x itself, and so do the others.
+Phases are told by models that have the outputs of ``stick_events``; for all others stick is found from states.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
+from compare.engines.outside.stick_events import StickEvents, tells_stick
 from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -31,6 +33,16 @@ NONLINEAR = ("hardening", "stop_gap", "stop_stiffness")
 
 OPTIONAL = ("offset", *NONLINEAR)
 """Parameters that a model may leave out: then they are 0."""
+
+
+CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
+"""The parameter with the slip speed below which points creep, and that over tolerance times speed of the motion.
+
+A model that tells when its contact sticks does so for pins and rings. Errors of creep have to fall with tolerance.
+"""
+
+LEAST_CREEP = 1e-12
+"""In m/s: of a motion without any speed."""
 
 
 class FmuError(RuntimeError):
@@ -75,12 +87,11 @@ class Fmu(Unseen):
         ) as error:  # of the library: for another platform, or without what a model has to have
             raise FmuError(f"{name} can't be started: {error}") from None
         try:
-            states = _states(instance, model, values, system, at, **accuracy)
+            return _motion(instance, model, values, system, at, **accuracy)
         except Exception as error:  # of FMPy, which has one class for each version of the standard
             raise FmuError(f"{name}: {error}") from None
         finally:
             instance.freeInstance()
-        return Trajectory(system, at, states)
 
 
 @dataclass(frozen=True)
@@ -95,6 +106,11 @@ class _Model:
     def newer(self) -> bool:
         """Whether it is of FMI 3, which calls the same things by other names."""
         return str(self.description.fmiVersion).startswith("3")
+
+    @property
+    def tells_stick(self) -> bool:
+        """Whether it tells when its contact sticks."""
+        return tells_stick(self.description, self.variables)
 
     def instance(self) -> Any:
         """Return a new instance, which has to be freed."""
@@ -136,12 +152,14 @@ def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> 
         raise UnsupportedSystemError(f"the model has no {', '.join(lacking)}")
     starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
     known = {name: value for name, value in parameters.items() if name in variables}
+    if isinstance(system, DiscOnDisc) and POINTS in variables:
+        known[POINTS] = system.contact_points or 0
     return known | {
         f"{name}_start" if f"{name}_start" in variables else name: value for name, value in starts
     }
 
 
-def _states(
+def _motion(
     instance: Any,
     model: _Model,
     values: Mapping[str, float],
@@ -149,8 +167,12 @@ def _states(
     times: FloatArray,
     tolerance: float | None = None,
     step: float = math.inf,
-) -> FloatArray:
-    """Return the states at ``times`` (n,) of an instance that was not asked before, of shape (n, 4) or (n, 6)."""
+) -> Trajectory:
+    """Return the motion at ``times`` (n,) of an instance that was not asked before."""
+    tells = model.tells_stick
+    if tells and isinstance(system, DiscOnDisc) and system.contact_points is not None:
+        tells = False
+        values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
         whole = "Int" in variable.type  # the number of points, by any of the standard's types
@@ -167,13 +189,34 @@ def _states(
     outputs = [model.variables[name].valueReference for name, _ in COLUMNS[type(system)]]
     states = np.empty((len(times), len(outputs)))
     states[0] = get(outputs)
+    events = (
+        StickEvents(instance, model.variables, system, times[0], states[0], newer=model.newer)
+        if tells
+        else None
+    )
+    advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
     for i, (start, end) in enumerate(itertools.pairwise(times), 1):
         bounds = np.linspace(start, end, max(1, math.ceil((end - start) / step)) + 1)
         for at, until in itertools.pairwise(bounds):
-            instance.doStep(at, until - at)
+            advance(at, until)
         states[i] = get(outputs)
     instance.terminate()
-    return states
+    return Trajectory(system, times, states, () if events is None else events.phases(times[-1]))
+
+
+def _creep(
+    system: DiscOnDisc, values: Mapping[str, float], variables: Mapping[str, Any], tolerance: float | None
+) -> dict[str, float]:
+    """Return below which slip speed in m/s points creep, in proportion to the tolerance, if the model takes that."""
+    if CREEPS not in variables or tolerance is None:
+        return {}
+    x, y, _, vx, vy, spin = (
+        values.get(f"{name}_start", values.get(name, 0.0)) for name, _ in COLUMNS[DiscOnDisc]
+    )
+    radius = system.contact_radius
+    turning = max(abs(system.disc_speed) * max(math.hypot(x, y), radius), abs(spin) * radius)
+    creep = min(CREEP * tolerance, MOST_CREEP) * max(math.hypot(vx, vy), turning)
+    return {CREEPS: max(creep, LEAST_CREEP)}
 
 
 def fmu_engine(text: str) -> Engine:
@@ -186,7 +229,7 @@ def fmu_engine(text: str) -> Engine:
     experiment = model.description.defaultExperiment
     step = None if experiment is None or experiment.stepSize is None else float(experiment.stepSize)
     nonlinear = set(NONLINEAR) <= set(model.variables)
-    return Engine(file.stem, Fmu(str(file)), kinds, nonlinear=nonlinear, phases=False, step=step)
+    return Engine(file.stem, Fmu(str(file)), kinds, nonlinear=nonlinear, phases=model.tells_stick, step=step)
 
 
 def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
@@ -199,7 +242,12 @@ def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
         raise ValueError(
             f"{name} is no model of a {'disc' if disc else 'pin'}: it has no {', '.join(lacking)}"
         )
-    return (("points",) if POINTS in variables else ("ring",)) if disc else ("pin",)
+    if not disc:
+        return ("pin",)
+    if POINTS not in variables:
+        return ("ring",)
+    least = getattr(variables[POINTS], "min", None)
+    return ("ring", "points") if least is not None and float(least) <= 0.0 else ("points",)
 
 
 register_scheme("fmu", Scheme(fmu_engine, fmu_engine))

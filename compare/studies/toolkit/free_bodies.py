@@ -23,7 +23,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import quad, quad_vec
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from reference_model.contact.elliptic import mean_directions
@@ -85,34 +85,24 @@ class Slowing:
             delta = self.terminal + away
             return math.exp(delta), away / self.unevenness(delta)
 
-        def fall(u: float) -> float:
-            ratio, duration = at(u)
-            return mean_directions(ratio, 1.0)[1] / self.inertia * duration
-
-        def along(begin: float, end: float, rim: float) -> tuple[FloatArray, float]:
-            """Return time and ways between two u, and the rim speed at the second from that at the first."""
-
-            def rim_at(u: float) -> float:
-                return rim * math.exp(-quad(fall, u, begin, epsabs=1e-10, epsrel=1e-9)[0])
-
-            def per_u(u: float) -> FloatArray:
-                (ratio, duration), speed = at(u), rim_at(u)
-                return speed * duration * np.array([1.0, ratio * speed, speed])
-
-            integrals, _ = quad_vec(per_u, end, begin, epsabs=1e-10, epsrel=1e-9, norm="max")
-            return integrals, rim_at(end)
+        def rates(u: float, passed: FloatArray) -> tuple[float, float, float, float]:
+            """Return by du those of ln W, of the time and of both ways."""
+            (ratio, duration), rim = at(u), math.exp(passed[0])
+            along_rim = mean_directions(ratio, 1.0)[1]
+            time = -rim * duration
+            return along_rim / self.inertia * duration, time, time * ratio * rim, time * rim
 
         # Where both speeds are equal the slopes of friction are infinite: an edge of the integrals.
         edges = [first, *([math.log(abs(self.terminal))] if begin * self.terminal < 0.0 else []), last]
-        total = np.zeros(3)
-        for one, other in itertools.pairwise(edges):
-            passed, rim = along(one, other, rim)
-            total += passed
+        passed = np.array([math.log(rim), 0.0, 0.0, 0.0])
+        for span in itertools.pairwise(edges):
+            passed = solve_ivp(rates, span, passed, method="LSODA", rtol=1e-13, atol=1e-15).y[:, -1]
+        rim, total = math.exp(passed[0]), passed[1:]
         # From here on the speeds are as if in the terminal ratio, with the same N.
         terminal = math.exp(self.terminal)
         _, along_rim = mean_directions(terminal, 1.0)
         rim *= (terminal * at(last)[0] + self.inertia) / (terminal**2 + self.inertia)
         left = self.inertia * rim / along_rim
-        total += left * np.array([1.0, 0.5 * terminal * rim, 0.5 * rim])
+        total = total + left * np.array([1.0, 0.5 * terminal * rim, 0.5 * rim])
         time, slid, turned = total.tolist()
         return Stop(time, slid, turned, left)

@@ -62,9 +62,14 @@ ALL = ("rests", "whirls", "sticks", "adds_up")
 
 
 def test_sentences_are_known_without_measuring():
-    sentences = study_of(*ALL).sentences()
-    assert list(sentences) == ["It rests", "A slow disc whirls", "A fast disc whirls", "It sticks"]
-    assert sentences["It sticks"].implied_by == "It rests"
+    study = study_of(*ALL)
+    assert study.sentences() == {
+        "It rests": "rests",
+        "A slow disc whirls": "whirls/slow disc",
+        "A fast disc whirls": "whirls/fast disc",
+        "It sticks": "sticks",
+    }
+    assert study.declared[2].implied_by == "It rests"
     assert study_of("rests").has_theory is False
     assert study_of(*ALL).has_theory is True
 

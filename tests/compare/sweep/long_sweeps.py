@@ -45,9 +45,9 @@ def finished_by(process):
     return process.returncode, out, err
 
 
-def resumed(folder):
+def resumed(folder, *more):
     """Do the rest in this process, which has all libraries loaded, and return the exit status."""
-    return cli.status([*LONG, *CHUNKS, "--output", str(folder), "--resume"])
+    return cli.status([*LONG, *CHUNKS, "--output", str(folder), "--resume", *more])
 
 
 def content(path):

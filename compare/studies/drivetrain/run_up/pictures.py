@@ -45,6 +45,9 @@ SHOWN = (2000.0, 3100.0, 5000.0)
 FRAMES = 15
 """Of each slow motion."""
 
+SIZE = (330, 280)
+"""Width and height of a frame's drivetrain in pixels."""
+
 STEP = math.radians(48.0)
 """By which the engine turns from one frame to the next."""
 
@@ -215,17 +218,23 @@ def animations(data: ByEngine) -> dict[str, bytes]:
     )
     orbit.legend(loc="lower center", ncols=3, fontsize=8.0, handlelength=1.0, columnspacing=0.8)
     stages = [(turns, time_of(found, turns)) for turns in SHOWN]
+    image = picture.imshow(np.full((*SIZE[::-1], 3), 255, dtype=np.uint8))
+    picture.set_axis_off()
+    title = picture.set_title(" ", loc="center")
 
     def update(frame: int) -> None:
         turns, start = stages[frame // FRAMES]
         times = start + np.arange(frame % FRAMES + 1) * STEP / (turns * RPM)
         angle, disc = motion_at(found, times[-1])
-        image = draw_drivetrain(car, engine_angle=angle, disc=disc, magnification=ENLARGED, size=(330, 280))
-        picture.clear()
-        show(picture, image, f"{turns:.0f} rpm")
+        image.set_data(draw_drivetrain(car, engine_angle=angle, disc=disc, magnification=ENLARGED, size=SIZE))
+        title.set_text(f"{turns:.0f} rpm")
         near = (found["times"] > start) & (found["times"] <= times[-1])
         z = MM * np.append(centre(found["disc"][near]), complex(*disc[:2]))
         trail.set_data(z.real, z.imag)
         dot.set_data([z[-1].real], [z[-1].imag])
 
-    return {"drivetrain-turning": gif(figure, update, FRAMES * len(SHOWN), fps=12.0)}
+    return {
+        "drivetrain-turning": gif(
+            figure, update, FRAMES * len(SHOWN), moving=(image, title, trail, dot), fps=12.0
+        )
+    }

@@ -140,10 +140,27 @@ def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(po
     }
     model = fmu._Model(SimpleNamespace(fmiVersion="3.0"), None, variables)
     stub = Stub()
-    states = fmu._states(stub, model, fmu._values(disc, start, variables), disc, np.array([0.0, 1.0]))
-    np.testing.assert_array_equal(states, [start, start])
+    motion = fmu._motion(stub, model, fmu._values(disc, start, variables), disc, np.array([0.0, 1.0]))
+    np.testing.assert_array_equal(motion.states, [start, start])
+    assert motion.phases == ()
     assert stub.told.get("contact_points") == points
     assert fmu._kinds("disc.fmu", variables) == (kind,)
+
+
+def test_a_disc_that_takes_no_points_is_one_on_the_ring_too():
+    variables = dict.fromkeys([*asdict(FIG11), *(name for name, _ in COLUMNS[type(FIG11)])])
+    variables["contact_points"] = SimpleNamespace(min="0")
+    assert fmu._kinds("disc.fmu", variables) == ("ring", "points")
+    start = np.zeros(6)
+    assert fmu._values(FIG11, start, variables)["contact_points"] == 0
+    assert fmu._values(replace(FIG11, contact_points=6), start, variables)["contact_points"] == 6
+
+
+def test_points_of_a_disc_that_only_spins_creep_in_proportion_to_the_speed_of_its_rim():
+    disc = replace(FIG11, contact_points=6, disc_speed=0.0)
+    (creep,) = fmu._creep(disc, {"spin": -2.0}, {fmu.CREEPS: None}, 1e-9).values()
+    assert creep == pytest.approx(1e2 * 1e-9 * 2.0 * FIG11.contact_radius)
+    assert fmu._creep(disc, {"spin": -2.0}, {}, 1e-9) == {}
 
 
 def test_a_motion_may_start_at_any_time_and_is_the_same_each_time(right):

@@ -6,7 +6,8 @@ import time
 
 import pytest
 from local_cluster import cluster
-from long_sweeps import LONG, assert_same, content, finished_by, long_sweep, marks, resumed
+from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed
+from signalling_sweep import signalling
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
@@ -17,29 +18,34 @@ from compare.sweep.compute.work import OtherCodeError
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
 from compare.sweep.store.files import StoreError
+from compare.sweep.store.round import Chunks
 from compare.sweep.store.store import DESCRIPTION, SweepStore
 
 
-def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path):
+def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path, capsys):
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
         written = marks(tmp_path)
         assert len(written) >= 11  # of workers, which go on for a moment
 
-        driver = long_sweep(tmp_path, "--scheduler", local.address, "--resume")
-        code, out, err = finished_by(driver)
+        code = resumed(tmp_path, "--scheduler", local.address)
         assert local.workers[0].poll() == -signal.SIGKILL
+    out, err = capsys.readouterr()
     assert (code, err) == (0, ""), out
     assert written <= marks(tmp_path)
     assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
 
 
-def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(undisturbed, tmp_path):
-    with cluster(tmp_path, workers=1) as local:
-        killed = ("SIGKILL", local.scheduler.pid, 10)
-        driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=killed)
-        code, out, err = finished_by(driver)
+def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
+    undisturbed, tmp_path, monkeypatch, capsys
+):
+    with cluster(tmp_path, workers=1) as local, monkeypatch.context() as patch:
+        for owner, name in ((Chunks, "write"), (Cluster, "run")):
+            patch.setattr(owner, name, getattr(owner, name))  # to be undone
+        signalling("SIGKILL", local.scheduler.pid, 10)
+        code = cli.status([*LONG, *CHUNKS, "--output", str(tmp_path), "--scheduler", local.address])
+    out, err = capsys.readouterr()
     assert (code, out) == (1, "")
     assert err.startswith(f"lost the cluster at {local.address}")
     assert err.count("\n") == 1
