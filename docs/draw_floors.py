@@ -135,10 +135,9 @@ def draw():
             "color": COLOURS[here.split(".")[0]],
             "alpha": 0.9 if (here, there) in needed(inside) else 0.15,
             "connectionstyle": f"arc3,rad={0.3 if far else 0.0}",
-            "zorder": 1,
         }
         start, end = (x, y - HEIGHT / 2), (to_x, to_y + HEIGHT / 2)
-        panel.annotate("", xy=end, xytext=start, arrowprops=look)
+        panel.annotate("", xy=end, xytext=start, arrowprops=look, zorder=1)
     for name, (x, y) in middle.items():
         package, room = name.split(".")
         corner = (x - WIDTH / 2, y - HEIGHT / 2)
@@ -158,7 +157,8 @@ def draw():
             "",
             xy=(to_x, to_y),
             xytext=(x, y),
-            arrowprops={"arrowstyle": "simple", "color": "0.7", "zorder": 0},
+            arrowprops={"arrowstyle": "simple", "color": "0.7"},
+            zorder=0,
         )
         words = (
             "\n".join(room.split(".")[1] for room in rooms)

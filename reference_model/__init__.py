@@ -111,4 +111,4 @@ for _old, _new in {
     "steady_states": "steady.steady_states",
     "stability": "steady.stability",
 }.items():
-    sys.modules[f"{__name__}.{_old}"] = _Moved(f"{__name__}.{_old}", f"{__name__}.{_new}")
+    globals()[_old] = sys.modules[f"{__name__}.{_old}"] = _Moved(f"{__name__}.{_old}", f"{__name__}.{_new}")

@@ -1,4 +1,7 @@
-"""Findings on disk: claims as compressed JSON, arrays as NPZ, valid for the version of the code that made them."""
+"""Findings on disk: claims as compressed JSON, arrays as NPZ, valid for the version of the code that made them.
+
+Libraries that keep results of functions (joblib, diskcache) pickle them: that is neither legible nor safe to pass on.
+"""
 
 from __future__ import annotations
 

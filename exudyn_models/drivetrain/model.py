@@ -197,11 +197,7 @@ def build_drivetrain(
         plates=drivetrain.faces,
         regularisation=regularisation,
     )
-    gains = {
-        name: _add_torque(mbs, node, torque)
-        for name, node, torque in (("engine", engine, engine_torque), ("vehicle", vehicle, vehicle_torque))
-        if torque is not None
-    }
+    gains = _add_torques(mbs, engine=(engine, engine_torque), vehicle=(vehicle, vehicle_torque))
     balance = _add_balance(mbs, gains, friction, support, torsion, drivetrain.torsional_damping)
     sensors = _add_sensors(mbs, (engine, disc, vehicle))
     mbs.Assemble()
@@ -304,6 +300,13 @@ def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
 def _coordinate(mbs: Any, node: Any, coordinate: int) -> Any:
     """Add a marker of a coordinate of a node; return its ``MarkerIndex``."""
     return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+
+def _add_torques(mbs: Any, **torques: tuple[Any, Torque | None]) -> dict[str, Power]:
+    """Let torques act on the nodes of rotors, where there are any; return their powers by the rotors' names."""
+    return {
+        name: _add_torque(mbs, node, torque) for name, (node, torque) in torques.items() if torque is not None
+    }
 
 
 def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:

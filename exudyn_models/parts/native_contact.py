@@ -76,14 +76,7 @@ def add_native_friction(
     radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
     coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
     friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
-    if points == CONTINUOUS:
-        raise ValueError(
-            f"contact_points = {contact_points}: Exudyn's built-in contact has single points only; it must be a "
-            "whole number, for instance 6"
-        )
-    reach = finite_number("reach", reach)
-    if reach <= 0.0:
-        raise ValueError(f"reach = {reach:g} m: it must be > 0")
+    reach = _checked_extent(reach, points)
     (*masters, disc), _ = checked_pair(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
     master = masters[0] if masters else None
     size = 2.0 * reach  # from the triangle's middle to a corner; the circle that fits in has half of that
@@ -95,6 +88,19 @@ def add_native_friction(
         markers = [_marker(mbs, disc, arm), master_marker]
         contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, points))
     return contacts
+
+
+def _checked_extent(reach: float, points: int) -> float:
+    """Return ``reach`` in m; raise ``ValueError`` if it is not > 0, or the contact is a whole circle."""
+    if points == CONTINUOUS:
+        raise ValueError(
+            "contact_points = None: Exudyn's built-in contact has single points only; it must be a whole number, "
+            "for instance 6"
+        )
+    reach = finite_number("reach", reach)
+    if reach <= 0.0:
+        raise ValueError(f"reach = {reach:g} m: it must be > 0")
+    return reach
 
 
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:

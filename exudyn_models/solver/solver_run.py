@@ -159,21 +159,13 @@ def solve(
     count = StepCount(end) if count is None else count
     count.expect(start, (end - start) / step)
     look = _Look(model, start, end, watch, count)
-    settings = _settings(start, end, integrator, step, tolerance, first_step)
+    settings = _settings(start, end, integrator, step, tolerance, first_step, quasi_static, balanced)
     settings.timeIntegration.minimumStepSize = look.smallest_step
-    if quasi_static:
-        settings.timeIntegration.generalizedAlpha.spectralRadius = 0.0
-        settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = balanced
     solver, first_acceleration = _run_solver(model, integrator, settings, look)
-    times, positions, velocities, accelerations = _recorded(model)
-    if not look.stopped:  # what fixed steps add up to may differ from it in the last digits
-        times[-1] = end
-    if quasi_static:
-        accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
+    times, states, accelerations = _recorded(model, None if look.stopped else end, quasi_static)
     if first_acceleration is not None:
         accelerations[0] = first_acceleration
-    evaluations = _evaluations(solver, integrator in EXPLICIT)
-    return Steps(times, np.hstack((positions, velocities)), accelerations, evaluations)
+    return Steps(times, states, accelerations, _evaluations(solver, integrator in EXPLICIT))
 
 
 def _no_steps(model: Model, time: float) -> Steps:
@@ -239,11 +231,21 @@ class _Look:
         return not self.stopped
 
 
-def _recorded(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the times of all steps, shape (n,), and positions, velocities and accelerations there, shape (n, d)."""
+def _recorded(
+    model: Model, end: float | None, quasi_static: bool
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the times of all steps, shape (n,), and states (n, 2d) and accelerations (n, d) there.
+
+    What fixed steps add up to may differ in the last digits from the ``end`` (s) of a run that went so far.
+    """
     stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
-    return stored[0][:, 0], positions, velocities, accelerations
+    times = stored[0][:, 0]
+    if end is not None:
+        times[-1] = end
+    if quasi_static:
+        accelerations = np.gradient(velocities, times, axis=0, edge_order=1 if len(times) == 2 else 2)
+    return times, np.hstack((positions, velocities)), accelerations
 
 
 def _evaluations(solver: Any, explicit: bool) -> int:
@@ -255,8 +257,16 @@ def _evaluations(solver: Any, explicit: bool) -> int:
 
 
 def _settings(
-    start: float, end: float, integrator: str, step: float, tolerance: float, first_step: float = FIRST_STEP
+    start: float,
+    end: float,
+    integrator: str,
+    step: float,
+    tolerance: float,
+    first_step: float = FIRST_STEP,
+    quasi_static: bool = False,
+    balanced: bool = False,
 ) -> Any:
+    """Return Exudyn's settings for the arguments of :func:`solve`."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # at every step
@@ -275,6 +285,9 @@ def _settings(
         options.newton.useModifiedNewton = False
         trapezoidal = integrator == "TrapezoidalIndex2"
         options.generalizedAlpha.useNewmark = options.generalizedAlpha.useIndex2Constraints = trapezoidal
+    if quasi_static:
+        options.generalizedAlpha.spectralRadius = 0.0
+        options.generalizedAlpha.computeInitialAccelerations = balanced
     return settings
 
 

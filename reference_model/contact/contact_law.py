@@ -82,6 +82,11 @@ class Slopes(NamedTuple):
 class IsotropicContact(ABC):
     """A law that looks the same from all directions: −F(U, S)·u/U and M(U, S), with U = |u|."""
 
+    @property
+    def resting_radii(self) -> tuple[float, ...]:
+        """Radii r in m of circles whose point at rest, at U = r|S|, makes slopes infinite: steps must end there."""
+        return ()
+
     @abstractmethod
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         """Return F and M for U >= 0 and S of either sign, not both zero; F is zero at U = 0."""
@@ -166,6 +171,11 @@ class Ring(_OnCircle, IsotropicContact):
         R in m, > 0.
 
     """
+
+    @property
+    def resting_radii(self) -> tuple[float, ...]:
+        """As :attr:`IsotropicContact.resting_radii`."""
+        return (self.radius,)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         """As :meth:`IsotropicContact.shares`."""

@@ -6,10 +6,11 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from reference_model.contact.contact_law import NONE, IsotropicContact, Ring
+from reference_model.contact.contact_law import NONE, IsotropicContact
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.slip.breakaway import begin_slip
@@ -320,7 +321,11 @@ class RingBody(DiscBody):
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
         """Take up the disc that moves by ``motion``."""
         super().__init__(
-            run, motion, (SwitchingSurface(motion.lead_over_rim),) if isinstance(contact, Ring) else ()
+            run,
+            motion,
+            tuple(
+                SwitchingSurface(partial(motion.lead_over_rim, radius)) for radius in contact.resting_radii
+            ),
         )
         self.contact = contact
         self.stuck = stuck_centre(motion, contact) if self.sticky else None

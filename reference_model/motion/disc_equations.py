@@ -36,8 +36,6 @@ class DiscMotion:
         κ(ω − Ω) in m/s, the speed by which the master disc is ahead of the shaft.
     contact : Contact
         The law of friction.
-    radius : float
-        R of the contact, in its unit of length.
     length : float
         The unit of length of all others here in that of the contact.
 
@@ -48,7 +46,6 @@ class DiscMotion:
     shaft_rate: float
     lag: float
     contact: Contact
-    radius: float
     length: float = 1.0
 
     @classmethod
@@ -61,7 +58,6 @@ class DiscMotion:
             disc.shaft_damping / disc.polar_inertia,
             gyration * (disc.disc_speed - disc.shaft_speed),
             contact,
-            disc.contact_radius,
         )
 
     def rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
@@ -79,10 +75,10 @@ class DiscMotion:
         """The same for arrays of shape (k,) in place of numbers."""
         return replace(self, contact=cast(Contact, at_once(self.contact)))
 
-    def lead_over_rim(self, unknowns: Sequence[float]) -> float:
-        """Return U − R|S|: zero where a point of a continuous ring rests and its slopes are infinite."""
+    def lead_over_rim(self, radius: float, unknowns: Sequence[float]) -> float:
+        """Return U − r|S| for a radius in the contact's unit of length: zero where a point of that circle rests."""
         u = self.length * math.hypot(unknowns[3], unknowns[4])
-        return u - self.radius * abs(unknowns[5]) / self.gyration
+        return u - radius * abs(unknowns[5]) / self.gyration
 
     def turning_pull(self, r: float) -> float:
         """Return the rate of r without friction, by the shaft, in m/s²."""

@@ -78,6 +78,5 @@ class Units:
             shaft_rate=motion.shaft_rate * self.time,
             lag=motion.lag / self.speed,
             contact=motion.contact,
-            radius=motion.radius,
             length=motion.length * self.length,
         )

@@ -41,6 +41,14 @@ def test_an_import_statement_works_and_warns():
         )
 
 
+def test_an_import_of_the_module_by_its_whole_name_works_and_warns():
+    with pytest.warns(DeprecationWarning, match="import onset_load from reference_model.steady.stability"):
+        exec(
+            "import reference_model.stability; assert reference_model.stability.onset_load is onset_load",
+            globals(),
+        )
+
+
 def test_the_package_of_orbits_hands_on_what_the_module_had():
     assert importlib.import_module("reference_model.orbits").whirl_orbit is whirl_orbit
 

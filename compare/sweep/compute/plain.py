@@ -30,6 +30,9 @@ STEADY = 0.01
 SAME = 1.4
 """Ratio of the spreads in both halves of what is watched, up to which a modulation neither grows nor decays."""
 
+DYING = 0.1
+"""Ratio of the slip speeds in both halves of what is watched, below which slip dies out: a whirl's stays as it is."""
+
 LEAST_TURNS = 24
 """After which the second half of a motion is watched, at the earliest."""
 
@@ -83,7 +86,8 @@ def end_of(trajectory: Trajectory) -> EndState:
     """Return what a trajectory ends as, UNDECIDED where its second half leaves a doubt.
 
     - *Stuck*: the last stick phase has lasted for a whole turn of the master disc: it sees no force that it has not
-      seen. *Stick–slip*: there are shorter stick phases, and they begin at the same radius again and again.
+      seen; or the contact slips all the time, but ever more slowly. *Stick–slip*: there are shorter stick phases, and
+      they begin at the same radius again and again.
     - *Self-centred*: the centre hardly moves in the last quarter.
     - *Whirl*, *modulated*: the motion goes round the axis, and where it passes the positive x-axis (once a turn, so
       that an offset does not matter) the radius is the same, or not, in both halves alike.
@@ -104,6 +108,8 @@ def end_of(trajectory: Trajectory) -> EndState:
         return EndState.STICK_SLIP if max(spreads) <= STEADY else EndState.UNDECIDED
     if _at_rest(trajectory, middle):
         return EndState.SELF_CENTRED
+    if _slip_dies_out(trajectory, since, middle):
+        return EndState.STUCK
     before, after = _spreads(*_passages(trajectory, since), middle)
     if max(before, after) <= STEADY:
         return EndState.WHIRL
@@ -118,6 +124,14 @@ def _at_rest(trajectory: Trajectory, since: float) -> bool:
     distance = np.hypot(x - x[-1], y - y[-1])
     last = trajectory.times >= since
     return bool(np.max(distance[last]) <= AT_REST * np.max(distance))
+
+
+def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
+    """Return whether the slip after ``middle`` (s) is below ``DYING`` of that before, or below its error."""
+    slip, times = trajectory.slip_speed, trajectory.times
+    before, after = np.max(slip[(times >= since) & (times < middle)]), np.max(slip[times >= middle])
+    error = trajectory.solution.tolerance * abs(trajectory.system.disc_speed) * np.max(trajectory.radius)
+    return bool(after <= max(DYING * before, error))
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:

@@ -62,6 +62,8 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task`` to their ends.
 
+    It is long by its arguments: compiled code has no methods, so that all that a kind of system does is handed over.
+
     Parameters
     ----------
     load, advance, alone, attend, store, idle : compiled functions

@@ -81,7 +81,10 @@ def load_with(
     rest: Slow,
     slip: Slips,
 ) -> bool:
-    """Put the start of a trajectory into the trial of a lane; return whether it ends there."""
+    """Put the start of a trajectory into the trial of a lane; return whether it ends there.
+
+    In one piece, because it goes from SI units to the kernel's once: nearly every line takes the units of the first.
+    """
     mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = row_of(
         task.parameters, number
     )

@@ -98,6 +98,11 @@ def test_crossing_the_logarithm_of_the_ring_at_equal_speeds_keeps_the_tolerance(
     ]
     # A single one goes by how the steps happen to fall.
     assert np.mean(np.log10(errors / tolerances)) < 1.0, errors
+    # Where to land is the law's to say, not the disc's.
+    other = simulate(
+        replace(disc, contact_radius=0.3), start, times, tolerance=1e-9, contact=Ring(disc.contact_radius)
+    )
+    assert np.array_equal(other.states, simulate(disc, start, times, tolerance=1e-9).states)
 
 
 def test_without_friction_the_disc_is_a_damped_oscillator_and_a_spin_that_decays():

@@ -77,7 +77,7 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
 
 
 @STUDY.claim(
-    "The motion that comes back is the self-centred equilibrium of the continuous ring, at every friction force",
+    "On the continuous ring the engine's steady state is the self-centred equilibrium, at every friction force",
     equation="(19), (20)",
     unit="m, rad/s",
     resolution=RESOLUTION,
@@ -123,7 +123,7 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "A disc that starts displaced comes to the equilibrium as its slowest eigenvalue says",
+    "A displaced disc approaches the equilibrium as the slowest eigenvalue says",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-4,
@@ -232,7 +232,7 @@ def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measure
 
 
 @STUDY.claim(
-    "On six points the disc spins and rests, in the mean, as exact Coulomb friction has it",
+    "On six points the mean place and spin of the disc are those of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",
@@ -287,7 +287,7 @@ def corrected_26() -> Measured:
 
 
 @STUDY.claim(
-    "At none of the places of (26) as printed do springs and friction (23) balance",
+    "Springs and friction (23) balance at no place that (26) as printed gives",
     equation="(26)",
     note=f"Whether the force that is left at a place is below {BALANCED:g}·μN by the corrected (26), and above by "
     "the printed one.",

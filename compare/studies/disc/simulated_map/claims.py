@@ -62,7 +62,7 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
 
 
 @STUDY.claim(
-    "No motion ends as a steady whirl where an eigenvalue of the whirl has grown a deviation by exp(15)",
+    "No motion ends as a steady whirl that has had time to amplify a deviation by exp(15)",
     equation="(19)–(21)",
     basis="reference",
     swept=("damping", "shaft_damping"),

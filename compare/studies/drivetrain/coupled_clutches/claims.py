@@ -135,7 +135,7 @@ def moves(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Each clutch begins to hold and lets go when it does so under Coulomb friction",
+    "Each clutch begins to hold and lets go at the times of Coulomb friction",
     unit="s",
     resolution=1e-3,
     note=f"When the slip passes ε = {EPSILONS[0]:g} m/s, the nearest time of each kind. {HALVED}",
@@ -205,7 +205,7 @@ def implicit(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "What explicit runs are off by falls like ε where clutches hold",
+    "The error of explicit runs falls like ε where clutches hold",
     kind="order",
     resolution=0.1,
     note=f"{at_each('ε in m/s', EPSILONS)}. {OF_ORDER}",
@@ -218,7 +218,7 @@ def order_in_epsilon(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "What implicit runs are off by falls like the square of the step while all clutches slip",
+    "The error of implicit runs falls like the square of the step while all clutches slip",
     kind="order",
     resolution=0.1,
     note=f"{at_each('step in s', STEPS)}; ε = {SMALL_EPSILON:g} m/s. {OF_ORDER}",

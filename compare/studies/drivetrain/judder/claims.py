@@ -52,7 +52,7 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "Small vibrations of a clutch disc grow by what friction falls with the slip, less what its shaft damps",
+    "Small vibrations of a clutch disc grow by the fall of friction with slip less the damping of its shaft",
     unit="1/s",
     resolution=1e-6,
     note="Real and imaginary part of λ in J·λ² + (D − N·R²·γ)·λ + K = 0, where μ falls by γ with the slip; by "

@@ -224,7 +224,7 @@ def held(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "What creep in stick changes of a launch falls like ε",
+    "The error that creep in stick causes in a launch falls like ε",
     kind="order",
     resolution=0.15,
     note=f"{SEVERAL}Change of speeds and heat at {UNTIL:g} s, all over their scales, against Coulomb friction "

@@ -83,7 +83,7 @@ def moves(engine: Engine, name: str) -> Measured:
 
 
 @STUDY.claim(
-    "What engine and vehicle of finite inertia change in the modulated cycle falls like 1/inertia",
+    "The change of the modulated cycle by a finite inertia of engine and vehicle falls like 1/inertia",
     equation="(19)",
     kind="order",
     resolution=0.02,

@@ -87,8 +87,7 @@ def balance(engine: Engine, top: float = TOP) -> Measured:
 
 
 @STUDY.claim(
-    "The strongest line of the run-up's spectrum is the unbalance's below the natural frequency, above the onset "
-    "it is the reference's whirl",
+    "The run-up's strongest line is the unbalance below the natural frequency, the reference's whirl above the onset",
     resolution=0.5 * LINES_APART,
 )
 def lines(engine: Engine, top: float = TOP) -> Measured | None:

@@ -100,7 +100,7 @@ def slips(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A clutch that engages warms up by what slip has lost over the heat capacity",
+    "A clutch that engages warms up by the energy lost in slip over the heat capacity",
     kind="trajectory",
     unit="°C",
     resolution=1e-6,
@@ -145,7 +145,7 @@ def _time_of(times: FloatArray, slips: FloatArray) -> float:
 
 
 @STUDY.claim(
-    "A clutch that slips on warms up exponentially, to where fading friction heats as much as is lost",
+    "A clutch that goes on slipping warms up exponentially until fading friction heats as much as is lost",
     kind="trajectory",
     unit="°C",
     resolution=1e-6,
@@ -170,7 +170,7 @@ def settles(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Energy of the rotors, of the warm linings and what was lost to the surroundings stay what they were together",
+    "The energies of the rotors and of the warm linings and the heat lost to the surroundings keep their sum",
     kind="conservation",
     unit="J",
     resolution=1e-8 * HEAT,

@@ -307,7 +307,7 @@ def smoothing(simulate_smoothed: Simulate) -> Smoothing:
 
 
 @STUDY.claim(
-    "The first release is early by ε times what the creep of a stuck pin gives",
+    "The first release is early by ε times a factor that follows from the creep of a stuck pin",
     equation="(6), (7)",
     unit="s per m/s",
     note="Shift of the first release over ε, RK44 with four steps in mε/μN, extrapolated to ε = 0. Predicted: creep "

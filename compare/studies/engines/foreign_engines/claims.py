@@ -89,7 +89,7 @@ def slides() -> Measured:
 
 
 @STUDY.claim(
-    "The error of a pin that sticks falls in proportion to a fixed step, whatever its order where the pin slides",
+    "The error of a pin that sticks falls in proportion to a fixed step, whatever the order of the steps in slip",
     kind="order",
     basis="independent",
     resolution=0.5,
@@ -208,8 +208,7 @@ def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
 
 
 @STUDY.claim(
-    "By friction for each axis of the world a stuck pin is let go later than by Coulomb's law, by friction along the "
-    "nearest axis at once",
+    "A box around Coulomb's cone lets a stuck pin go later than the cone does, a pyramid within it at once",
     equation="(6), (7)",
     unit="s",
     resolution=1e-2,
@@ -237,7 +236,7 @@ def holds_longer() -> Measured:
 
 
 @STUDY.claim(
-    "With contact solved for no slip a stuck pin goes along tangents, outwards by ω²h/2 of its radius per second",
+    "Solved for zero slip, a stuck pin moves along tangents: it drifts outwards by ω²h/2 of its radius per second",
     basis="independent",
     unit="m",
     resolution=1e-4,

@@ -167,7 +167,7 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 
 
 @STUDY.claim(
-    "The stable set of the stick–slip orbit of saddle type divides the ends of all starts of a grid",
+    "The stable set of the saddle-type stick–slip orbit separates starts that end in equilibrium and in whirl",
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting, and cubic splines. Those of "
     "the starts that end as the other side of the splines does which are the farthest from it were asked by shooting "
     "on which side of the saddle's stable set they are: those do not hold for which that is not their end.",
@@ -200,8 +200,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
 
 
 @STUDY.claim(
-    "The equilibrium's share of the starts of the rectangle is that of the area which the boundary encloses, at both "
-    "speeds",
+    "The share of starts that end in the equilibrium is the share of the area inside the boundary, at both speeds",
     resolution=2e-3,
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble, and where those of a cell end differently a grid {FINER} "
     "times as dense; the boundary by shooting. Numerical error: half of the finer cells through which the boundary "

@@ -129,7 +129,7 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "Below the friction force C·X0 the pin rests in space, above it there is no such rest and it turns with the disc",
+    "A pin rests in space below the friction force C·X0, and turns with the disc above it",
     equation="(5)",
     resolution=1e-3,
     note="Mean speed at which the pin turns about the axis in the last revolution, over ω. Starts at rest beside the "

@@ -39,7 +39,7 @@ AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
 
 
 @STUDY.claim(
-    "(18) gives the shift of the whirl to the error that theory gives it, ω = {}",
+    "The error of the whirl's shift by (18) is the one that theory predicts, ω = {}",
     equation="(18)",
     unit="m",
     note="Model error, in which there is neither a simulation nor (18) itself: the limit of its error for X0 → 0, "

@@ -135,7 +135,7 @@ def whirls(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "First stick and release on the way to the {} are where an event on the slip of (10) and (7) say",
+    "A pin on its way to the {} first sticks when its slip by (10) ends, and is let go when (7) says",
     equation="(7), (10)",
     kind="trajectory",
     unit="s",

@@ -120,7 +120,7 @@ def _reference_whirl(load: float) -> Orbit:
 
 
 @STUDY.claim(
-    "The whirl ends at the friction force below which the branch of periodic orbits has none",
+    "The whirl ends at the friction force where a second multiplier of its orbit passes 1",
     kind="trajectory",
     unit="N",
     resolution=1e-8,
@@ -182,7 +182,7 @@ def coexist(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Between C·X0 and the friction force where it ends, a small stick–slip cycle is one more motion",
+    "A small stick–slip cycle exists from the friction force C·X0 to the one where it ends",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-4,
@@ -209,7 +209,7 @@ def cycle_exists(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin started beside the small stick–slip cycle comes nearer to it in each turn by the cycle's multiplier",
+    "The distance of a pin from the small stick–slip cycle shrinks in each turn by the cycle's multiplier",
     kind="trajectory",
     resolution=5e-3,
     note=f"Two pins start with all of the cycle's state larger and smaller by {CYCLE_DEVIATION:g}; the distance of "

@@ -217,7 +217,7 @@ def sticks(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin started near to the equilibrium comes to rest where the support pulls by μN across its radius",
+    "A pin started near the equilibrium comes to rest where the support's force across the radius is μN",
     equation="(3)",
     unit="m",
     resolution=1e-6,
@@ -249,7 +249,7 @@ def rests(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Without damping the support alone ends the growth: as μN → 0, where it turns the pin as fast as the disc",
+    "Without damping the whirl grows to the radius where the support turns the pin as fast as the disc, as μN → 0",
     unit="m",
     resolution=1e-2,
     note="Not in the paper, which says that nonlinear radial forces usually limit the amplitude. The pin sticks "

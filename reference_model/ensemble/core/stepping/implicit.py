@@ -76,6 +76,8 @@ def collocate_with(
     Also for its rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start`` are where the
     step begins, ``law`` is that of a disc, and ``friction`` as ``laws.ring_friction``. Return how fast friction
     draws slip to its direction at the end, or -1 if there is no convergence.
+
+    In one piece, because what is handed a function is written out into its caller, and so each part would have to be.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)

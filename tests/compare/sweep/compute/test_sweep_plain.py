@@ -11,8 +11,8 @@ from compare.sweep.compute.plain import LEAST_TURNS, end_of, plain_trajectory, t
 from compare.sweep.compute.work import DOUBLINGS, recompute
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
-from reference_model import simulate, sticking_radius, whirls
-from reference_model.ensemble import EndState
+from reference_model import PinOnDisc, simulate, sticking_radius, whirls
+from reference_model.ensemble import EndState, simulate_ensemble
 
 
 def end(system, start, duration, tolerance=1e-9):
@@ -34,6 +34,15 @@ def test_a_pin_inside_of_the_sticking_radius_is_stuck(speed):
     pin = replace(FIG5, friction_force=0.15, disc_speed=speed)
     radius = 0.9 * sticking_radius(pin)
     assert end(pin, (radius, 0.0, 0.0, speed * radius), 60.0) == EndState.STUCK
+
+
+@pytest.mark.parametrize("duration", [20.0, 200.0])
+def test_a_pin_that_creeps_to_the_sticking_radius_for_ever_is_no_whirl(duration):
+    # β² > 4m(C − mω²): slip dies out like exp(−λt), λ = 0.92/s, and never ends.
+    pin = PinOnDisc(mass=1.0, stiffness=4.0, damping=5.0, friction_force=0.4, disc_speed=0.5)
+    start = (0.12, 0.0, 0.0, 0.06)
+    assert end(pin, start, duration) == EndState.STUCK
+    assert simulate_ensemble(pin, start, duration=duration).end.tolist() == [EndState.STUCK]
 
 
 def test_a_pin_that_sticks_beyond_the_sticking_radius_slips_and_sticks_again_and_again():

@@ -58,7 +58,7 @@ def circles(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "(23) has the whirl's radius right but for an error like (μN)⁻⁴, its spin but for one like (μN)⁻²",
+    "The error of (23) falls like (μN)⁻⁴ in the whirl's radius, and like (μN)⁻² in its spin",
     equation="(23)",
     kind="order",
     resolution=0.1,
@@ -77,7 +77,7 @@ def error_of_23(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Like (μN)⁻² the radius tends to the pin's μN/(βk), the spin to a limit that does not depend on μN",
+    "The whirl's radius tends to the pin's μN/(βk), its spin to a limit without μN, both like (μN)⁻²",
     equation="(11)",
     kind="order",
     resolution=0.1,

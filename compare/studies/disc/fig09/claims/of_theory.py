@@ -46,7 +46,7 @@ def fold() -> Measured:
 
 
 @STUDY.claim(
-    "As β → 0 the equilibrium loses its stability at β over the rate by which friction feeds its circular motion",
+    "As β → 0 the equilibrium loses its stability where friction feeds a circular motion as much as β damps it",
     resolution=0.05,
     note=f"Order in β of the error, for β = {', '.join(f'{damping:g}' for damping in DAMPINGS)} N s/m, extrapolated. "
     "Not in the paper, which has the equilibrium stable.",

@@ -34,7 +34,7 @@ FOLLOWED = (
 
 
 @STUDY.claim(
-    "The self-centred disc rests and spins by the balance of forces and moments, stable or not",
+    "Place and spin of the self-centred disc are those of the balance of forces and moments, stable or not",
     equation="(19), (20)",
     resolution=1e-7,
     note="In units of X0 and ω. Measured: the state that the engine itself brings back.",
@@ -81,7 +81,7 @@ def deviations_grow(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A disc beside the whirl comes to it with the rate of its slowest eigenvalue",
+    "A disc beside the whirl approaches it at the rate of the slowest eigenvalue",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,

@@ -36,7 +36,7 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
 
 @STUDY.claim(
-    "On six points the whirl without offset, in the mean, is that of exact Coulomb friction",
+    "On six points the mean whirl without offset is that of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     resolution=1e-6,
@@ -69,7 +69,7 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
 
 
 @STUDY.claim(
-    "On six points the self-centred disc, in the mean, rests and spins as exact Coulomb friction has it",
+    "On six points the mean place and spin of the self-centred disc are those of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     resolution=1e-7,
@@ -97,7 +97,7 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
 
 
 @STUDY.claim(
-    "A disc stuck on six points further out slips away as exact Coulomb friction has it",
+    "A disc on six points that is stuck beyond the radius (9) slips away as under exact Coulomb friction",
     equation="(7)",
     kind="trajectory",
     resolution=2e-3,

@@ -38,7 +38,7 @@ from reference_model.systems import FloatArray
 
 
 @STUDY.claim(
-    "Shooting finds the modulated cycle, periodic but for a turn, where integration settles",
+    "Shooting finds the modulated cycle, periodic up to a rotation, to which integration settles",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s, rad, m, rad/s",

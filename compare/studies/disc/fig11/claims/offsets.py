@@ -81,7 +81,7 @@ def error_of_monodromy(orbit: Orbit) -> float:
 
 
 @STUDY.claim(
-    "The motion is modulated in the end at small offsets, a steady whirl at larger ones, and at rest beyond",
+    "Motions end modulated at small offsets, as a steady whirl at larger ones, and at rest beyond those",
     equation="(19)–(21)",
     note=f"From the last {LOOKED_AT:g} of {ENDS_UNTIL:g} s: the spin, averaged over a turn, swings by more than "
     f"{SWING:g} rad/s, or the radius by more than {ORBITS_EXTENT:g} m. Predicted: from the critical X0 and from the "

@@ -20,7 +20,7 @@ NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
 
 @STUDY.claim(
-    "Single points of six come to rest, so that the disc turns about them, when the reference says",
+    "Single points of six, about which the disc then turns, come to rest when the reference says",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s",

@@ -211,7 +211,7 @@ def _limit(last: float, middle: float, first: float) -> float:
 
 
 @STUDY.claim(
-    "For J < mR²/2 the rim's share, for J > 2mR² the centre's goes to zero as a power of the time left",
+    "As a power of the time left, the rim's share of the slip goes to zero for J < mR²/2, the centre's for J > 2mR²",
     equation="(19), (20)",
     resolution=0.05,
     note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {ENDING[-1]:g} to {ENDING[0]:g} "

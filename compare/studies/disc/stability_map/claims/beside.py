@@ -41,7 +41,7 @@ class Deviation(NamedTuple):
 
 
 @STUDY.claim(
-    "Beside the Hopf curves small deviations from the whirl grow with the pair of eigenvalues that the map is of",
+    "Beside the Hopf curves small deviations from the whirl grow as the pair of eigenvalues says that the map traces",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-4 * K,

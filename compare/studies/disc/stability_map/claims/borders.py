@@ -175,7 +175,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
 
 
 @STUDY.claim(
-    "The disc of Fig. 11 has no whirl where one parameter takes it below the closed form of the onset",
+    "Each parameter by itself makes the centred rotation of Fig. 11 stable where the closed form of the onset says",
     equation="(19), (20)",
     resolution=1e-9,
     note="Parameters over their values of Fig. 11; the slip speed is ω − Ω, and ω stays as it is. By the root of the "

@@ -28,7 +28,9 @@ from reference_model.steady.steady_states import whirls
 from reference_model.systems import FloatArray
 
 
-@STUDY.claim("In each region of the map motions end as it says", equation="(19), (20)", basis="reference")
+@STUDY.claim(
+    "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
+)
 def regions(engine: Engine, starts: Sequence[Start] | None = None) -> Measured:
     """See what motions end as; None for those of ``starts_in_regions``."""
     starts = starts_in_regions() if starts is None else starts

@@ -98,8 +98,7 @@ def linearised(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A whirl in the play is modulated above the speed at which an eigenvalue by the reference's law of friction is "
-    "imaginary",
+    "A whirl in the play is modulated above the speed where an eigenvalue by the reference's friction is imaginary",
     unit="turns a minute",
     resolution=1.0,
     note=f"With {100.0 * BORDER_SURPLUS:g} % of load too much. Measured: the speed at which Exudyn's linearisation "

@@ -117,7 +117,7 @@ def frequency(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
 
 @STUDY.claim(
-    "On the circle (11) friction balances the damping where ω > k, and brakes as much as it where ω < k",
+    "On the circle (11) friction and damping cancel where ω > k, and brake alike where ω < k",
     equation="(11)",
     resolution=1e-5,
     note="Change of the angular momentum in time over μN·ρ_c, from a one-sided difference. By (10) it is "
