@@ -61,7 +61,8 @@ def run(folder, *arguments):
     output = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
         patch.chdir(folder)
-        status = pytest.main([*OPTIONS, "-p", "no:xdist", "-p", "no:faulthandler", *arguments])
+        options = (*OPTIONS, *WITHOUT_OTHERS, "-p", "no:xdist", "-p", "no:faulthandler")
+        status = pytest.main([*options, *arguments])
     return status, output.getvalue(), cases_in(folder)
 
 
