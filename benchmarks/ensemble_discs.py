@@ -1,15 +1,15 @@
-"""Many discs at once: the lanes of this package against the same method in C, one trajectory after the other.
+"""Many discs at once: the lanes of this package against the same method in C, by one trajectory and in lanes.
 
-Run with ``make -C benchmarks/limit && python benchmarks/ensemble_discs.py``; takes half a minute. Both run on one
+Run with ``make -C benchmarks/limit && python benchmarks/ensemble_discs.py``; takes half a minute. All run on one
 core to t = 100 s at a tolerance of 1e-9, from starts of which no point comes to rest, and in turns, so that their
-ratio holds whatever else the machine does. The last column is by how much states at the end differ.
+ratios hold whatever else the machine does. The last column is by how much states at the end differ.
 
 Measured on a core with AVX-512, in ns a step of one trajectory:
 
-| | C | lanes | ratio |
-|---|---|---|---|
-| ring, Figs. 8, 9, 11 | 820–860 | 140–160 | 5.0–6.1 |
-| six points | 950–990 | 110–130 | 7.5–8.8 |
+| | C | C in lanes | here | C : here | C in lanes : here |
+|---|---|---|---|---|---|
+| ring, Figs. 8, 9, 11 | 800–930 | 127–141 | 147–177 | 4.8–5.9 | 0.76–0.88 |
+| six points | 970–1020 | 92–129 | 115–169 | 5.7–8.6 | 0.67–0.95 |
 
 How the method was chosen:
 
