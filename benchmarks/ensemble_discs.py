@@ -80,7 +80,9 @@ def in_lanes(disc: DiscOnDisc, states: FloatArray) -> tuple[FloatArray, int, flo
 def main() -> None:
     """Print the table."""
     columns = ("C", "C in lanes", "here", "C : here", "C in lanes : here", "differences")
-    table = Table("disc", "contact", *columns, title="ns a step, ratios of times, largest differences of states")
+    table = Table(
+        "disc", "contact", *columns, title="ns a step, ratios of times, largest differences of states"
+    )
     for points in (None, 6):
         for name, paper in (("Fig. 8", FIG8), ("Fig. 9", FIG9), ("Fig. 11", FIG11)):
             disc = replace(paper, contact_points=points)
