@@ -10,31 +10,14 @@
 #include <string.h>
 
 #include "dop853.h"
+#include "lanes.h"
 
-typedef double vec __attribute__((vector_size(64)));
-typedef long long mask __attribute__((vector_size(64)));
 typedef double complex cplx;
 
-#define HALVES 2
-#define WIDTH 8
 #define TERMS 8
 #define MOST_TERMS 20
-#define INLINE static inline __attribute__((always_inline))
 
 typedef struct { double k2, c, g, omega, offset, rate, s0; } law_t;
-
-INLINE vec all(double x) { return (vec){x, x, x, x, x, x, x, x}; }
-INLINE vec pick(mask m, vec a, vec b) { return (vec)((m & (mask)a) | (~m & (mask)b)); }
-INLINE vec larger(vec a, vec b) { return pick(a > b, a, b); }
-INLINE vec smaller(vec a, vec b) { return pick(a < b, a, b); }
-INLINE vec size(vec a) { return larger(a, -a); }
-INLINE vec root(vec a)
-{
-    vec r;
-    for (int i = 0; i < WIDTH; i++)
-        r[i] = __builtin_sqrt(a[i]);
-    return r;
-}
 
 typedef struct { vec v[6]; } rates_t; /* of x, y, wx, wy; dt/dtau; that times the slip speed */
 
@@ -341,10 +324,7 @@ void run_pins(const double *pin, const double *starts, long first, long last, do
             vec slip = s->y[2] * s->y[2] + s->y[3] * s->y[3], growth = s->y[2] * s->k[2] + s->y[3] * s->k[3];
             mask due = good[half] & (s->t >= end), resting = good[half] & (slip < slow * slow) & (growth < 0.0);
             mask seen = due | resting;
-            long long any = 0;
-            for (int i = 0; i < WIDTH; i++)
-                any |= seen[i];
-            if (!any)
+            if (!any(seen))
                 continue;
             for (int i = 0; i < WIDTH; i++) {
                 if (number[half][i] < 0 || !seen[i])
