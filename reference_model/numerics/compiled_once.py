@@ -20,6 +20,7 @@ from numba.core.registry import CPUDispatcher
 from numba.core.sigutils import normalize_signature
 
 from reference_model.numerics.compiled_cache import known_by_content
+from reference_model.numerics.vector_width import WideCompiler
 
 LONG = 1.0
 """Time in s after which a terminal is told that something is being compiled."""
@@ -41,7 +42,10 @@ class Kept(CPUDispatcher):
         targetoptions: dict[str, Any] | None = None,
     ) -> None:
         super().__init__(
-            py_func, locals or {}, {"nopython": True, "boundscheck": None, **(targetoptions or {})}
+            py_func,
+            locals or {},
+            {"nopython": True, "boundscheck": None, **(targetoptions or {})},
+            WideCompiler,
         )
         self.enable_caching()
         known_by_content(self)

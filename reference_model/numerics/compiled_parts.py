@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 from llvmlite import binding
-from numba.core import event, sigutils, typed_passes, types
+from numba.core import event, sigutils, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
@@ -21,6 +21,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 
 from reference_model.numerics.compiled_once import Kept
+from reference_model.numerics.vector_width import WideLowering, with_lowering
 
 
 class Part(CPUDispatcher):
@@ -98,7 +99,7 @@ class _PartLibrary(JITCodeLibrary):
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _PartLowering(typed_passes.NativeLowering):
+class _PartLowering(WideLowering):
     """Translates into a ``_PartLibrary``."""
 
     _name = "part_lowering"
@@ -122,10 +123,4 @@ class PartCompiler(Compiler):
         flags = self.state.flags
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         (passes,) = super().define_pipelines()
-        passes.passes = [
-            (_PartLowering if kind is typed_passes.NativeLowering else kind, what)
-            for kind, what in passes.passes
-        ]
-        passes._finalized = False
-        passes.finalize()
-        return [passes]
+        return with_lowering(passes, _PartLowering)
