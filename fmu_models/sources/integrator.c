@@ -8,6 +8,7 @@
 
 #define MOST_STEPS 20000000L /* between two communication points */
 #define SAMPLES 8 /* of a step, between which an event is looked for */
+#define HALVINGS 40 /* of a step in which points come to rest or are let go */
 #define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
 #define AT_LIMIT 3.25 /* h times the largest eigenvalue, where explicit steps are about to be unstable (IV.2 of II) */
 #define IN_A_ROW 15   /* such steps, from which on steps are implicit */
@@ -129,6 +130,35 @@ static int event(State *s, Step *one) {
 }
 #endif
 
+#ifdef V_resting_points
+/* Notes when points come to rest or are let go in a step: it is taken again from its start, to where they do. */
+static void note_rests(State *s, const Step *one) {
+    int then = (int)s->v[V_resting_points], now;
+    double before = 0.0, behind = one->h;
+    State trial;
+    Step part;
+    for (int i = 0; i < N; i++) s->v[STATES[i]] = one->end[i];
+    now = model_resting(s);
+    if (now == then) return;
+    trial = *s;
+    part = *one;
+    for (int halving = 0; halving < HALVINGS; halving++) {
+        part.h = 0.5 * (before + behind);
+        if (!(attempt(&trial, &part) <= 1.0)) break;
+        for (int i = 0; i < N; i++) trial.v[STATES[i]] = part.end[i];
+        if (model_resting(&trial) == then) before = part.h;
+        else behind = part.h;
+    }
+    s->v[V_resting_points] = now;
+    s->v[V_rest_count] += 1.0;
+    s->v[V_rest_time] = one->t + behind;
+}
+#else
+static void note_rests(State *s, const Step *one) {
+    (void)s, (void)one;
+}
+#endif
+
 static double first_step(const State *s, const double y[N], const double f[N], double longest) {
     double h = longest;
     for (int i = 0; i < N; i++)
@@ -173,6 +203,7 @@ int unit_advance(Unit *unit, double until) {
         }
         if (!last || factor < 1.0) s->step = one.h * fmin(fmax(factor, 0.2), 5.0);
         else s->step = fmax(s->step, one.h * fmin(factor, 5.0));
+        note_rests(s, &one);
         happens = event(s, &one);
         one.t = last && !happens ? until : one.t + one.h;
         memcpy(one.y, one.end, sizeof one.y);

@@ -1,11 +1,15 @@
 /* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
    takes more than friction has. */
 #include "contact.h"
+#include "points.h"
 #include "support.h"
 #include "unit.h"
 
 /* Share of the size of the motion by which errors are measured at least, well above rounding. */
 #define LEAST_FELT 0.1
+
+/* Slip speed over epsilon from which a point that rested is let go: errors of steps are a tenth of what is above 1. */
+#define LET_GO 1.01
 
 #ifdef V_spin
 #define RADIUS v[V_contact_radius]
@@ -163,6 +167,19 @@ void model_evaluate(State *s) {
     v[V_friction_moment] = force[2];
 #endif
 }
+
+#ifdef V_resting_points
+int model_resting(const State *s) {
+    double slip[3];
+    int then = (int)s->v[V_resting_points], least, most;
+    Contact contact = contact_of(s);
+    slip_of(s->v, slip);
+    least = points_at_rest(&contact, slip);
+    contact.epsilon *= LET_GO;
+    most = points_at_rest(&contact, slip);
+    return then < least ? least : then > most ? most : then;
+}
+#endif
 
 void model_tangent(const State *s, double d[]) {
     const double *v = s->v;

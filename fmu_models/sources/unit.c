@@ -62,6 +62,9 @@ int unit_initialise(Unit *unit, double time) {
     s->mode = SLIPS;
     s->initialised = 1;
     model_change(s);
+#ifdef V_resting_points
+    s->v[V_resting_points] = model_resting(s);
+#endif
     s->stale = 1;
     return 0;
 }

@@ -53,6 +53,7 @@ void model_evaluate(State *state); /* derivatives and outputs from states and in
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
 /* The states at a time t in s of what rests, in closed form; returns 0, and has none, for what moves. */
 int model_carried(const State *state, double t, double x[N_STATES]);
+int model_resting(const State *state); /* how many single points rest; of models with the variable resting_points */
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
 
 void unit_reset(Unit *unit);

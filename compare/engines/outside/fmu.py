@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
-from compare.engines.outside.stick_events import StickEvents, tells_stick
+from compare.engines.outside.stick_events import Events, PointRests, StickEvents, tells_rests, tells_stick
 from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -112,6 +112,12 @@ class _Model:
         """Whether it tells when its contact sticks."""
         return tells_stick(self.description, self.variables)
 
+    def events(self, system: System) -> type[Events] | None:
+        """Return what follows its phases, if it tells those of a system."""
+        if isinstance(system, DiscOnDisc) and system.contact_points is not None:
+            return PointRests if tells_rests(self.description, self.variables) else None
+        return StickEvents if self.tells_stick else None
+
     def instance(self) -> Any:
         """Return a new instance, which has to be freed."""
         return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
@@ -169,9 +175,7 @@ def _motion(
     step: float = math.inf,
 ) -> Trajectory:
     """Return the motion at ``times`` (n,) of an instance that was not asked before."""
-    tells = model.tells_stick
-    if tells and isinstance(system, DiscOnDisc) and system.contact_points is not None:
-        tells = False
+    if model.tells_stick and isinstance(system, DiscOnDisc) and system.contact_points is not None:
         values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
@@ -189,19 +193,16 @@ def _motion(
     outputs = [model.variables[name].valueReference for name, _ in COLUMNS[type(system)]]
     states = np.empty((len(times), len(outputs)))
     states[0] = get(outputs)
-    events = (
-        StickEvents(instance, model.variables, system, times[0], states[0], newer=model.newer)
-        if tells
-        else None
-    )
-    advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
+    told_by = model.events(system)
+    events = told_by and told_by(instance, model.variables, system, times[0], states[0], newer=model.newer)
+    advance = events.step if events else (lambda at, until: instance.doStep(at, until - at))
     for i, (start, end) in enumerate(itertools.pairwise(times), 1):
         bounds = np.linspace(start, end, max(1, math.ceil((end - start) / step)) + 1)
         for at, until in itertools.pairwise(bounds):
             advance(at, until)
         states[i] = get(outputs)
     instance.terminate()
-    return Trajectory(system, times, states, () if events is None else events.phases(times[-1]))
+    return Trajectory(system, times, states, events.phases(times[-1]) if events else ())
 
 
 def _creep(
