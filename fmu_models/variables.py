@@ -247,6 +247,10 @@ DISC = Model(
         Variable("resting_points", "", "single points that rest: none, 1 or all", "event", type="whole"),
         Variable("rest_count", "", "how often that changed in co-simulation", "event", type="whole"),
         Variable("rest_time", "s", "when it did last, 0 if never", "event"),
+        *(
+            Variable(f"rest_{name}", unit, f"{ABOUT[name]} then", "event")
+            for name, unit in COLUMNS[DiscOnDisc]
+        ),
     ),
 )
 

@@ -8,9 +8,6 @@
 /* Share of the size of the motion by which errors are measured at least, well above rounding. */
 #define LEAST_FELT 0.1
 
-/* Slip speed over epsilon from which a point that rested is let go: errors of steps are a tenth of what is above 1. */
-#define LET_GO 1.01
-
 #ifdef V_spin
 #define RADIUS v[V_contact_radius]
 #else
@@ -169,15 +166,12 @@ void model_evaluate(State *s) {
 }
 
 #ifdef V_resting_points
-int model_resting(const State *s) {
+int model_resting(const State *s, double factor) {
     double slip[3];
-    int then = (int)s->v[V_resting_points], least, most;
     Contact contact = contact_of(s);
+    contact.epsilon *= factor;
     slip_of(s->v, slip);
-    least = points_at_rest(&contact, slip);
-    contact.epsilon *= LET_GO;
-    most = points_at_rest(&contact, slip);
-    return then < least ? least : then > most ? most : then;
+    return points_at_rest(&contact, slip);
 }
 #endif
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
-from compare.engines.outside.stick_events import Events, PointRests, StickEvents, tells_rests, tells_stick
+from compare.engines.outside.stick_events import NAMES_OF_POINTS, Events, PointRests, StickEvents, tells_stick
 from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -114,9 +114,11 @@ class _Model:
 
     def events(self, system: System) -> type[Events] | None:
         """Return what follows its phases, if it tells those of a system."""
+        if not self.tells_stick:
+            return None
         if isinstance(system, DiscOnDisc) and system.contact_points is not None:
-            return PointRests if tells_rests(self.description, self.variables) else None
-        return StickEvents if self.tells_stick else None
+            return PointRests if set(NAMES_OF_POINTS) <= set(self.variables) else None
+        return StickEvents
 
     def instance(self) -> Any:
         """Return a new instance, which has to be freed."""
@@ -194,15 +196,19 @@ def _motion(
     states = np.empty((len(times), len(outputs)))
     states[0] = get(outputs)
     told_by = model.events(system)
-    events = told_by and told_by(instance, model.variables, system, times[0], states[0], newer=model.newer)
-    advance = events.step if events else (lambda at, until: instance.doStep(at, until - at))
+    events = (
+        None
+        if told_by is None
+        else told_by(instance, model.variables, system, times[0], states[0], newer=model.newer)
+    )
+    advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
     for i, (start, end) in enumerate(itertools.pairwise(times), 1):
         bounds = np.linspace(start, end, max(1, math.ceil((end - start) / step)) + 1)
         for at, until in itertools.pairwise(bounds):
             advance(at, until)
         states[i] = get(outputs)
     instance.terminate()
-    return Trajectory(system, times, states, events.phases(times[-1]) if events else ())
+    return Trajectory(system, times, states, () if events is None else events.phases(times[-1]))
 
 
 def _creep(

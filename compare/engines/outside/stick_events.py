@@ -1,7 +1,7 @@
 """When the contact of a model sticks and is let go, by what the model itself tells of its last events.
 
-It has as outputs how often it stuck and was let go, when it did last, and where it then was: ``NAMES``. Of single
-points it tells how many rest, how often that changed, and when it did last: ``NAMES_OF_POINTS``. It is asked
+It has as outputs how often it stuck and was let go, when it did last, and where it then was: ``NAMES``; and of single
+points how many rest, how often that changed, when it did last, and the state then: ``NAMES_OF_POINTS``. It is asked
 at communication points, and a step in which there was more than the last of each is taken back and halved.
 """
 
@@ -23,7 +23,10 @@ TIMES = ("stick_time", "release_time")
 NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")
 """What a model has to have, and ``stick_angle`` for a disc."""
 
-NAMES_OF_POINTS = ("rest_count", "rest_time", "resting_points")
+STATE_OF_POINTS = tuple(f"rest_{name}" for name, _ in COLUMNS[DiscOnDisc])
+
+NAMES_OF_POINTS = ("rest_count", "rest_time", "resting_points", *STATE_OF_POINTS)
+"""What a model that tells of sticking has to have besides, to tell when single points rest."""
 
 Kind = Literal["slip", "pivot", "stick"]
 
@@ -34,18 +37,9 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
     return (
         set(NAMES) <= set(variables)
         and ("spin" not in variables or "stick_angle" in variables)
-        and _goes_back(description)
+        and bool(getattr(description.coSimulation, "canGetAndSetFMUstate", False))
         and (exact is None or str(exact.start).lower() in ("true", "1"))
     )
-
-
-def tells_rests(description: Any, variables: Mapping[str, Any]) -> bool:
-    """Return whether a model tells when single points rest."""
-    return set(NAMES_OF_POINTS) <= set(variables) and _goes_back(description)
-
-
-def _goes_back(description: Any) -> bool:
-    return bool(getattr(description.coSimulation, "canGetAndSetFMUstate", False))
 
 
 class Events:
@@ -101,7 +95,7 @@ class Events:
             if halve:
                 self._put_back(before)
             elif more > 0:
-                self._note(counts, begin, before)
+                self._note(counts)
                 self._counts = counts
         finally:
             self._freed(before)
@@ -121,36 +115,23 @@ class Events:
         """Return the kind of phase in which the motion starts."""
         raise NotImplementedError
 
-    def _note(self, counts: list[int], begin: float, before: Any) -> None:
-        """Note what happened once since ``begin`` in s, when the instance was as in ``before``."""
+    def _note(self, counts: list[int]) -> None:
+        """Note what happened, each at most once, since ``_counts``."""
         raise NotImplementedError
 
 
 class PointRests(Events):
-    """Those of a disc on single points, of which one may rest while it turns about that."""
+    """Those of a disc on single points, of which one may rest while the disc turns about it."""
 
     counts = ("rest_count",)
 
     def _first(self) -> Kind:
-        return self._now()
-
-    def _now(self) -> Kind:
         (resting,) = self._whole(self._of("resting_points"))
         return "slip" if resting == 0 else "pivot" if resting == 1 else "stick"
 
-    def _note(self, counts: list[int], begin: float, before: Any) -> None:
-        """Go back to that time for the state."""
-        (time,), kind = self._real(self._of("rest_time")), self._now()
-        after = self._kept()
-        try:
-            self._put_back(before)
-            if time > begin:
-                self._instance.doStep(begin, time - begin)
-            state = np.array(self._real(self._of(*(name for name, _ in COLUMNS[type(self._system)]))))
-            self._put_back(after)
-        finally:
-            self._freed(after)
-        self._begun.append((kind, time, state))
+    def _note(self, counts: list[int]) -> None:
+        time, *state = self._real(self._of("rest_time", *STATE_OF_POINTS))
+        self._begun.append((self._first(), time, np.array(state)))
 
 
 class StickEvents(Events):
@@ -166,7 +147,7 @@ class StickEvents(Events):
     def _first(self) -> Kind:
         return "stick" if self._counts[0] > self._counts[1] else "slip"
 
-    def _note(self, counts: list[int], begin: float, before: Any) -> None:
+    def _note(self, counts: list[int]) -> None:
         """Note the last of each that is new: what sticks is let go before it sticks again."""
         changed = [now > then for now, then in zip(counts, self._counts, strict=True)]
         stuck, released = self._real(self._timed)
