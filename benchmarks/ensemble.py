@@ -22,7 +22,7 @@ How the scheme was chosen, in numbers per core:
   slip, T: 759, 2T: 833, 4T: 902);
 - a step costs 25 ns a lane with 16 lanes, 29 ns with 8, 25 ns with 32; about 200 ns one at a time;
 - compilers keep to vectors of 256 bits on some processors that have 512: compiled for one of these
-  (``NUMBA_CPU_NAME=icelake-server``, on the same machine) pins at full length make 0.51 of C by hand, with 512 bits
+  (emulated by ``NUMBA_CPU_NAME=icelake-server`` on the same machine) pins at full length make 0.51 of C by hand, with 512 bits
   0.88, and the same bits; where the compiler prefers 512 by itself, 0.89. So the widest is always taken;
 - contraction to FMA would save 12 %, and cost the same bits on workers with and without it: not taken;
 - the exact law by hand in C makes 52,000/s a core; the regularised one, with DOP853 and Rodas5P, once made 37,000/s.
