@@ -140,7 +140,8 @@ static void locate(State *s, const Step *one, int then) {
     memcpy(s->left, one->end, sizeof s->left);
     for (int halving = 0; halving < HALVINGS; halving++) {
         part.h = 0.5 * (before + behind);
-        if (!(attempt(&trial, &part) <= 1.0)) break;
+        trial.held_up = s->held_up; /* the same method */
+        if (!(attempt(&trial, &part) < HUGE_VAL)) break;
         for (int i = 0; i < N; i++) trial.v[STATES[i]] = part.end[i];
         if (model_resting(&trial, 1.0) == then) {
             before = part.h;
