@@ -244,6 +244,13 @@ DISC = Model(
         ),
         _points("points of the contact, at least 3, or 0 for a ring; each creeps below regularisation"),
         Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
+        Variable("resting_points", "", "single points that rest: none, 1 or all", "event", type="whole"),
+        Variable("rest_count", "", "how often that changed in co-simulation", "event", type="whole"),
+        Variable("rest_time", "s", "when it did last, 0 if never", "event"),
+        *(
+            Variable(f"rest_{name}", unit, f"{ABOUT[name]} then", "event")
+            for name, unit in COLUMNS[DiscOnDisc]
+        ),
     ),
 )
 

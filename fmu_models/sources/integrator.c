@@ -8,6 +8,8 @@
 
 #define MOST_STEPS 20000000L /* between two communication points */
 #define SAMPLES 8 /* of a step, between which an event is looked for */
+#define HALVINGS 40 /* of a step in which points come to rest or are let go */
+#define LET_GO 2.0  /* slip speed over epsilon; errors of steps were seen to reach 1.1 */
 #define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
 #define AT_LIMIT 3.25 /* h times the largest eigenvalue, where explicit steps are about to be unstable (IV.2 of II) */
 #define IN_A_ROW 15   /* such steps, from which on steps are implicit */
@@ -129,6 +131,50 @@ static int event(State *s, Step *one) {
 }
 #endif
 
+#ifdef V_resting_points
+/* Finds when points no longer rest as they did where a step began: it is taken again, to ever closer there. */
+static void locate(State *s, const Step *one, int then) {
+    State trial = *s;
+    Step part = *one;
+    double before = 0.0, behind = one->h;
+    memcpy(s->left, one->end, sizeof s->left);
+    for (int halving = 0; halving < HALVINGS; halving++) {
+        part.h = 0.5 * (before + behind);
+        trial.held_up = s->held_up; /* the same method */
+        if (!(attempt(&trial, &part) < HUGE_VAL)) break;
+        for (int i = 0; i < N; i++) trial.v[STATES[i]] = part.end[i];
+        if (model_resting(&trial, 1.0) == then) {
+            before = part.h;
+        } else {
+            behind = part.h;
+            memcpy(s->left, part.end, sizeof s->left);
+        }
+    }
+    s->left_time = one->t + behind;
+}
+
+/* Notes in a step when points come to rest, or are let go: from epsilon on, once they are LET_GO times as fast, because
+   errors of steps lead to either side of epsilon before. */
+static void note_rests(State *s, const Step *one) {
+    int then = (int)s->v[V_resting_points], least, most;
+    for (int i = 0; i < N; i++) s->v[STATES[i]] = one->end[i];
+    least = model_resting(s, 1.0);
+    most = model_resting(s, LET_GO);
+    if (least > then || (least < then && !s->leaves)) locate(s, one, then);
+    s->leaves = least < then;
+    if (least == then || (s->leaves && most >= then)) return;
+    s->leaves = 0;
+    s->v[V_resting_points] = least > then ? least : most;
+    s->v[V_rest_count] += 1.0;
+    s->v[V_rest_time] = s->left_time;
+    for (int i = 0; i < N; i++) s->v[V_rest_x + i] = s->left[i];
+}
+#else
+static void note_rests(State *s, const Step *one) {
+    (void)s, (void)one;
+}
+#endif
+
 static double first_step(const State *s, const double y[N], const double f[N], double longest) {
     double h = longest;
     for (int i = 0; i < N; i++)
@@ -173,6 +219,7 @@ int unit_advance(Unit *unit, double until) {
         }
         if (!last || factor < 1.0) s->step = one.h * fmin(fmax(factor, 0.2), 5.0);
         else s->step = fmax(s->step, one.h * fmin(factor, 5.0));
+        note_rests(s, &one);
         happens = event(s, &one);
         one.t = last && !happens ? until : one.t + one.h;
         memcpy(one.y, one.end, sizeof one.y);

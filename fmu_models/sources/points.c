@@ -30,6 +30,16 @@ double points_slip(const Contact *c, const double slip[3], double mean[3], doubl
     return sum / c->points;
 }
 
+int points_at_rest(const Contact *c, const double slip[3]) {
+    int resting = 0;
+    for (int i = 0; i < c->points; i++) {
+        double arm[2];
+        arm_of(c, i, arm);
+        if (hypot(slip[0] - slip[2] * arm[1], slip[1] + slip[2] * arm[0]) < c->epsilon) resting++;
+    }
+    return resting < 2 ? resting : c->points;
+}
+
 double points_slip_tangent(const Contact *c, const double slip[3], const double d[3], double d_angle,
                            double d_mean[3]) {
     double sum = 0.0;

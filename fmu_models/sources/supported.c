@@ -1,6 +1,7 @@
 /* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
    takes more than friction has. */
 #include "contact.h"
+#include "points.h"
 #include "support.h"
 #include "unit.h"
 
@@ -163,6 +164,16 @@ void model_evaluate(State *s) {
     v[V_friction_moment] = force[2];
 #endif
 }
+
+#ifdef V_resting_points
+int model_resting(const State *s, double factor) {
+    double slip[3];
+    Contact contact = contact_of(s);
+    contact.epsilon *= factor;
+    slip_of(s->v, slip);
+    return points_at_rest(&contact, slip);
+}
+#endif
 
 void model_tangent(const State *s, double d[]) {
     const double *v = s->v;

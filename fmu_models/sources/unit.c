@@ -59,9 +59,13 @@ int unit_initialise(Unit *unit, double time) {
     s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;
     s->held_up = 0;
+    s->leaves = 0;
     s->mode = SLIPS;
     s->initialised = 1;
     model_change(s);
+#ifdef V_resting_points
+    s->v[V_resting_points] = model_resting(s, 1.0);
+#endif
     s->stale = 1;
     return 0;
 }

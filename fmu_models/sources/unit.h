@@ -16,6 +16,9 @@ typedef struct {
     double tolerance;  /* of the integrator */
     double leaving;    /* slip speed in m/s from which on the direction of friction is that of the slip again */
     double slowest;    /* slip speed in m/s of the contact, of its slowest point if it has single ones */
+    double left_time;      /* when single points that rest exceeded epsilon, in s, unless they came back below it */
+    double left[N_STATES]; /* and the states then */
+    int leaves;            /* whether that is so */
     int held_up;       /* steps in a row, by and large, that an explicit method can't take longer */
     int mode;          /* of the contact; but SLIPS of an exact one only */
     int stale;         /* whether what follows from states and inputs is to be found yet */
@@ -53,6 +56,8 @@ void model_evaluate(State *state); /* derivatives and outputs from states and in
 void model_tangent(const State *state, double d[]); /* their derivatives along those of states and inputs in d */
 /* The states at a time t in s of what rests, in closed form; returns 0, and has none, for what moves. */
 int model_carried(const State *state, double t, double x[N_STATES]);
+/* How many single points are slower than a factor times epsilon; of models with the variable resting_points. */
+int model_resting(const State *state, double factor);
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
 
 void unit_reset(Unit *unit);

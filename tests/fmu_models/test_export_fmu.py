@@ -9,7 +9,7 @@ import pytest
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.cli import app as cli
-from compare.engines import StatesOnly, engines
+from compare.engines import engines
 from compare.studies.engines.trajectories import STUDY
 from fmu_models import CLUTCH, MODELS, PIN, HeadersMissingError, archive, export
 from fmu_models.archive import FOLDER, sources_of
@@ -20,6 +20,7 @@ pytest.importorskip("fmpy.fmi3")
 from fmpy.validation import validate_fmu  # noqa: E402
 
 import reference_model  # noqa: E402
+from reference_model.systems import DiscOnDisc  # noqa: E402
 
 SIX = replace(FIG11, contact_points=6)
 BOTH = pytest.mark.parametrize("fmi", [2, 3])
@@ -114,7 +115,7 @@ def test_a_judge_agrees_with_the_unit(unit, kind):
     assert moves(unit("pin" if kind == "pin" else "disc"), kind) is Verdict.AGREES
 
 
-def test_points_that_rest_creep_less_the_smaller_the_tolerance_and_tell_no_phases_of_their_own(unit):
+def test_points_that_rest_creep_less_the_smaller_the_tolerance(unit):
     (engine,) = engines([f"fmu:{unit('disc')}"])
     start = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
     expected = reference_model.simulate(SIX, start, [0.0, 40.0], tolerance=1e-12)
@@ -123,7 +124,34 @@ def test_points_that_rest_creep_less_the_smaller_the_tolerance_and_tell_no_phase
     assert {phase.kind for phase in expected.phases} == {"slip", "pivot"}
     assert errors[1] < 1e-6
     assert 7.0 < errors[0] / errors[1] < 9.0
-    assert all(isinstance(one, StatesOnly) for one in found)
+
+
+COMES_TO_REST = DiscOnDisc(
+    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.4, disc_speed=1.2, offset=0.1,
+    contact_radius=0.12, shaft_damping=0.005, shaft_speed=0.0, contact_points=3,
+)  # fmt: skip
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("system", "start", "kinds"),
+    [
+        (SIX, (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664), ["slip", "pivot", "slip", "pivot", "slip"]),
+        (COMES_TO_REST, (0.3, 0.1, 0.0, 0.2, 0.3, 0.4), ["slip", "pivot", "stick"]),
+    ],
+    ids=["single ones", "all"],
+)
+def test_the_unit_tells_when_points_come_to_rest_and_are_let_go(unit, system, start, kinds, fmi):
+    (engine,) = engines([f"fmu:{unit('disc', fmi)}"])
+    expected = reference_model.simulate(system, start, [0.0, 40.0], tolerance=1e-12).phases
+    assert [phase.kind for phase in expected] == kinds
+    # at 1e-10 points pass the speed of creep many times before they are let go for good
+    for tolerance, most, times in ((2e-8, 1e-3, [0.0, 40.0]), (1e-10, 3e-4, np.linspace(0.0, 40.0, 161))):
+        found = engine.simulate(system, start, times, tolerance=tolerance).phases
+        assert [phase.kind for phase in found] == kinds
+        for mine, theirs in zip(found[1:], expected[1:], strict=True):
+            assert abs(mine.start - theirs.start) < most
+            assert np.max(np.abs(mine.initial_state - theirs.initial_state)) < 2.0 * most
 
 
 @BOTH

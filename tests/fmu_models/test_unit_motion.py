@@ -102,6 +102,18 @@ def test_errors_of_a_point_that_rests_are_of_first_order_in_its_creep(instance):
     assert abs(np.log10(errors[0] / errors[1]) - 1.0) < 0.1, errors
 
 
+def test_a_point_comes_to_rest_and_is_let_go_where_it_slips_with_epsilon_exactly(instance):
+    unit = started(instance, SIX, (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664), regularisation=1e-6)
+    for until, resting, count in ((33.0, 0, 0), (33.15, 1, 1), (34.0, 0, 2)):
+        unit.to(until)
+        assert (unit["resting_points"], unit["rest_count"]) == (resting, count)
+        if count:
+            x, y, angle, vx, vy, spin = unit.values(*(f"rest_{name}" for name, _ in COLUMNS[DiscOnDisc]))
+            arms = SIX.contact_radius * np.exp(1j * (angle + np.pi / 3.0 * np.arange(6)))
+            slips = complex(vx, vy) + 1j * spin * arms - 1j * SIX.disc_speed * (complex(x, y) + arms)
+            assert abs(np.min(np.abs(slips)) / 1e-6 - 1.0) < 1e-6
+
+
 def test_a_pin_on_a_plane_stops_in_time_even_at_a_coarse_tolerance(instance):
     unit = instance(
         "pin", vx=0.3, x=0.0, vy=0.0, disc_speed=0.0, stiffness=0.0, damping=0.0, offset=0.0, friction_force=0.1,

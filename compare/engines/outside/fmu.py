@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
-from compare.engines.outside.stick_events import StickEvents, tells_stick
+from compare.engines.outside.stick_events import NAMES_OF_POINTS, Events, PointRests, StickEvents, tells_stick
 from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -112,6 +112,14 @@ class _Model:
         """Whether it tells when its contact sticks."""
         return tells_stick(self.description, self.variables)
 
+    def events(self, system: System) -> type[Events] | None:
+        """Return what follows its phases, if it tells those of a system."""
+        if not self.tells_stick:
+            return None
+        if isinstance(system, DiscOnDisc) and system.contact_points is not None:
+            return PointRests if set(NAMES_OF_POINTS) <= set(self.variables) else None
+        return StickEvents
+
     def instance(self) -> Any:
         """Return a new instance, which has to be freed."""
         return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
@@ -169,9 +177,7 @@ def _motion(
     step: float = math.inf,
 ) -> Trajectory:
     """Return the motion at ``times`` (n,) of an instance that was not asked before."""
-    tells = model.tells_stick
-    if tells and isinstance(system, DiscOnDisc) and system.contact_points is not None:
-        tells = False
+    if model.tells_stick and isinstance(system, DiscOnDisc) and system.contact_points is not None:
         values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
@@ -189,10 +195,11 @@ def _motion(
     outputs = [model.variables[name].valueReference for name, _ in COLUMNS[type(system)]]
     states = np.empty((len(times), len(outputs)))
     states[0] = get(outputs)
+    told_by = model.events(system)
     events = (
-        StickEvents(instance, model.variables, system, times[0], states[0], newer=model.newer)
-        if tells
-        else None
+        None
+        if told_by is None
+        else told_by(instance, model.variables, system, times[0], states[0], newer=model.newer)
     )
     advance = (lambda at, until: instance.doStep(at, until - at)) if events is None else events.step
     for i, (start, end) in enumerate(itertools.pairwise(times), 1):
