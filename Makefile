@@ -8,14 +8,14 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report readme test lint docs paper dist benchmarks clean
 
-report: $(VENV)/installed
+report: $(VENV)/kernels
 	$(BIN)/friction-discs report
 
 # Takes the numbers of README and docs over from the last report; .ci/run fails where the two part.
 readme: $(VENV)/installed
 	$(BIN)/python -m compare.cli.readme write report/results.json
 
-test: $(VENV)/for-tests
+test: $(VENV)/for-tests $(VENV)/kernels
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/for-tests
@@ -38,7 +38,7 @@ dist: $(VENV)/installed
 	rm -rf dist
 	$(BIN)/python builders/release.py dist
 
-benchmarks: $(VENV)/for-tests
+benchmarks: $(VENV)/for-tests $(VENV)/kernels
 	$(BIN)/python benchmarks/exudyn_contact.py
 	$(BIN)/python benchmarks/exudyn_solvers.py
 	$(BIN)/python benchmarks/reference_evaluations.py
@@ -54,6 +54,11 @@ clean:
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[sweep]'
+	touch $@
+
+# The kernels of ensembles for this machine, which a wheel would bring; those that are there already stay.
+$(VENV)/kernels: $(VENV)/installed $(shell find reference_model -name '*.py')
+	$(BIN)/python builders/kernels.py
 	touch $@
 
 # Whoever only wants a report does not wait for what tests need.

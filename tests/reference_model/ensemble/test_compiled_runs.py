@@ -270,11 +270,11 @@ def test_a_creeping_ring_at_the_tightest_tolerance_stays_where_friction_comes_to
 
 def test_a_disc_that_is_handed_over_and_back_needs_no_other_code_than_one_that_is_not():
     simulate(on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0], compiled=True)
-    known = len(run_points.signatures)
+    known = len(run_points.kinds)
     found = simulate(on_six(HARD), turning_with(HARD, -0.02), [0.0, 40.0], compiled=True)
     assert found.stick_phases
     assert found.phases[-1].kind == "slip"
-    assert len(run_points.signatures) == known
+    assert len(run_points.kinds) == known
 
 
 def test_a_disc_on_points_is_with_the_plain_reference_only_until_it_slips(monkeypatch):

@@ -196,4 +196,4 @@ def test_the_step_of_all_lanes_is_vectorised():
 def test_the_kernel_is_compiled_once_for_one_pin_and_for_many():
     for parameters in ({}, {"mass": [1.0, 1.1]}):
         simulate_ensemble(FIG5, basin_starts(1), duration=1.0, parameters=parameters)
-    assert len(run_pins.signatures) == 1
+    assert len(run_pins.kinds) == 1
