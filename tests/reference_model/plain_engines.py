@@ -79,7 +79,7 @@ def release_after(pin, state, longest):
         return math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, state, time))) - pin.friction_force
 
     grid = np.linspace(0.0, longest, 2001)
-    first = int(np.argmax([excess(time) > 0.0 for time in grid]))
+    first = next((i for i, time in enumerate(grid) if excess(time) > 0.0), 0)
     return brentq(excess, grid[first - 1], grid[first], xtol=1e-15) if first else 0.0
 
 

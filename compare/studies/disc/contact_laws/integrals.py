@@ -7,6 +7,7 @@ disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇)
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -32,6 +33,7 @@ def directions(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
     return np.stack((-x, -y, along)) / np.where(speed > 0.0, speed, 1.0)
 
 
+@functools.cache  # several claims ask for the same ones
 def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
     """Return the integral (20) by adaptive quadrature, and its error."""
     from scipy.integrate import quad_vec

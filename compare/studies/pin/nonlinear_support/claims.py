@@ -261,10 +261,14 @@ def rests(engine: Engine) -> Measured:
 def growth_ends(engine: Engine) -> Measured:
     """Extrapolate the radius at which growth without damping ends to small friction forces."""
 
+    grown: dict[tuple[str, float, float], FloatArray] = {}
+
     def ends(tolerance: float) -> list[list[float]]:
-        return [
-            [growth(engine, pin, load, tolerance)[-1, 1] for load in GROWING_LOADS] for pin in PINS.values()
-        ]
+        for name, pin in PINS.items():
+            for load in GROWING_LOADS:
+                drawn = load == GROWING_LOADS[-1] and tolerance == GROWN
+                grown[name, load, tolerance] = growth(engine, pin, load, tolerance, 401 if drawn else 2)
+        return [[float(grown[name, load, tolerance][-1, 1]) for load in GROWING_LOADS] for name in PINS]
 
     found = refined(ends, GROWN)
     extrapolated = [np.polynomial.Polynomial.fit(GROWING_LOADS, radii, 2)(0.0) for radii in found.value]
@@ -275,14 +279,14 @@ def growth_ends(engine: Engine) -> Measured:
         error=np.abs(np.subtract(extrapolated, straight)) + AMPLIFIED * np.max(found.error, axis=1),
         at=SUPPORTS,
         parameters={"damping": 0.0},
-        data={f"{name} growth": growth(engine, pin, GROWING_LOADS[-1], GROWN) for name, pin in PINS.items()},
+        data={f"{name} growth": grown[name, GROWING_LOADS[-1], GROWN] for name in PINS},
     )
 
 
-def growth(engine: Engine, pin: PinOnDisc, load: float, tolerance: float) -> FloatArray:
-    """Return time and radius of a pin without damping until it has stuck for a while, shape (n, 2)."""
+def growth(engine: Engine, pin: PinOnDisc, load: float, tolerance: float, samples: int) -> FloatArray:
+    """Return time and radius of a pin without damping until it has stuck for a while, shape (samples, 2)."""
     undamped = replace(pin, damping=0.0, friction_force=load)
-    times = np.linspace(0.0, growing_time(undamped), 401)
+    times = np.linspace(0.0, growing_time(undamped), samples)
     trajectory = engine.simulate(undamped, first_circle(undamped), times, tolerance=tolerance)
     return np.column_stack((times, trajectory.radius))
 

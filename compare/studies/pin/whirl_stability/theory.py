@@ -46,9 +46,10 @@ def linear_deviation(times: FloatArray) -> FloatArray:
     return np.array(states)[:, 0]
 
 
-def grid() -> list[PinOnDisc]:
+@functools.cache
+def grid() -> tuple[PinOnDisc, ...]:
     """Return the pins of the grid, damping by damping."""
-    return [pin_at(K * ratio, PIN.mass * K * damping) for damping in DAMPINGS for ratio in RATIOS]
+    return tuple(pin_at(K * ratio, PIN.mass * K * damping) for damping in DAMPINGS for ratio in RATIOS)
 
 
 @functools.cache
