@@ -41,7 +41,7 @@ def friction_derivatives_on_nodes(
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
-    force = np.array(friction_of_slip(ux, uy, spin, angle, contact))
+    force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     # Friction is −μN·∂P/∂(u, S), or P/ε of that; P does not change if slip and disc are turned alike.
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
@@ -49,24 +49,33 @@ def friction_derivatives_on_nodes(
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
     size = len(coordinates)
     by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((3, size))
+    map_change, slip_change = np.zeros((3, size)), np.zeros(3)
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
         stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_jacobian(kinds, stepped)
         stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
         motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
-        map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
         turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
         turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
-        slip_change = map_change @ velocities + velocity_factor * to_slip[:, j]
-        force_change = by_slip[:, :3].copy() @ slip_change + by_slip[:, 3] * turn
         for i in range(3):
+            slip_change[i] = velocity_factor * to_slip[i, j]
             for k in range(size):
-                by_nodes[k, j] += force[i] * map_change[i, k] + force_change[i] * to_slip[i, k]
+                map_change[i, k] = position_factor * stepped_map[i, k].imag / IMAGINARY_STEP
+                slip_change[i] += map_change[i, k] * velocities[k]
+        for i in range(3):
+            force_change = by_slip[i, 3] * turn
+            for k in range(3):
+                force_change += by_slip[i, k] * slip_change[k]
+            for k in range(size):
+                by_nodes[k, j] += force[i] * map_change[i, k] + force_change * to_slip[i, k]
             motion_by_nodes[1, j] += slope * force[i] * slip_change[i]
         motion_by_nodes[2, j] = slip_change[2]
         motion_by_nodes[1, j] -= slope * (force[1] * ux - force[0] * uy) * turn
-    forces = force[0] * to_slip[0] + force[1] * to_slip[1] + force[2] * to_slip[2]
+    forces = np.zeros(size)
+    for k in range(size):
+        for i in range(3):
+            forces[k] += force[i] * to_slip[i, k]
     return by_nodes, motion_by_nodes, (forces, radius_of_disc(kinds, coordinates, axes), speed, spin)
 
 
@@ -119,8 +128,8 @@ def jacobian_on_any(
 ) -> FloatArray:
     """Return the derivatives of the left-hand side, where the force stands with a minus, shape (n, n)."""
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    return -friction_derivatives_on_nodes(
-        kinds, coordinates, velocities, position_factor, velocity_factor, contact
+    return friction_derivatives_on_nodes(
+        kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
     )[0]
 
 

@@ -122,8 +122,9 @@ def _frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Ve
         axes = _rotated_by_vector(q[angle], q[angle + 1], q[angle + 2])
         return place, axes, (axes[0], axes[1], axes[2], none)  # the velocities are ω in the body's axes
     if kind == TAIT_BRYAN:
-        cx, cy, cz = np.cos(q[angle]), np.cos(q[angle + 1]), np.cos(q[angle + 2])
-        sx, sy, sz = np.sin(q[angle]), np.sin(q[angle + 1]), np.sin(q[angle + 2])
+        (cx, sx), (cy, sy), (cz, sz) = (
+            _cosine_and_sine(q[angle]), _cosine_and_sine(q[angle + 1]), _cosine_and_sine(q[angle + 2]),
+        )  # fmt: skip
         x = (cy * cz, cx * sz + sx * sy * cz, sx * sz - cx * sy * cz)
         y = (-cy * sz, cx * cz - sx * sy * sz, sx * cz + cx * sy * sz)
         z = (sy, -sx * cy, cx * cy)
@@ -132,8 +133,13 @@ def _frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Ve
         return place, *_rotated_by_euler_parameters(q[angle], q[angle + 1], q[angle + 2], q[angle + 3])
     c, s, turning = one, zero, none
     if kind != GROUND:
-        c, s, turning = np.cos(q[angle]), np.sin(q[angle]), (zero, zero, one)
+        (c, s), turning = _cosine_and_sine(q[angle]), (zero, zero, one)
     return place, ((c, s, zero), (-s, c, zero), (zero, zero, one)), (turning, none, none, none)
+
+
+@compiled
+def _cosine_and_sine(angle: Any) -> tuple[Any, Any]:
+    return np.cos(angle), np.sin(angle)
 
 
 @compiled
@@ -142,9 +148,9 @@ def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
     square = x * x + y * y + z * z
     theta = np.sqrt(square)
     # Half angles keep the digits of 1 − cos(θ).
-    linear = np.sin(theta) / theta if theta != 0.0 else theta + 1.0
-    half = np.sin(theta / 2.0) / theta if theta != 0.0 else theta + 0.5
-    quadratic = 2.0 * half * half
+    (cosine_of_half, sine_of_half) = _cosine_and_sine(theta / 2.0)
+    half = sine_of_half / theta if theta != 0.0 else theta + 0.5
+    linear, quadratic = 2.0 * cosine_of_half * half, 2.0 * half * half
     xy, yz, zx = quadratic * x * y, quadratic * y * z, quadratic * z * x
     x_turned, y_turned, z_turned = linear * x, linear * y, linear * z
     cosine = 1.0 - quadratic * square

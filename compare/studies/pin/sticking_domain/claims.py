@@ -47,8 +47,7 @@ STUDY = Study.beside(
     system=PIN,
     draw=draw,
     curves=curves,
-    seconds=2.0,
-    quick=True,
+    seconds=6.0,
 )
 
 LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m − β²/2m²)"
