@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -56,8 +57,13 @@ class SlipMotion:
 
         The acceleration of support and damper, less that of the point of the disc below, d(iωz)/dt = iωż.
         """
-        v = w + 1j * self.disc_speed * z
-        return self.support.force(z) - (self.damping + 1j * self.disc_speed) * v
+        carried, drag = self._factors
+        return self.support.force(z) - drag * (w + carried * z)
+
+    @cached_property  # every evaluation asks for them
+    def _factors(self) -> tuple[complex, complex]:
+        """Return iω and β/m + iω, in 1/s."""
+        return 1j * self.disc_speed, self.damping + 1j * self.disc_speed
 
 
 def simulate_polar_form(
