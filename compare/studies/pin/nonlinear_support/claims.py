@@ -260,7 +260,6 @@ def rests(engine: Engine) -> Measured:
 )
 def growth_ends(engine: Engine) -> Measured:
     """Extrapolate the radius at which growth without damping ends to small friction forces."""
-
     grown: dict[tuple[str, float, float], FloatArray] = {}
 
     def ends(tolerance: float) -> list[list[float]]:
