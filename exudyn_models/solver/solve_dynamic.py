@@ -92,13 +92,20 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
     jumps = JumpCheck(mbs) if implicit else None
     rates = starting_rates(mbs, start) if implicit else nullcontext()
 
+    positions, velocities, others = (
+        data.GetODE2Coordinates,
+        data.GetODE2Coordinates_t,
+        data.GetODE1Coordinates,
+    )
+
     def look(mbs: Any, t: float) -> bool:
         nonlocal reached, finite
         reached = t
         if t >= check.next_time:
-            check.warn(t, data.GetODE2Coordinates())
-        state = (data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE1Coordinates())
-        finite = math.isfinite(sum(sum(part.tolist()) for part in state))
+            check.warn(t, positions())
+        finite = math.isfinite(
+            sum(positions().tolist()) + sum(velocities().tolist()) + sum(others().tolist())
+        )
         if jumps is not None:
             jumps.look(t, data.GetODE1Coordinates_t())
         return finite

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
+from operator import mul
 
 import numpy as np
 from scipy.integrate import DenseOutput
@@ -82,13 +83,13 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         n = [part / size for part in n]
         # A trial step may overshoot wildly before it is rejected: exp() must not overflow there.
         s = math.exp(min(stretched[-2], 50.0))
-        return stretched[:others] + [s * part for part in n], n, s
+        return [*stretched[:others], *[s * part for part in n]], n, s
 
     def rates(stretched: list[float]) -> Sequence[float]:
         y, n, s = unknowns(stretched)
         dy = motion.rates(y)
         growth = dy[others:]
-        along = sum(a * b for a, b in zip(n, growth, strict=True))
+        along = sum(map(mul, n, growth))
         pace = math.hypot(s, s0)
         dt = s / pace  # dt/dτ
         return [

@@ -142,7 +142,10 @@ def draw_modulated(data: ByEngine) -> Figure:
     matrix = in_turning_axes(state_matrix_of(car, whirl), whirl.frequency)
     start = PUSH * whirl.radius * np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, whirl.frequency, 0.0])
     early = np.linspace(0.0, 1.6, 81)
-    linear = np.array([(expm(matrix * time) @ start)[0] for time in early])
+    step, states = expm(matrix * early[1]), [start]
+    for _ in early[1:]:
+        states.append(step @ states[-1])
+    linear = np.array(states)[:, 0]
     radius.plot(early, MM * (whirl.radius + linear), **curve("theory", "linearised", linewidth=1.4))
     for panel, value in ((radius, MM * whirl.radius), (slip, whirl.slip)):
         panel.axhline(value, **curve("theory", "steady whirl, unstable", linestyle=":", linewidth=1.2))
