@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Literal, get_args
+from functools import cached_property
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -251,7 +252,7 @@ class Claim:
         """Return the unit of element ``index`` (flat), "1" where several are mixed and it has none."""
         return self.units[index % len(self.units)]
 
-    @property
+    @cached_property
     def units(self) -> tuple[str, ...]:
         """The unit of each place along the last axis where they are mixed, or the one of all."""
         if "," not in self.unit:
@@ -260,7 +261,13 @@ class Claim:
 
     def element(self, index: int) -> str:
         """Return in words which element ``index`` (flat) is, as "μN = 0.05 N, x in m"; "" where nothing names it."""
-        places = np.unravel_index(index, self.predicted.shape)
+        return self._named(np.unravel_index(index, self.predicted.shape))
+
+    def elements(self) -> Iterator[str]:
+        """Yield in words which element each is, in their flat order."""
+        return map(self._named, np.ndindex(self.predicted.shape))
+
+    def _named(self, places: Sequence[Any]) -> str:
         return ", ".join(names[i] for names, i in zip(self.axes, places, strict=False) if names)
 
     @property
@@ -281,18 +288,18 @@ class Claim:
         missing = np.isnan(total) | ~np.isfinite(self.measured) | ~np.isfinite(self.predicted)
         return np.asarray(np.where(missing, np.inf, ratio))
 
-    @property
+    @cached_property
     def worst(self) -> int:
         """Flat index of the element with the largest ratio; among several, of the largest difference."""
         ratio = self.ratio
         return _place_of_largest(np.where(ratio == np.max(ratio), self.difference, -1.0))
 
-    @property
+    @cached_property
     def largest(self) -> int:
         """Flat index of the element with the largest difference, a missing one before all."""
         return _place_of_largest(self.difference)
 
-    @property
+    @cached_property
     def relative_error(self) -> float:
         """The largest total error over the size of what is predicted; infinite where that has none.
 
@@ -316,13 +323,13 @@ class Claim:
             return np.asarray(np.max(numbers, initial=0.0))
         return np.array([np.max(numbers[..., units == unit], initial=0.0) for unit in units])
 
-    @property
+    @cached_property
     def grade(self) -> Grade | None:
         """The finest grade to which the claim is conclusive; None where only its resolution says what is small."""
         relative = self.relative_error
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 
-    @property
+    @cached_property
     def verdict(self) -> Verdict:
         """Differs beyond the budget or without a number, else agrees within the resolution or to a grade.
 

@@ -19,7 +19,7 @@ import json
 import re
 import sys
 import sysconfig
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from importlib.machinery import SOURCE_SUFFIXES, PathFinder
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
@@ -235,7 +235,7 @@ def _imports(name: str, place: Place, content: bytes, trusted: bool = False) -> 
     except (SyntaxError, ValueError):
         raise UnknownCodeError(f"{file} is no Python") from None
     found: list[str] = []
-    for node in ast.walk(tree):
+    for node in _statements(tree) if trusted else ast.walk(tree):
         hidden = "" if trusted else _hides(node)
         if hidden:
             raise UnknownCodeError(f"{file}:{node.lineno} uses {hidden}, which may run any code")  # type: ignore[attr-defined]
@@ -247,6 +247,17 @@ def _imports(name: str, place: Place, content: bytes, trusted: bool = False) -> 
             names = (f"{base}.{alias.name}" for alias in node.names if alias.name != "*")
             found += (base, *(one for one in names if located(one) is not None))
     return tuple(found)
+
+
+def _statements(tree: ast.Module) -> Iterator[ast.AST]:
+    """Yield all statements, and what holds some, without the expressions in them: no import stands there."""
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        for field in ("body", "handlers", "orelse", "finalbody", "cases"):
+            inside = getattr(node, field, ())
+            waiting += inside if isinstance(inside, list) else ()
 
 
 _trusted_imports = functools.cache(functools.partial(_imports, trusted=True))

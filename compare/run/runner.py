@@ -172,13 +172,16 @@ class _Runner:
             for study in sorted(result.studies, key=lambda study: -study.seconds)
             for column in result.columns(study)
         }
+        for key, (study, engine) in () if resume else work.items():
+            self._workers.submit(key, measured, study, engine)
+        self._workers.begin()  # while it is found out what the findings depend on
         for key, (study, engine) in work.items():
             self._stamps[key] = self._stamp(study, engine)
             found = self._store.find(*key, self._stamps[key]) if resume else None
-            if found is None:
-                self._workers.submit(key, measured, study, engine)
-            else:
+            if found is not None:
                 result.outcomes[key], result.seconds[key] = found
+            elif resume:
+                self._workers.submit(key, measured, study, engine)
         for study in result.studies:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):

@@ -74,6 +74,7 @@ class Workers:
         self._limit = limit
         self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
         self._processes: list[_Worker] = []
+        self._refused: list[Done] = []
 
     def __enter__(self) -> Workers:
         return self
@@ -94,8 +95,15 @@ class Workers:
         else:
             self._queue.append(work)
 
+    def begin(self) -> None:
+        """Let other processes begin with what is submitted; whoever calls this has something else to do first."""
+        if self._jobs > 1 or self._limit is not None:
+            self._refused += self._start()
+
     def finished(self) -> Iterator[Done]:
         """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
+        yield from self._refused
+        self._refused.clear()
         while self._queue or any(worker.key is not None for worker in self._processes):
             if self._jobs == 1 and self._limit is None:
                 key, function, arguments = self._queue.popleft()

@@ -11,6 +11,7 @@ import csv
 import io
 import lzma
 from collections.abc import Iterator, Mapping
+from itertools import count, cycle, repeat
 from pathlib import Path
 from typing import Any
 
@@ -60,19 +61,13 @@ def table(row: Row) -> tuple[str, bytes]:
 def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
     """Yield the columns from ``element`` on of each element."""
     shape = claim.predicted.shape
-    numerical = np.broadcast_to(claim.budget.numerical, shape)
-    units = claim.units
-    size = None if claim.size is None else np.broadcast_to(claim.size, shape)
-    for i in range(claim.predicted.size):
-        yield (
-            i,
-            claim.element(i),
-            units[i % len(units)],
-            repr(float(claim.predicted.flat[i])),
-            repr(float(claim.measured.flat[i])),
-            repr(float(numerical.flat[i])),
-            "" if size is None else repr(float(size.flat[i])),
-        )
+    numbers = [
+        repeat("")
+        if array is None
+        else map(repr, np.broadcast_to(array, shape).astype(float).ravel().tolist())
+        for array in (claim.predicted, claim.measured, claim.budget.numerical, claim.size)
+    ]
+    return zip(count(), claim.elements(), cycle(claim.units), *numbers)
 
 
 def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:

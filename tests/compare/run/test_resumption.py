@@ -1,5 +1,6 @@
 """Findings are resumed only where it can be shown that nothing has changed that they depend on."""
 
+import ast
 import functools
 import importlib
 import inspect
@@ -7,6 +8,7 @@ import json
 import re
 import subprocess
 import sys
+import textwrap
 import types
 from importlib.machinery import EXTENSION_SUFFIXES
 
@@ -129,6 +131,7 @@ def test_an_engine_is_measured_anew_when_code_changes(sources, module, found):
 
 
 OBJECTS = f"""{HEAD}
+import ast
 import functools
 
 class Solver:
@@ -392,6 +395,31 @@ def test_what_depends_on_a_changed_file_of_ours_is_measured_anew_and_nothing_els
     module(**OURS | {changed: OURS[changed] + "\n# changed"})
     after = facts()
     assert {name for name in before if before[name] != after[name]} == others
+
+
+def test_an_import_is_found_wherever_a_statement_may_stand():
+    source = """
+    class A:
+        async def f(self):
+            import a
+    if a: import b
+    elif b: import c
+    else:
+        try: import d
+        except OSError: import e
+        else: import f
+        finally: import g
+    for x in y:
+        while x: import h
+        else: import i
+    else:
+        with x, y: import j
+        match x:
+            case 1 if y: import k
+    """
+    tree = ast.parse(textwrap.dedent(source))
+    found = {node.names[0].name for node in code_files._statements(tree) if isinstance(node, ast.Import)}
+    assert found == set("abcdefghijk")
 
 
 def test_a_study_depends_on_its_own_files_and_on_those_of_no_other_study():

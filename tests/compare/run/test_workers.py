@@ -5,6 +5,7 @@ import sys
 import tempfile
 
 import pytest
+from processes import wait_until
 
 from compare.engines import engines
 from compare.run.workers import Failure, Workers
@@ -26,6 +27,18 @@ def done(function, *arguments):
         workers.submit("key", function, *arguments)
         (one,) = workers.finished()
     return one.value
+
+
+def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_is_told(tmp_path):
+    place = tmp_path / "begun"
+    with Workers(2) as workers:
+        workers.submit("refused", lambda: None)
+        workers.submit("begun", place.touch)
+        workers.begin()
+        wait_until(place.exists)
+        found = {one.key: one.value for one in workers.finished()}
+    assert found["begun"] is None
+    assert "it can't be sent to another process" in found["refused"].reason
 
 
 @pytest.fixture
