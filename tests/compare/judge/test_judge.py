@@ -17,8 +17,9 @@ from compare.judge import detection, judge
 from compare.judge import faults as catalogue
 from compare.judge.faults import FAULTS, RIGHT, Fault
 from compare.judge.outcome import Outcome
+from compare.studies.engines.trajectories.claims import STUDY as TRAJECTORIES
 from compare.studies.engines.trajectories.claims import measure as measure_motions
-from compare.studies.engines.trajectories.parameters import POINTS
+from compare.studies.engines.trajectories.parameters import PINS, POINTS
 from reference_model import PinOnDisc
 
 START = (0.5, 0.25, 0.0, 0.0)
@@ -123,10 +124,14 @@ def test_json_and_page_tell_what_caught_what(tmp_path):
     assert "1 of 1 faults caught" in page
 
 
+A_PIN = {"a pin": PINS["a pin"]}
+
+
 def test_a_fault_of_the_catalogue_is_caught_from_the_command_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(catalogue, "RIGHT", RIGHT[:1])
+    one = replace(TRAJECTORIES, by_hand=lambda engine: measure_motions(engine, A_PIN))
     arguments = ["--study", "trajectories", "--jobs", "1", "--output", str(tmp_path)]
-    status = cli.status(["judge", "mass-off-by-1e-6", *arguments])
+    status = cli.status(["judge", "mass-off-by-1e-6", *arguments], (one,))
     out = capsys.readouterr().out
     assert "1 of 1 faults caught by trajectories and by claims of another kind" in out
     assert f"1 of 1 right engines pass ({tmp_path / 'judge.html'})" in out
