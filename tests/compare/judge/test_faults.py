@@ -13,12 +13,13 @@ from scipy.special import ellipe, ellipkm1
 
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import BadTrajectoryError
-from compare.judge.faults import FAULTS, RIGHT, plain
+from compare.judge.faults import FAULTS, RIGHT, plain, reference
 from compare.judge.faults.equations import carried, rates
 from compare.judge.faults.friction import mean_slip, on_polygon
 from compare.judge.faults.make import RIGHT as MADE_RIGHT
 from compare.judge.faults.make import Make, Numbers
 from compare.judge.faults.plain import simulate
+from compare.run.kernels import SYSTEMS
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.plain import on_ring
 from reference_model.plain import rates as printed_rates
@@ -166,6 +167,18 @@ def test_a_polygon_gives_its_nearest_force(sides, circumscribed):
             (force * np.exp(-1j * (0.2 + 2.0 * math.pi / sides * np.arange(sides)))).real <= apothem
         )
         assert abs(found - (force if inside else nearest)) < 1e-3
+
+
+# ---------------------------------------------------------------- the reference about which mistakes are made
+
+
+@pytest.mark.parametrize("points", [None, 3, 5, 6, 7])
+def test_only_kernels_that_come_compiled_are_used(points, monkeypatch):
+    asked = []
+    monkeypatch.setattr("reference_model.simulate", lambda *_, compiled, **more: asked.append(compiled))
+    reference.simulate(replace(RING, contact_points=points), MOVING, [0.0, 1.0])
+    beforehand = {getattr(system, "contact_points", None) for system in SYSTEMS.values()}
+    assert asked == [None if points in beforehand else False]
 
 
 # ---------------------------------------------------------------- the catalogue
