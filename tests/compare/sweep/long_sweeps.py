@@ -24,9 +24,11 @@ def long_sweep(folder, *more, limit=None, signalled=None):
     """
     restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     command = REAL if signalled is None else [sys.executable, str(SIGNALLING), *map(str, signalled)]
+    # Python leaves compiled modules that are cut off there, at which every later process fails.
+    whole = {} if limit is None else {"PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.Popen(
         [*command, *LONG, *CHUNKS, "--output", str(folder), *more],
-        env=environment(),
+        env=environment(**whole),
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
         encoding="utf-8",
