@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# What is imported is compiled then: most of what libraries have is not.
+INSTALL = $(BIN)/python -m pip install --quiet --no-compile --editable
 
 # Where it is set, as in many images, each of the many processes would compile all of these modules anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -34,7 +36,7 @@ paper: $(VENV)/for-docs
 
 # Wheel and source archive, and a check that each holds what it should.
 dist: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --editable '.[release]'
+	$(INSTALL) '.[release]'
 	rm -rf dist
 	$(BIN)/python builders/release.py dist
 
@@ -53,7 +55,8 @@ clean:
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable '.[sweep]'
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(INSTALL) '.[sweep]'
 	touch $@
 
 # The kernels of ensembles for this machine, which a wheel would bring; those that are there already stay.
@@ -63,9 +66,9 @@ $(VENV)/kernels: $(VENV)/installed $(shell find reference_model -name '*.py')
 
 # Whoever only wants a report does not wait for what tests need.
 $(VENV)/for-tests: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --editable '.[test,lint]'
+	$(INSTALL) '.[test,lint]'
 	touch $@
 
 $(VENV)/for-docs: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(INSTALL) '.[docs]'
 	touch $@
