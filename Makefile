@@ -2,8 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# What is imported is compiled then: most of what libraries have is not.
-INSTALL = $(BIN)/python -m pip install --quiet --no-compile --editable
+# What is imported is compiled then: most of what libraries have is not. The warning is about folders beside this one's.
+INSTALL = PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --no-compile --editable
 
 # Where it is set, as in many images, each of the many processes would compile all of these modules anew.
 unexport PYTHONDONTWRITEBYTECODE
