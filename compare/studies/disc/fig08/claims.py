@@ -54,7 +54,7 @@ STUDY = Study.beside(
     system=RING,
     draw=draw,
     curves=curves,
-    seconds=2.0,
+    seconds=2.5,
     words={"own": f"{RING.offset:g}"},
 )
 

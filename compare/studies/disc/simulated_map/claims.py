@@ -32,7 +32,7 @@ STUDY = Study.beside(
     draw=draw,
     curves=curves,
     only=("theory",),  # the plane is simulated by the ensemble of the reference alone
-    seconds=15.0,
+    seconds=2.0,
     words={"side": f"{SIDE}"},
 )
 

@@ -45,7 +45,7 @@ from reference_model.systems import FloatArray
 if TYPE_CHECKING:
     from exudyn_models.drivetrain.model import DrivetrainMotion
 
-STUDY = Study.beside(__file__, "drivetrain-launch", source=SOURCE, draw=draw, only=("exudyn",), seconds=8.0)
+STUDY = Study.beside(__file__, "drivetrain-launch", source=SOURCE, draw=draw, only=("exudyn",), seconds=2.5)
 
 SPEEDS_AND_HEAT = ("speed of the engine", "speed of the disc", "speed of the vehicle", "heat")
 

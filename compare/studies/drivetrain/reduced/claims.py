@@ -31,7 +31,7 @@ from compare.studies.drivetrain.reduced.pictures import draw
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "drivetrain-reduced", draw=draw, only=("exudyn",), seconds=4.5)
+STUDY = Study.beside(__file__, "drivetrain-reduced", draw=draw, only=("exudyn",), seconds=2.0)
 
 
 @functools.lru_cache(maxsize=32)  # one of the motions is asked for by both claims

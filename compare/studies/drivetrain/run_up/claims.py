@@ -48,7 +48,7 @@ STUDY = Study.beside(
     curves=curves,
     animations=animations,
     only=("exudyn",),
-    seconds=10.0,
+    seconds=5.0,
 )
 
 

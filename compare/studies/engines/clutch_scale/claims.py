@@ -47,7 +47,7 @@ STUDY = Study.beside(
     system=scaled(FIG5),
     curves=curves,
     draw=draw,
-    seconds=6.0,
+    seconds=1.5,
 )
 
 

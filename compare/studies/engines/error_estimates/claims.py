@@ -45,7 +45,7 @@ STUDY = Study.beside(
     },
     source=SOURCE,
     draw=draw,
-    seconds=20.0,
+    seconds=3.5,
 )
 
 

@@ -21,7 +21,7 @@ from compare.studies.engines.power_balance.pictures import draw
 from reference_model import PowerBalance, Trajectory, power_balance
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "power-balance", draw=draw, seconds=4.0, quick=True, contact=True)
+STUDY = Study.beside(__file__, "power-balance", draw=draw, seconds=2.5, quick=True, contact=True)
 
 SENTENCE = "What the drive puts in is heat and stored energy: {}"
 

@@ -46,7 +46,7 @@ STUDY = Study.beside(
     "trajectories",
     words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
     draw=draw,
-    seconds=6.0,
+    seconds=2.0,
     quick=True,
     contact=True,
 )

@@ -69,7 +69,7 @@ STUDY = Study.beside(
     system=FIG5,
     draw=draw,
     curves=curves,
-    seconds=35.0,
+    seconds=4.5,
 )
 
 

@@ -43,7 +43,7 @@ from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
 
 STUDY = Study.beside(
-    __file__, "fig05", source=SOURCE, system=FIG5, draw=draw, animations=animate, seconds=6.0
+    __file__, "fig05", source=SOURCE, system=FIG5, draw=draw, animations=animate, seconds=4.5
 )
 
 

@@ -43,7 +43,7 @@ STUDY = Study.beside(
     system=FIG6,
     draw=draw,
     curves=curves,
-    seconds=7.0,
+    seconds=3.5,
 )
 
 

@@ -58,7 +58,7 @@ STUDY = Study.beside(
     system=CENTRED,
     draw=draw,
     curves=curves,
-    seconds=8.0,
+    seconds=3.0,
 )
 
 SUPPORTS = {"support": tuple(PINS)}

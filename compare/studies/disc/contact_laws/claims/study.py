@@ -13,7 +13,7 @@ STUDY = Study.beside(
     source=SOURCE,
     draw=draw,
     curves=curves,
-    seconds=2.0,
+    seconds=1.5,
     quick=True,
     contact=True,
 )

@@ -14,6 +14,6 @@ STUDY = Study.beside(
     system=RING,
     draw=draw,
     curves=curves,
-    seconds=5.5,
+    seconds=7.0,
     words={"own": f"{RING.offset:g}"},
 )

@@ -16,6 +16,6 @@ STUDY = Study.beside(
     system=RING,
     draw=draw,
     curves=curves,
-    seconds=8.0,
+    seconds=5.0,
     words={"both_stable": f"{BOTH_STABLE:g}", "other_offset": f"{FIG8.offset:g}"},
 )

@@ -26,7 +26,7 @@ STUDY = Study.beside(
     system=DISC,
     draw=draw,
     curves=curves,
-    seconds=7.0,
+    seconds=7.5,
     words={
         "borders_of_load": borders("friction_force", "N"),
         "borders_of_shaft_damping": borders("shaft_damping", "N m s/rad"),

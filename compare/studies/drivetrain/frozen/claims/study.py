@@ -20,5 +20,5 @@ STUDY = Study.beside(
     draw=draw,
     curves=curves,
     only=("exudyn",),
-    seconds=6.0,
+    seconds=4.0,
 )

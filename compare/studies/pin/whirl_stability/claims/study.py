@@ -14,7 +14,7 @@ STUDY = Study.beside(
     system=PIN,
     draw=draw,
     curves=curves,
-    seconds=2.0,
+    seconds=2.5,
     quick=True,
     contact=True,
 )
