@@ -35,7 +35,7 @@ FOLDER = "built"
 
 @cache
 def levels_here() -> tuple[str, ...]:
-    """Return the levels that this processor has; none if numba is told to compile for another one."""
+    """Return the levels that this processor has, on Linux; none if numba is told to compile for another one."""
     if sys.platform != "linux" or {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & {*os.environ}:
         return ()
     features = binding.get_host_cpu_features()

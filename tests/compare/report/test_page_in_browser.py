@@ -1,3 +1,5 @@
+from contextlib import contextmanager
+
 import pytest
 from playwright.sync_api import sync_playwright
 
@@ -10,10 +12,13 @@ def browser(browser_path):
         browser.close()
 
 
-@pytest.fixture(params=[1280, 400])
-def opened(request, browser, reported):
-    """The page at a width, with the addresses that it asked for."""
-    page = browser.new_page(viewport={"width": request.param, "height": 800})
+WIDTHS = 1280, 400
+
+
+@contextmanager
+def page_at(width, browser, reported):
+    """Yield the page at a width, with the addresses that it asked for."""
+    page = browser.new_page(viewport={"width": width, "height": 800})
     asked = []
     page.on("request", lambda sent: asked.append(sent.url))
     page.goto((reported[1] / "index.html").as_uri(), wait_until="load")
@@ -21,17 +26,31 @@ def opened(request, browser, reported):
     page.close()
 
 
+@pytest.fixture(scope="module", params=WIDTHS)
+def read(request, browser, reported):
+    """The page as it is opened, which several tests only read."""
+    with page_at(request.param, browser, reported) as opened:
+        yield opened
+
+
+@pytest.fixture(params=WIDTHS)
+def opened(request, browser, reported):
+    """The page for a test of its own."""
+    with page_at(request.param, browser, reported) as opened:
+        yield opened
+
+
 def overhang(page):
     """How far the page is wider than the window."""
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
 
 
-def test_the_page_does_not_scroll_sideways(opened):
-    assert overhang(opened[0]) <= 0
+def test_the_page_does_not_scroll_sideways(read):
+    assert overhang(read[0]) <= 0
 
 
-def test_tables_stay_inside_of_the_page_or_scroll_in_their_own_container(opened):
-    outside = opened[0].evaluate(
+def test_tables_stay_inside_of_the_page_or_scroll_in_their_own_container(read):
+    outside = read[0].evaluate(
         """() => [...document.querySelectorAll('table')].filter(table =>
                table.getBoundingClientRect().right > innerWidth && !table.closest('.scroll')).length"""
     )
@@ -59,13 +78,13 @@ def test_all_images_are_decoded_once_they_are_looked_at(opened):
     assert page.evaluate("[...document.images].map(image => image.naturalWidth > 0)") == [True, True]
 
 
-def test_nothing_is_asked_of_the_network(opened):
-    assert opened[1]
-    assert all(url.startswith(("file:", "data:")) for url in opened[1])
+def test_nothing_is_asked_of_the_network(read):
+    assert read[1]
+    assert all(url.startswith(("file:", "data:")) for url in read[1])
 
 
-def test_text_is_large_enough_to_read(opened):
-    smallest = opened[0].evaluate(
+def test_text_is_large_enough_to_read(read):
+    smallest = read[0].evaluate(
         """() => Math.min(...[...document.querySelectorAll('main *')].filter(e => e.innerText)
                .map(e => parseFloat(getComputedStyle(e).fontSize)))"""
     )
