@@ -139,8 +139,10 @@ class RegularisedContact:
         x, y, vx, vy = state[0], state[1], state[size], state[size + 1]
         speed = math.hypot(vx + system.disc_speed * y, vy - system.disc_speed * x)
         if isinstance(system, DiscOnDisc):
-            # No part slips less than the difference of centre and rim, which mostly is enough to know.
-            speed = abs(speed - abs(system.contact_radius * (state[5] - system.disc_speed)))
+            # Mostly a bound is enough to know: the mean of a ring is no less than the slip of the centre, or of the
+            # rim about it, and no point slips less than their difference.
+            rim = abs(system.contact_radius * (state[5] - system.disc_speed))
+            speed = max(speed, rim) if system.contact_points is None else abs(speed - rim)
         if speed >= self.epsilon:
             return None
         if not isinstance(system, DiscOnDisc):
