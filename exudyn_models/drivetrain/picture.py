@@ -119,7 +119,7 @@ def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[
 def _ring(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:
     """Return a ring about the z-axis between two heights."""
     return graphics.Cylinder(
-        [0.0, 0.0, low], [0.0, 0.0, high - low], outer, list(colour), radiusInner=inner, nTiles=96
+        [0.0, 0.0, low], [0.0, 0.0, high - low], outer, list(colour), radiusInner=inner, nTiles=64
     )
 
 
@@ -163,6 +163,7 @@ def _rendered(parts: list[Any], height: float, centre: Sequence[float], size: tu
     mbs.Assemble()
     settings: Any = container.visualizationSettings
     settings.general.backgroundColor = [1.0, 1.0, 1.0, 1.0]
+    settings.raytracer.numberOfThreads = 1  # more take longer than they save
     view = settings.view0
     view.window.renderWindowSize = list(size)
     view.window.showComputationInfo = False

@@ -14,12 +14,12 @@ from compare.engines import Simulate
 from compare.studies.disc.stability_map.parameters import DISC
 from reference_model.systems import DiscOnDisc
 
-SETTLED = 1200.0
+SETTLED = 600.0
 WATCHED = 350.0
 """In s: how long motions are given to settle, and over how long before the end they are looked at."""
 
 SLOWLY_SETTLED = 2400.0
-"""In s: what takes longer near to where a cycle has just gone."""
+"""In s: what takes longer near to where a cycle has just gone, as disturbances fall at less than 0.01 1/s there."""
 
 SETTLING_TOLERANCE = 1e-5
 

@@ -55,6 +55,9 @@ LOADS = (
 )
 """In N, of the bifurcation diagram."""
 
+SLOW_LOADS = (0.0208, 0.0211)
+"""Those at which the whirl is stable, but disturbances of it fall slowly."""
+
 FAR_FROM_KINK = 0.02
 """Of |U/W − 1|: nearer to where a point of the ring rests, the expansion about the whirl says nothing."""
 

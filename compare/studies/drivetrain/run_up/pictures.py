@@ -168,7 +168,7 @@ def draw_pictures(data: ByEngine) -> Figure:
     for panel, turns in zip(panels, SHOWN, strict=True):
         _, disc = motion_at(found, time_of(found, turns))
         image = draw_drivetrain(
-            passenger_car(), engine_angle=OPEN, disc=disc, magnification=ENLARGED, size=(900, 760)
+            passenger_car(), engine_angle=OPEN, disc=disc, magnification=ENLARGED, size=(660, 560)
         )
         show(panel, image, f"{turns:.0f} rpm")
     return figure

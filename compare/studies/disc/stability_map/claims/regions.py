@@ -11,7 +11,7 @@ from compare.claims.measured import Measured
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.disc.stability_map.claims.study import STUDY
-from compare.studies.disc.stability_map.ends import ENDS, SLOWLY_SETTLED, Start, ends_of, kind_of_end
+from compare.studies.disc.stability_map.ends import ENDS, SETTLED, SLOWLY_SETTLED, Start, ends_of, kind_of_end
 from compare.studies.disc.stability_map.parameters import (
     BESIDE,
     BEYOND,
@@ -19,6 +19,7 @@ from compare.studies.disc.stability_map.parameters import (
     LOADS,
     ON_CYCLE,
     OUTSIDE,
+    SLOW_LOADS,
     STUCK,
     at,
 )
@@ -62,7 +63,7 @@ def starts_in_regions() -> tuple[Start, ...]:
 
     return (
         Start(at(friction_force=0.018), outside, "rotation"),
-        Start(at(friction_force=0.0211), near_axis, "whirl"),
+        Start(at(friction_force=0.0211), near_axis, "whirl", SLOWLY_SETTLED),
         Start(DISC, near_axis, "modulated cycle"),
         Start(DISC, outside, "modulated cycle"),
         Start(at(friction_force=0.028), near_axis, "whirl"),
@@ -70,7 +71,7 @@ def starts_in_regions() -> tuple[Start, ...]:
         Start(at(friction_force=0.034), at_rest, "sticking", STUCK),
         Start(at(shaft_damping=0.011), near_axis, "whirl"),
         Start(at(shaft_damping=0.02), outside, "rotation"),
-        Start(at(polar_inertia=0.4), outside, "whirl"),
+        Start(at(polar_inertia=0.4), outside, "whirl", SLOWLY_SETTLED),
         Start(at(polar_inertia=2.0), outside, "modulated cycle"),
         Start(at(damping=0.35), outside, "whirl"),
         Start(at(damping=0.8), outside, "rotation"),
@@ -83,13 +84,13 @@ def coexisting() -> tuple[Start, ...]:
     """Return motions outside of both Hopf curves: near to them one from whirl and cycle each, and farther off."""
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed)
     starts = []
-    for border, outward in ((lower, -1.0), (upper, 1.0)):
+    for border, outward, settled in ((lower, -1.0, SLOWLY_SETTLED), (upper, 1.0, SETTLED)):
         near, far = (at(friction_force=border * (1.0 + outward * share)) for share in (OUTSIDE, BEYOND))
         (whirl,) = whirls(near)
         starts += [
             Start(near, tuple((whirl.state * BESIDE).tolist()), "whirl"),
             Start(near, ON_CYCLE, "modulated cycle"),
-            Start(far, ON_CYCLE, "whirl", SLOWLY_SETTLED),
+            Start(far, ON_CYCLE, "whirl", settled),
         ]
     return tuple(starts)
 
@@ -107,7 +108,9 @@ def ends_by_plane(starts: Sequence[Start], ends: Sequence[str]) -> Data:
 
 def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
     """Return friction force in N, smallest and largest radius in m after a long time, shape (n, 3)."""
-    starts = [Start(at(friction_force=load), ON_CYCLE, "") for load in loads]
-    return np.array(
-        [(load, *kind_of_end(engine.simulate, start)[1:]) for load, start in zip(loads, starts, strict=True)]
-    )
+
+    def extent(load: float) -> tuple[float, float]:
+        settled = SLOWLY_SETTLED if load in SLOW_LOADS else SETTLED
+        return kind_of_end(engine.simulate, Start(at(friction_force=load), ON_CYCLE, "", settled))[1:]
+
+    return np.array([(load, *extent(load)) for load in loads])
