@@ -61,7 +61,7 @@ def run(folder, *arguments):
     output = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
         patch.chdir(folder)
-        options = (*OPTIONS, *WITHOUT_OTHERS, "-p", "no:xdist", "-p", "no:faulthandler")
+        options = (*OPTIONS, *WITHOUT_OTHERS, *WITHIN_ANOTHER)
         status = pytest.main([*options, *arguments])
     return status, output.getvalue(), cases_in(folder)
 
@@ -88,6 +88,9 @@ OPTIONS = ("-p", "no:cacheprovider", "--junit-xml=out.xml")
 
 WITHOUT_OTHERS = ("-p", "no:hypothesispytest", "-p", "no:zarr")
 """Plugins of libraries that import all of these whenever pytest starts, which takes longer than it."""
+
+WITHIN_ANOTHER = ("-p", "no:xdist", "-p", "no:faulthandler", "-p", "no:unraisableexception")
+"""Plugins that a run of pytest has already in which another one runs; the last collects all garbage five times."""
 
 
 def cases_in(folder):
