@@ -195,7 +195,11 @@ def saved(figure: Figure) -> tuple[bytes, bytes]:
 
 def as_svg(figure: Figure) -> bytes:
     """Return the figure as SVG; equal figures give equal bytes."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     svg = io.BytesIO()
-    with paper_style():
-        figure.savefig(svg, format="svg", metadata={"Date": None})
+    canvas: Any = FigureCanvasSVG(figure)  # which has no types
+    with paper_style():  # ``savefig`` draws everything once more, only for the layout
+        figure.set_dpi(PAPER["savefig.dpi"])  # of what is no line
+        canvas.print_svg(svg, metadata={"Date": None})
     return svg.getvalue()

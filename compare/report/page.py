@@ -22,7 +22,8 @@ from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Group, Matri
 from compare.report.numbers import error_text, trimmed, value_text
 from compare.report.symbols import symbols_of
 from compare.report.worst import Worst, answers_text, in_short, worst
-from compare.run.runner import Drawing, Run
+from compare.run.drawings import Drawing
+from compare.run.runner import Run
 from compare.run.workers import Failure
 from reference_model.systems import UNITS
 

@@ -15,7 +15,8 @@ from compare.report.machines.junit import junit
 from compare.report.machines.results_json import FILE, results
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
-from compare.run.runner import Drawing, Run
+from compare.run.drawings import Drawing
+from compare.run.runner import Run
 from compare.run.stamp import platform_stamp
 
 LINES = 4

@@ -11,8 +11,8 @@ from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, UnsupportedSystemError
-from compare.output.figures import as_svg, paper_style
 from compare.run.code_files import UnknownCodeError
+from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES, engine_version, stamp
@@ -20,14 +20,6 @@ from compare.run.workers import Done, Failure, Workers
 
 CODE = ("compare.run", "compare.claims.as_json")
 """What runs a study and writes its findings down: they depend on it beside the study's and the engine's own."""
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """Figures as SVG and animations as GIF, by name."""
-
-    figures: dict[str, bytes] = field(default_factory=dict)
-    animations: dict[str, bytes] = field(default_factory=dict)
 
 
 @dataclass
@@ -92,6 +84,11 @@ class Run:
             if (study.name, column) not in self.outcomes
         )
 
+    @property
+    def done(self) -> int:
+        """How many pieces of work came to an end."""
+        return len(self.outcomes) + len(self.drawings) + len(self.evidence)
+
     def data(self, study: Study) -> dict[str, Data]:
         """Return the arrays of all that found any, by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
@@ -120,7 +117,7 @@ def run(
     studies, engines, errata
         What to do.
     folder : Path
-        Findings are written there as they come in.
+        Findings and drawings are written there as they come in; what was drawn of equal data is taken from there.
     jobs : int
         Number of processes; with 1, and no ``limit``, all happens in this one.
     limit : float, optional
@@ -146,24 +143,26 @@ def run(
     )
     with Workers(jobs, limit) as workers:
         try:
-            _Runner(result, workers, Store(folder), progress).work({e.name: e for e in engines}, resume)
+            _Runner(result, workers, folder, progress).work({e.name: e for e in engines}, resume)
         except KeyboardInterrupt:
             result.interrupted = True
     return result
 
 
 class _Runner:
-    """Submits the measurements, and each study's drawing as soon as its last measurement is there."""
+    """Submits the measurements, and each study's drawing once its last is there, unless equal data were drawn."""
 
     def __init__(
-        self, result: Run, workers: Workers, store: Store, progress: Callable[[int, int, str], None]
+        self, result: Run, workers: Workers, folder: Path, progress: Callable[[int, int, str], None]
     ) -> None:
         self._result = result
         self._workers = workers
-        self._store = store
+        self._store = Store(folder)
+        self._drawings = DrawingStore(folder)
         self._progress = progress
         self._stamps: dict[tuple[str, str], str | None] = {}
         self._prints: dict[int, str | None] = {}
+        self._drawn_from: dict[str, str] = {}
 
     def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
         result = self._result
@@ -187,11 +186,10 @@ class _Runner:
         for i, erratum in enumerate(result.errata):
             self._workers.submit(("errata", i), erratum.evidence)
         total = len(work) + len(result.studies) + len(result.errata)
-        done = len(result.outcomes)
-        self._progress(done, total, "")
+        self._progress(result.done, total, "")
         for finished in self._workers.finished():
-            done += 1
-            self._progress(done, total, self._take(finished))
+            name = self._take(finished)
+            self._progress(result.done, total, name)
 
     def _stamp(self, study: Study, engine: Engine | None) -> str | None:
         """Return what the findings depend on, None where that is not known."""
@@ -219,6 +217,8 @@ class _Runner:
             return "errata"
         if kind == "draw":
             self._result.drawings[name] = done.value
+            if isinstance(done.value, Drawing) and name in self._drawn_from:
+                self._drawings.keep(name, self._drawn_from[name], done.value)
             return f"{name} figures"
         self._result.outcomes[kind, name] = done.value
         self._result.seconds[kind, name] = done.seconds
@@ -229,8 +229,16 @@ class _Runner:
 
     def _draw_if_complete(self, name: str) -> None:
         study = next(study for study in self._result.studies if study.name == name)
-        if all((name, column) in self._result.outcomes for column in self._result.columns(study)):
-            self._workers.submit(("draw", name), drawn, study, self._result.data(study), first=True)
+        if any((name, column) not in self._result.outcomes for column in self._result.columns(study)):
+            return
+        data, code, found = self._result.data(study), self._fingerprint(name, study), None
+        if code is not None:
+            self._drawn_from[name] = drawing_stamp(code, data)
+            found = self._drawings.find(name, self._drawn_from[name])
+        if found is not None:
+            self._result.drawings[name] = found
+        else:
+            self._workers.submit(("draw", name), drawn, study, data, first=True)
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:
@@ -249,11 +257,3 @@ def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) ->
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
     return findings
-
-
-def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
-    """Return the figures and animations of a study as bytes."""
-    with paper_style():
-        figures = {name: as_svg(figure) for name, figure in study.draw(data).items()} if data else {}
-        animations = dict(study.animations(data)) if data and study.animations is not None else {}
-    return Drawing(figures, animations)

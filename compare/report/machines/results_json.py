@@ -20,7 +20,8 @@ from compare.report.machines.arrays import with_arrays
 from compare.report.matrix import VERDICTS, Cell, Group, Matrix, RecordedMatrix, State
 from compare.report.quotes import filled
 from compare.report.worst import worst
-from compare.run.runner import Drawing, Run
+from compare.run.drawings import Drawing
+from compare.run.runner import Run
 from compare.run.workers import Failure
 
 FORMAT, VERSION = "friction-discs results", 1

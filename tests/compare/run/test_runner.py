@@ -2,6 +2,7 @@ import json
 import lzma
 import multiprocessing
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,12 +20,13 @@ from compare.claims.study import Findings
 from compare.cli import app as cli
 from compare.cli.measure.report import store_of
 from compare.engines import registry
-from compare.run import workers
-from compare.run.runner import Drawing, run
-from compare.run.stamp import ROOT
+from compare.run import stamp, workers
+from compare.run.drawings import Drawing
+from compare.run.runner import run
 from compare.run.workers import Failure
 
 BOTH = (fake.GOOD, fake.FAILING)
+OTHER_FILES = shutil.ignore_patterns("__pycache__", "studies")
 
 
 @pytest.fixture(scope="module")
@@ -164,13 +166,10 @@ def test_resume_does_not_take_what_other_code_has_written_down(
     changed, measured, tmp_path, count, monkeypatch
 ):
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings")
-    for path in (*(ROOT / "compare" / "run").glob("*.py"), ROOT / "compare" / "claims" / "as_json.py"):
-        copy = tmp_path / path.relative_to(ROOT)
-        copy.parent.mkdir(parents=True, exist_ok=True)
-        copy.write_bytes(path.read_bytes())
+    shutil.copytree(stamp.ROOT / "compare", tmp_path / "compare", ignore=OTHER_FILES)
     if changed is not None:
         (tmp_path / changed).write_text("# changed")
-    monkeypatch.setattr("compare.run.stamp.ROOT", tmp_path)
+    monkeypatch.setattr(stamp, "ROOT", tmp_path)
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings", resume=True)
     assert len(count()) == measured
 
