@@ -1,6 +1,6 @@
 """What a Dask cluster costs a sweep of random starts of Fig. 5, and how much memory the command needs on one.
 
-Run with ``python benchmarks/sweep_cluster.py``; takes some five minutes on two cores, and writes what it finds into
+Run with ``python benchmarks/sweep_cluster.py``; takes fifteen minutes on two cores, and writes what it finds into
 ``docs/sweeps.md``. Needs the extra ``cluster``. With other work on the machine only processor times and memory can be
 compared: throughputs are those of a processor, of all processes together.
 """
@@ -26,8 +26,8 @@ from compare.sweep.store.store import SweepStore
 
 ROOT = Path(__file__).parents[1]
 
-CHUNKS = 50
-SIZES = (2000, 8000, 32768)
+SWEEPS = ((50, 2000), (50, 8000), (50, 32768), (306, 32768))
+"""Chunks, and starts in each; the last is a sweep of ten million."""
 
 LARGE = (1_000_000, 10_000_000)
 """Trajectories of the sweeps of which the command's memory is measured."""
@@ -60,10 +60,10 @@ def plan_of(samples: int) -> RandomBasin:
     )
 
 
-def cost(executor: Executor, size: int) -> float:
-    """Return the seconds of all processors together for a sweep of chunks of ``size``, written and labelled."""
+def cost(executor: Executor, chunks: int, size: int) -> float:
+    """Return the seconds of all processors together for a sweep of ``chunks`` of ``size``, written and labelled."""
     with tempfile.TemporaryDirectory() as folder:
-        store = SweepStore.create(Path(folder) / "sweep.zarr", plan_of(CHUNKS * size), size)
+        store = SweepStore.create(Path(folder) / "sweep.zarr", plan_of(chunks * size), size)
         before = used()
         run(store, executor, lambda what, done, total: None)
         return used() - before
@@ -95,10 +95,10 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
 def written() -> str:
     """Return what docs/sweeps.md says, measured."""
     lines = [
-        f"On {cores()} workers, {CHUNKS} chunks of starts of Fig. 5, in seconds of all processors together:",
+        f"On {cores()} workers, chunks of starts of Fig. 5, in seconds of all processors together:",
         "",
-        "| starts a chunk | in process | workers | throughput |",
-        "|---|---|---|---|",
+        "| chunks | starts a chunk | in process | workers | throughput |",
+        "|---|---|---|---|---|",
     ]
     with (
         LocalCluster(n_workers=cores(), threads_per_worker=1, dashboard_address=None) as local,
@@ -106,11 +106,11 @@ def written() -> str:
     ):
         executors = (InProcess(), cluster)
         for executor in executors:  # compiled, or loaded, everywhere
-            cost(executor, 10)
-        for size in SIZES:
-            here, there = (cost(executor, size) for executor in executors)
-            lines.append(f"| {size:,} | {here:.1f} s | {there:.1f} s | {here / there:.3f} |")
-        each = there / (CHUNKS * size)
+            cost(executor, 50, 10)
+        for chunks, size in SWEEPS:
+            here, there = (cost(executor, chunks, size) for executor in executors)
+            lines.append(f"| {chunks} | {size:,} | {here:.1f} s | {there:.1f} s | {here / there:.3f} |")
+        each = there / (chunks * size)
         found = [(samples, *memory(local.scheduler_address, samples)) for samples in LARGE]
     lines += ["", "| starts | memory of the command | its own processor time |", "|---|---|---|"]
     lines += [f"| {samples:,} | {most:.0f} MB | {own:.0f} s |" for samples, most, own in found]

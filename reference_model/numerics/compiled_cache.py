@@ -14,10 +14,14 @@ from collections.abc import Iterator
 from functools import cache
 from importlib.util import resolve_name
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 OWN = ("reference_model", "exudyn_models", "compare")
 """Packages whose modules are followed, besides that of the function itself."""
+
+PARSING = Lock()
+"""Two threads that parse at once break each other off, before Python 3.12."""
 
 
 def known_by_content(dispatcher: Any) -> None:
@@ -25,9 +29,14 @@ def known_by_content(dispatcher: Any) -> None:
     dispatcher._cache._cache_file._source_stamp = sources_digest(dispatcher.py_func.__module__)
 
 
-@cache
 def sources_digest(module: str) -> str:
     """Return what the sources of an imported module, and of the modules that it imports, come to."""
+    with PARSING:
+        return _digest(module)
+
+
+@cache
+def _digest(module: str) -> str:
     packages = {*OWN, module.partition(".")[0]}
     found: dict[str, str] = {}
     left = [module]

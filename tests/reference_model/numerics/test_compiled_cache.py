@@ -1,11 +1,16 @@
 """What numba has compiled is taken from disk as long as all that it was compiled from is the same."""
 
+import gc
 import importlib
 import os
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from time import sleep
 
 import pytest
 
+from reference_model.ensemble.disc import kernel
+from reference_model.ensemble.pin import driver
 from reference_model.numerics import compiled_cache
 
 HEAD = """
@@ -30,6 +35,12 @@ SOURCES = {
 }
 
 
+def forget():
+    """Let all files be read again."""
+    for function in (compiled_cache._digest, compiled_cache._source, compiled_cache._imports):
+        function.cache_clear()
+
+
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """Return a function that imports the package as a new process would and returns the result, and cache hits."""
@@ -48,8 +59,7 @@ def run(tmp_path, monkeypatch):
                 os.utime(path, (time, time))
         for name in [name for name in sys.modules if name.partition(".")[0] == "keeping"]:
             del sys.modules[name]
-        for function in (compiled_cache.sources_digest, compiled_cache._source, compiled_cache._imports):
-            function.cache_clear()
+        forget()
         importlib.invalidate_caches()
         twice = importlib.import_module("keeping.caller").twice
         importlib.import_module("keeping.other")
@@ -77,3 +87,27 @@ def test_a_function_is_not_compiled_again_for_new_times_or_what_it_does_not_use(
         assert run(time=time) == (6.0, 1)
     assert run({"other.py": "UNUSED = 22\n"}) == (6.0, 1)
     assert run(SOURCES) == (6.0, 1)
+
+
+@pytest.fixture
+def hurried():
+    """Let another thread have its turn when garbage is collected, which Python before 3.12 does while it parses."""
+
+    def turn(phase, info):
+        sleep(0)
+
+    often = gc.get_threshold()
+    gc.callbacks.append(turn)
+    gc.set_threshold(200)
+    yield
+    gc.set_threshold(*often)
+    gc.callbacks.remove(turn)
+
+
+def test_threads_read_sources_at_once(hurried):
+    modules = kernel.__name__, driver.__name__
+    expected = [compiled_cache.sources_digest(module) for module in modules]
+    forget()
+    with ThreadPoolExecutor(len(modules)) as threads:
+        assert list(threads.map(compiled_cache.sources_digest, modules)) == expected
+    forget()
