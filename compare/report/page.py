@@ -255,7 +255,7 @@ def _quoting(group: Group, text: str) -> Markup:
     """Return a text of the group's study with its quotes, each with its error and a link to its claim."""
     found = Markup()
     for literal, words in quotes.parts(text):
-        found += literal
+        found += _with_code(literal)
         if words is None:
             continue
         number = quotes.quote(group.claims, words)
@@ -267,6 +267,14 @@ def _quoting(group: Group, text: str) -> Markup:
             place, _origin(number), number.text
         )
     return found
+
+
+def _with_code(text: str) -> Markup:
+    """Return a text with what stands between two backticks as code."""
+    parts = (
+        Markup("<code>{}</code>" if i % 2 else "{}").format(part) for i, part in enumerate(text.split("`"))
+    )
+    return Markup().join(parts)
 
 
 def _origin(quote: quotes.Quote) -> str:

@@ -133,7 +133,7 @@ VERDICTS = Study(
     name="verdicts",
     title="Fig. 3: self-centring of the pin at low speed",
     paper="Under friction the pin rests at a point of a semicircle over the offset (3), (4), as long as "
-    "μN < C·X₀ (5).\n\nWith growing load it moves towards the centre of the disc.",
+    "μN < C·X₀ (5).\n\nWith growing load it moves towards the centre of the disc, `rest(load) < X₀`.",
     by_hand=measure_verdicts,
     draw=draw_verdicts,
     theory=theory_of_verdicts,

@@ -175,6 +175,10 @@ def test_each_study_says_how_to_repeat_it(page):
     assert "friction-discs report agreement --engine failing" in page
 
 
+def test_code_in_a_text_is_code(page):
+    assert "towards the centre of the disc, <code>rest(load) &lt; X₀</code>.</p>" in page
+
+
 def test_parameters_and_their_source_are_there(page):
     assert (
         "mass = 1 kg, stiffness = 1 N/m, damping = 0.1 N s/m, disc_speed = 0.7 rad/s, offset = 0.1 m." in page
