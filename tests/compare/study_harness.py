@@ -1,6 +1,8 @@
 """What every study is tested for: the test of a study subclasses ``StudyTests`` and says with what."""
 
 import functools
+import io
+from contextlib import redirect_stdout
 from dataclasses import replace
 
 import numpy as np
@@ -47,7 +49,10 @@ def remembering(function):
 def findings_of(study, engine, sound_few, only=()):
     """Measure a part of ``study`` with a sound engine, or its theory if there is none, once for all tests."""
     few = {function: dict(options) for function, options in sound_few}
-    return study.measure(engine, few, only) if engine else study.measure_theory(few)
+    with redirect_stdout(io.StringIO()) as printed:
+        found = study.measure(engine, few, only) if engine else study.measure_theory(few)
+    assert printed.getvalue() == ""  # or it stands across the progress bar
+    return found
 
 
 class StudyTests:

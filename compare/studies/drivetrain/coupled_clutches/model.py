@@ -106,6 +106,7 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
     import exudyn as exu
 
     from exudyn_models import add_ring_friction, solve_dynamic
+    from exudyn_models.solver.solver_run import quiet
 
     rotors = _Rotors()
     for *pair, load in zip(rotors.nodes, rotors.nodes[1:], LOADS, strict=False):
@@ -122,7 +123,8 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
     settings.timeIntegration.absoluteTolerance, settings.timeIntegration.relativeTolerance = TOLERANCE, 0.0
     solver = exu.DynamicSolverType.GeneralizedAlpha if step else exu.DynamicSolverType.DOPRI5
     breaks = sorted(time for time in {*BREAKS, *SHOWN.tolist()} if time < until)
-    solve_dynamic(rotors.mbs, settings, solver, breaks=breaks)
+    with quiet():
+        solve_dynamic(rotors.mbs, settings, solver, breaks=breaks)
     found = rotors.recorded()
     return Run(found[:, 0], found[:, 1:])
 
@@ -137,6 +139,7 @@ def with_bristles(step: float, stiffness: float) -> Run:
     import exudyn.itemInterface
 
     from exudyn_models import solve_dynamic
+    from exudyn_models.solver.solver_run import quiet
 
     items: Any = exudyn.itemInterface
     rotors = _Rotors()
@@ -174,7 +177,8 @@ def with_bristles(step: float, stiffness: float) -> Run:
             clutch, closed = at_begin[begin]
             mbs.SetObjectParameter(clutch, "activeConnector", closed)
         settings = rotors.settings(step, begin, end)
-        solve_dynamic(mbs, settings, exu.DynamicSolverType.GeneralizedAlpha, updateInitialValues=True)
+        with quiet():
+            solve_dynamic(mbs, settings, exu.DynamicSolverType.GeneralizedAlpha, updateInitialValues=True)
         found.append(rotors.recorded())
     together = np.vstack(found)
     return Run(together[:, 0], together[:, 1:])

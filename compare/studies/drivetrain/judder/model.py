@@ -81,6 +81,7 @@ class Judder:
         import exudyn as exu
 
         from exudyn_models import solve_dynamic
+        from exudyn_models.solver.solver_run import quiet
 
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
@@ -88,6 +89,7 @@ class Judder:
         run = settings.timeIntegration
         run.endTime, run.numberOfSteps, run.verboseMode = until, max(round(until / 1e-3), 1), 0
         run.absoluteTolerance, run.relativeTolerance = tolerance, 0.0
-        solve_dynamic(self.mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=breaks)
+        with quiet():
+            solve_dynamic(self.mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=breaks)
         angle, speed = (self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors)
         return np.column_stack((angle, speed[:, 1]))

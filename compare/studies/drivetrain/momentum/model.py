@@ -35,6 +35,8 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
     import exudyn as exu
     import exudyn.itemInterface
 
+    from exudyn_models.solver.solver_run import quiet
+
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     nodes = _add_drivetrain(mbs, kinds)
@@ -59,10 +61,11 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
     options.solverType = getattr(exu.DynamicSolverType, solver.name)
     options.newton.useModifiedNewton = True
     options.newton.relativeTolerance = options.newton.absoluteTolerance = 1e-12
-    exu.config.printToConsole = False
     explicit = SOLVERS["explicit"] == solver
     solution: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
-    if not solution.SolveSystem(mbs, settings):
+    with quiet():
+        solved = solution.SolveSystem(mbs, settings)
+    if not solved:
         raise RuntimeError(f"Exudyn's {solver.name} gave up on a drivetrain of {', '.join(kinds)}")
     stored = np.array(mbs.GetSensorStoredData(sensor))
     return stored[:, 0], stored[:, 1:].reshape(-1, len(BODIES), 3)

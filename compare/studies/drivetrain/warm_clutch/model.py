@@ -55,6 +55,7 @@ def run(
     import exudyn.itemInterface
 
     from exudyn_models import add_ring_friction, add_thermal_node, solve_dynamic
+    from exudyn_models.solver.solver_run import quiet
 
     items: Any = exudyn.itemInterface
     container = exu.SystemContainer()
@@ -85,6 +86,7 @@ def run(
     numerical = settings.timeIntegration
     numerical.endTime, numerical.numberOfSteps, numerical.verboseMode = until, 100, 0
     numerical.absoluteTolerance, numerical.relativeTolerance = tolerance, 0.0
-    solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=times[:-1].tolist())
+    with quiet():
+        solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=times[:-1].tolist())
     first, second, thermal = (mbs.GetSensorStoredData(sensor) for sensor in sensors)
     return Run(first[:, 0], np.column_stack((first[:, 1], second[:, 1])), thermal[:, 1], thermal[:, 2])

@@ -16,6 +16,8 @@ def two_discs(add_friction: Callable[..., Any], steps: int) -> tuple[FloatArray,
     import exudyn as exu
     import exudyn.itemInterface
 
+    from exudyn_models.solver.solver_run import quiet
+
     items: Any = exudyn.itemInterface
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -51,9 +53,10 @@ def two_discs(add_friction: Callable[..., Any], steps: int) -> tuple[FloatArray,
     options = settings.timeIntegration
     options.endTime, options.numberOfSteps, options.verboseMode = UNTIL, steps, 0
     options.solverType = exu.DynamicSolverType.RK67
-    exu.config.printToConsole = False
     solver: Any = exu.MainSolverExplicit()
-    if not solver.SolveSystem(mbs, settings):
+    with quiet():
+        solved = solver.SolveSystem(mbs, settings)
+    if not solved:
         raise RuntimeError("Exudyn's RK67 gave up on two free discs")
     stored = [np.array(mbs.GetSensorStoredData(sensor)) for sensor in sensors]
     states = np.stack([np.hstack((stored[2 * i][:, 1:], stored[2 * i + 1][:, 1:])) for i in range(2)], axis=1)
