@@ -48,6 +48,7 @@ benchmarks: $(VENV)/for-tests $(VENV)/kernels
 	$(BIN)/python benchmarks/ensemble.py
 	$(BIN)/python benchmarks/ensemble_discs.py
 	$(BIN)/python benchmarks/single_runs.py
+	$(BIN)/python benchmarks/sweep_cost.py
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:

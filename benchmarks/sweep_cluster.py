@@ -7,7 +7,6 @@ compared: throughputs are those of a processor, of all processes together.
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 import tempfile
@@ -15,6 +14,7 @@ from pathlib import Path
 
 import psutil
 from distributed import LocalCluster
+from pages import write_into
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli.door.options import cores
@@ -42,8 +42,6 @@ print(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1], time.
 sys.exit(status)
 """
 """The command, which tells its own memory: what the operating system tells its parent has the parent's in it."""
-
-PLACE = re.compile(r"(<!-- written by benchmarks/sweep_cluster.py -->\n).*?(<!-- end -->)", flags=re.DOTALL)
 
 
 def plan_of(samples: int) -> RandomBasin:
@@ -130,8 +128,7 @@ def main() -> None:
     """Measure, print and write."""
     text = written()
     print(text)
-    place = ROOT / "docs" / "sweeps.md"
-    place.write_text(PLACE.sub(lambda found: found[1] + text + found[2], place.read_text("utf-8")), "utf-8")
+    write_into("sweeps.md", "sweep_cluster.py", text)
 
 
 if __name__ == "__main__":

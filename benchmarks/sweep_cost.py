@@ -1,0 +1,117 @@
+"""What a trajectory of a sweep costs, and what a command does beside the trajectories.
+
+Run with ``python benchmarks/sweep_cost.py``; takes a minute, and writes what it finds into ``docs/sweeps.md``. With
+other work on the machine the numbers are larger: two that compute on one core get in each other's way.
+"""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pages import write_into
+
+from compare.claims.paper_parameters import FIG5, FIG11
+from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
+from reference_model.systems import FloatArray
+
+LONG, SHORT = 12000.0, 300.0
+"""s: what the command waits for an end at most, and what is too short to be certain of many."""
+
+REPEATS = 3
+COMMAND = 1_000_000
+"""Random starts of the command."""
+
+
+def starts(n: int, size: int, x: tuple[float, float], vx: tuple[float, float]) -> FloatArray:
+    """Return random starts in the plane of x in m and of its velocity in m/s, shape (n, size)."""
+    rng = np.random.default_rng(1)
+    states = np.zeros((n, size))
+    states[:, 0], states[:, size // 2] = rng.uniform(*x, n), rng.uniform(*vx, n)
+    return states
+
+
+def pins(n: int, loads: FloatArray | None = None) -> Ensemble:
+    """Run starts in the basin of Fig. 5 on one core, each with a load in N of its own if there are ``loads``."""
+    varied = {} if loads is None else {"friction_force": loads[:n]}
+    return simulate_ensemble(FIG5, PIN_STARTS[:n], duration=LONG, parameters=varied, threads=1)
+
+
+def pins_to_the_end(n: int) -> Ensemble:
+    """Run them for as long as is asked for, though they are certain of their ends."""
+    return simulate_ensemble(FIG5, PIN_STARTS[:n], duration=SHORT, early_end=False, threads=1)
+
+
+def discs(n: int, points: int | None, duration: float) -> Ensemble:
+    """Run starts in the basin of Fig. 11 on one core."""
+    disc = replace(FIG11, contact_points=points)
+    return simulate_ensemble(disc, DISC_STARTS[:n], duration=duration, threads=1)
+
+
+PIN_STARTS = starts(200_000, 4, (-0.3, 0.5), (-0.4, 0.4))
+DISC_STARTS = starts(16_000, 6, (-0.1, 0.1), (-0.1, 0.1))
+LOADS = FIG5.friction_force * np.random.default_rng(2).uniform(0.9, 1.1, 50_000)
+
+WAYS: dict[str, tuple[int, Callable[[int], Ensemble]]] = {
+    "pin, basin of Fig. 5": (200_000, pins),
+    f"the same, each to t = {SHORT:g} s": (50_000, pins_to_the_end),
+    "pin whose load differs by trajectory, within a tenth": (50_000, lambda n: pins(n, LOADS)),
+    f"disc on the continuous ring, basin of Fig. 11, t = {SHORT:g} s": (
+        16_000,
+        lambda n: discs(n, None, SHORT),
+    ),
+    "the same, until its end is certain": (2_000, lambda n: discs(n, None, LONG)),
+    f"disc on six points, t = {SHORT:g} s": (8_000, lambda n: discs(n, 6, SHORT)),
+}
+"""How many trajectories, and how they run."""
+
+
+def cost(n: int, run: Callable[[int], Ensemble]) -> tuple[float, float]:
+    """Return the least µs of a core that a trajectory takes, and the share whose end is certain."""
+    run(64)  # loads compiled code
+    spent = []
+    for _ in range(REPEATS):
+        began = time.process_time()
+        found = run(n)
+        spent.append(time.process_time() - began)
+    return 1e6 * min(spent) / n, 1.0 - float(np.mean(found.end == EndState.UNDECIDED))
+
+
+def command() -> tuple[float, float]:
+    """Return the s of all cores that a sweep by the command takes, and how many bytes of disk a trajectory."""
+    with tempfile.TemporaryDirectory() as folder:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        sweep = ["sweep", "basin", "pin", "--random", str(COMMAND), "--output", folder]
+        subprocess.run([sys.executable, "-m", "compare.cli", *sweep], stdout=subprocess.DEVNULL, check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        size = sum(path.stat().st_size for path in Path(folder).rglob("*") if path.is_file())
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, size / COMMAND
+
+
+def main() -> None:
+    """Measure, print and write."""
+    lines = ["| | µs of a core a trajectory | end is certain |", "|---|---|---|"]
+    for name, (n, run) in WAYS.items():
+        each, certain = cost(n, run)
+        lines.append(f"| {name} | {each:.{0 if each >= 10.0 else 1}f} | {100.0 * certain:.0f} % |")
+    spent, disk = command()
+    lines += [
+        "",
+        f"`friction-discs sweep basin pin --random {COMMAND}` takes {spent:.0f} s of all cores together: libraries "
+        "and compiled code are loaded, some trajectories are checked by the plain reference, results are written, "
+        f"labelled and drawn. It takes {disk:.0f} bytes of disk a trajectory.",
+    ]
+    text = "\n".join(lines) + "\n"
+    print(text)
+    write_into("sweeps.md", "sweep_cost.py", text)
+
+
+if __name__ == "__main__":
+    main()
