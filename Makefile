@@ -1,4 +1,4 @@
-# `make report` and `make test` each do all that a fresh machine needs: Python >= 3.10 with venv, and make.
+# `make report` and `make test` each do all that a fresh machine needs: Python >= 3.11 with venv, and make.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin

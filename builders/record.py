@@ -23,7 +23,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -159,7 +159,7 @@ def record(name: str) -> dict[str, Any]:
     return {
         "engine": INSTALLED[name].title if name in INSTALLED else PROGRAMS.get(name, name),
         "version": setting.engine.version or version(OURS[name]),
-        "recorded": f"{datetime.now(timezone.utc):%Y-%m-%d}",
+        "recorded": f"{datetime.now(UTC):%Y-%m-%d}",
         "platform": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "columns": COLUMNS,
         "settings": settings,

@@ -7,17 +7,12 @@ it is out of date.
 
 import ast
 import json
-import sys
+import tomllib
 from pathlib import Path
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib  # import-linter brings it
 
 ROOT = Path(__file__).parents[1]
 PICTURE = Path(__file__).with_name("floors.svg")

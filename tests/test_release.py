@@ -3,18 +3,13 @@
 import re
 import runpy
 import subprocess
-import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
 import reference_model
 from reference_model.numerics import machine_code
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -69,12 +64,12 @@ def test_what_compiles_kernels_for_a_wheel_is_what_runs_them():
 
 
 def lower_ends(requirements):
-    """Return the lower end of each range by the name of the library, "numpy>=1.24" giving 1.24."""
+    """Return the lower end of each range by the name of the library, "numpy>=1.25" giving 1.25."""
     return dict(re.fullmatch(r"([\w-]+)>=([\w.]+)", each).groups() for each in requirements)
 
 
 def short(version):
-    """Return a version without zeros at its end: 1.24.0 is 1.24."""
+    """Return a version without zeros at its end: 1.25.0 is 1.25."""
     return re.sub(r"(\.0)+$", "", version)
 
 

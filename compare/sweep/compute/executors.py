@@ -115,7 +115,7 @@ class Cluster:
         try:
             self._client.wait_for_workers(1, timeout=WAIT)
             self._client.submit(sweep_stamp, pure=False).result()
-        except asyncio.TimeoutError:
+        except TimeoutError:
             self._client.close()
             raise ClusterError(
                 f"the scheduler at {address} has no workers: start some, dask worker {address}"
