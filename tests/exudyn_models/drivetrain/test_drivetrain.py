@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from exudyn_models import PASSENGER_CAR, build_drivetrain, four_cylinder
 from exudyn_models.drivetrain.picture import draw_drivetrain
@@ -88,7 +89,7 @@ def test_the_disc_starts_at_rest_on_its_shaft():
 def test_the_friction_radius_is_the_mean_radius_over_the_area(inner):
     car = replace(PASSENGER_CAR, inner_radius=inner, outer_radius=0.1)
     r = np.linspace(inner, 0.1, 20001) if inner < 0.1 else np.array([0.1, 0.1])
-    mean = np.trapezoid(r * r, r) / np.trapezoid(r, r) if inner < 0.1 else 0.1
+    mean = trapezoid(r * r, r) / trapezoid(r, r) if inner < 0.1 else 0.1
     assert car.friction_radius == pytest.approx(mean, rel=1e-8)
 
 
