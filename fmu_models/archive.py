@@ -117,6 +117,8 @@ def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
 
     Raises
     ------
+    ValueError
+        If the name of the file does not end with .fmu, as the standard demands.
     HeadersMissingError
         If FMPy is not installed.
     RuntimeError
@@ -125,6 +127,8 @@ def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
         If the file can't be written.
 
     """
+    if file.suffix.lower() != ".fmu":
+        raise ValueError(f"output = {str(file)!r}: the name of a unit must end with .fmu")
     sources = sources_of(model, fmi)
     with tempfile.TemporaryDirectory(prefix="friction-discs-") as name:
         folder = Path(name)

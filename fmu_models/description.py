@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Sequence
 from xml.etree import ElementTree as Xml
 
@@ -139,9 +138,8 @@ def _variable(parent: Xml.Element, model: Model, place: int, one: Variable, fmi:
     elif one.role in ("output", "derivative", "local", "event"):
         known["initial"] = "calculated"
     typed = {"unit": one.unit} if one.unit else {}
-    if one.type != "boolean" and one.role != "time":
-        bounds = {"min": one.least, "max": one.most}
-        typed |= {name: _text(one, value) for name, value in bounds.items() if math.isfinite(value)}
+    if one.settable and one.type != "boolean":
+        typed |= {"min": _text(one, one.least), "max": _text(one, one.most)}
     if one.settable and one.start is not None:
         typed["start"] = _text(one, one.start)
     if one.role == "derivative":

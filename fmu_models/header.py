@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import re
 
 import numpy as np
 
@@ -22,6 +22,7 @@ CAUSALITY = {
     "event": "o",
 }
 TYPE = {"real": "r", "whole": "n", "boolean": "b"}
+BROKEN = "int broken_rule(const double v[], char *sentence, size_t size)"
 
 
 def header(model: Model, token: str) -> str:
@@ -31,6 +32,7 @@ def header(model: Model, token: str) -> str:
             "/* Made from the table of variables: the value reference of each. */",
             "#ifndef VARIABLES_H",
             "#define VARIABLES_H",
+            "#include <stddef.h>",
             *(f"#define V_{one.name} {i}" for i, one in enumerate(model.variables)),
             f"#define N_VARIABLES {len(model.variables)}",
             f"#define N_STATES {len(model.states)}",
@@ -39,10 +41,11 @@ def header(model: Model, token: str) -> str:
             "typedef struct {",
             "    const char *name, *unit;",
             "    char type, causality;",
-            "    int above; /* whether the least value itself is not allowed */",
             "    double start, least, most;",
             "} Variable;",
             *(f"extern const {array};" for array in _arrays(model)),
+            "/* Whether parameters break a rule, which the sentence then says. */",
+            f"{BROKEN};",
             "#endif",
             "",
         ]
@@ -52,7 +55,21 @@ def header(model: Model, token: str) -> str:
 def tables(model: Model) -> str:
     """Return the text of ``variables.c``: what the header declares."""
     lines = [f"const {array} = {{{values}}};" for array, values in _arrays(model).items()]
-    return "\n".join(['#include "variables.h"', "#include <math.h>", *lines, ""])
+    return "\n".join(
+        ['#include "variables.h"', "#include <math.h>", "#include <stdio.h>", *lines, _rules(model), ""]
+    )
+
+
+def _rules(model: Model) -> str:
+    """Return the C function that checks the rules of a model."""
+    values = {one.name: f"v[V_{one.name}]" for one in model.having("parameter")}
+    lines = [f"{BROKEN} {{", "    (void)v, (void)sentence, (void)size;"]
+    for rule in model.rules:
+        condition = re.sub(r"[a-z_]+", lambda word: values.get(word[0], word[0]), rule.holds)
+        used = "".join(f", {values[name]}" for name in re.findall(r"{(\w+):g}", rule.sentence))
+        said = re.sub(r"{\w+:g}", "%g", rule.sentence)
+        lines += [f"    if (!({condition}))", f'        return snprintf(sentence, size, "{said}"{used});']
+    return "\n".join([*lines, "    return 0;", "}"])
 
 
 def _arrays(model: Model) -> dict[str, str]:
@@ -74,11 +91,5 @@ def _numbers(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
 
 def _row(one: Variable) -> str:
     start = 0.0 if one.start is None else one.start
-    bounds = ", ".join(_number(value) for value in (start, one.least, one.most))
-    return f'{{"{one.name}", "{one.unit}", {TYPE[one.type]!r}, {CAUSALITY[one.role]!r}, {int(one.above)}, {bounds}}}'
-
-
-def _number(value: float) -> str:
-    if math.isinf(value):
-        return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
-    return repr(float(value))
+    numbers = ", ".join(repr(float(value)) for value in (start, one.least, one.most))
+    return f'{{"{one.name}", "{one.unit}", {TYPE[one.type]!r}, {CAUSALITY[one.role]!r}, {numbers}}}'

@@ -9,7 +9,16 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from reference_model.systems import COLUMNS, MOST_POINTS, PARAMETERS, DiscOnDisc, PinOnDisc, System
+from reference_model.systems import (
+    COLUMNS,
+    LEAST,
+    MOST,
+    MOST_POINTS,
+    PARAMETERS,
+    DiscOnDisc,
+    PinOnDisc,
+    System,
+)
 
 MOST_PLATES = 1000
 
@@ -32,9 +41,7 @@ class Variable:
     start : float, optional
         Value before initialisation; None where it follows from others.
     least, most : float
-        What the unit allows.
-    above : bool
-        Whether the least value itself is not allowed.
+        Range of values that may be set.
     type : str
         "real", "whole" or "boolean".
     derivative_of : str
@@ -49,9 +56,8 @@ class Variable:
     about: str
     role: str
     start: float | None = None
-    least: float = -math.inf
-    most: float = math.inf
-    above: bool = False
+    least: float = -MOST
+    most: float = MOST
     type: str = "real"
     derivative_of: str = ""
     scale: str = ""
@@ -63,13 +69,31 @@ class Variable:
 
 
 @dataclass(frozen=True)
+class Rule:
+    """A condition on several parameters, checked by the export and, in C, at initialisation.
+
+    Parameters
+    ----------
+    holds : str
+        The condition, as an expression that means the same in Python and C.
+    sentence : str
+        Message if it does not hold, in which "{name:g}" stands for a value.
+
+    """
+
+    holds: str
+    sentence: str
+
+
+@dataclass(frozen=True)
 class Model:
-    """A model: its name, what it is, the C source of its own, and its variables in the order of value references."""
+    """A model: name, description, its own C source, variables in the order of value references, and rules."""
 
     name: str
     about: str
     source: str
     variables: tuple[Variable, ...]
+    rules: tuple[Rule, ...] = ()
 
     @property
     def states(self) -> tuple[Variable, ...]:
@@ -87,24 +111,24 @@ class Model:
         return tuple(one for one in self.variables if one.role in roles)
 
     def starting(self, **values: float) -> Model:
-        """Return the model with other start values; raise ``ValueError`` for one that it can't have."""
+        """Return the model with other start values; raise ``ValueError`` if it cannot start with them."""
         known = {one.name: one for one in self.variables if one.settable}
         for name, value in values.items():
             if name not in known:
                 raise ValueError(f"{name}: it must be one of {', '.join(known)}")
             known[name] = replace(known[name], start=_checked(known[name], value))
+        starts = {name: one.start for name, one in known.items()}
+        for rule in self.rules:
+            if not eval(rule.holds, {"sqrt": math.sqrt, "fabs": math.fabs}, starts):
+                raise ValueError(rule.sentence.format(**starts))
         return replace(self, variables=tuple(known.get(one.name, one) for one in self.variables))
 
 
 def _checked(variable: Variable, value: float) -> float:
     number = float(value)
     told = f"{variable.name} = {number:g} {variable.unit}".rstrip()
-    if not math.isfinite(number):
-        raise ValueError(f"{told}: it must be finite")
-    if number < variable.least or (variable.above and number == variable.least):
-        raise ValueError(f"{told}: it must be {'>' if variable.above else '>='} {variable.least:g}")
-    if number > variable.most:
-        raise ValueError(f"{told}: it must be <= {variable.most:g}")
+    if not variable.least <= number <= variable.most:
+        raise ValueError(f"{told}: it must lie between {variable.least:g} and {variable.most:g}")
     if variable.type != "real" and number != int(number):
         raise ValueError(f"{told}: it must be a whole number")
     return number
@@ -150,8 +174,7 @@ REGULARISATION = Variable(
     "mean slip speed below which the contact is viscous",
     "parameter",
     1e-6,
-    0.0,
-    above=True,
+    LEAST,
 )
 EXACT = Variable(
     "exact",
@@ -187,9 +210,7 @@ def _derivative(state: Variable) -> Variable:
 
 def _parameters(kind: type[System], values: Sequence[float]) -> tuple[Variable, ...]:
     return tuple(
-        Variable(
-            name, REFERENCE_UNITS.get(unit, unit), ABOUT[name], "parameter", value, least, above=least > 0.0
-        )
+        Variable(name, REFERENCE_UNITS.get(unit, unit), ABOUT[name], "parameter", value, least)
         for (name, unit, least), value in zip(PARAMETERS[kind], values, strict=True)
     )
 
@@ -252,6 +273,12 @@ DISC = Model(
             for name, unit in COLUMNS[DiscOnDisc]
         ),
     ),
+    (
+        Rule(
+            "contact_points * (contact_points - 3.0) >= 0.0",
+            "contact_points = {contact_points:g}: it must be 0 for the continuous ring, or at least 3",
+        ),
+    ),
 )
 
 
@@ -265,7 +292,6 @@ def _clutch() -> tuple[Variable, ...]:
             "parameter",
             value,
             supports[name][1],
-            above=supports[name][1] > 0.0,
         )
         for name, value in (
             ("mass", 1.0),
@@ -329,7 +355,31 @@ def _clutch() -> tuple[Variable, ...]:
 
 
 CLUTCH = Model(
-    "clutch", "A dry clutch between two flanges, with the radial support of its disc", "clutch.c", _clutch()
+    "clutch",
+    "A dry clutch between two flanges, with the radial support of its disc",
+    "clutch.c",
+    _clutch(),
+    (
+        Rule(
+            "inner_radius <= outer_radius",
+            "inner_radius = {inner_radius:g} m: it must be at most outer_radius = {outer_radius:g} m",
+        ),
+        Rule(
+            "contact_points * (outer_radius - inner_radius) <= 0.0",
+            "contact_points = {contact_points:g}: points need a ring, but inner_radius = {inner_radius:g} m differs "
+            "from outer_radius = {outer_radius:g} m",
+        ),
+        Rule(
+            "pressure_inner + pressure_mean + pressure_outer > 0.0",
+            "pressure_mean = {pressure_mean:g}: one of pressure_inner, pressure_mean and pressure_outer must be > 0",
+        ),
+        # a parabola with the values a, b and c at 0, 1/2 and 1 is negative in between if 4 b < (sqrt(a) - sqrt(c))^2
+        Rule(
+            "2.0 * sqrt(pressure_mean) >= fabs(sqrt(pressure_inner) - sqrt(pressure_outer))",
+            "pressure_mean = {pressure_mean:g}: it is too small, the parabola to pressure_inner = {pressure_inner:g} "
+            "and pressure_outer = {pressure_outer:g} would be negative between the radii",
+        ),
+    ),
 )
 
 MODELS = {model.name: model for model in (PIN, DISC, CLUTCH)}

@@ -32,23 +32,6 @@ static void slip_of(const double v[], double slip[3]) {
     slip[2] = v[V_speed_b] - v[V_speed_a];
 }
 
-/* Whether a parabola with these values at 0, 1/2 and 1 is negative in between, or 0 everywhere. */
-static int no_pressure(double inner, double mean, double outer) {
-    double slope = 4.0 * mean - 3.0 * inner - outer, bend = 2.0 * (inner - 2.0 * mean + outer);
-    double at = bend > 0.0 ? fmin(fmax(-0.5 * slope / bend, 0.0), 1.0) : 0.0;
-    return inner + at * (slope + at * bend) < 0.0 || inner + mean + outer == 0.0;
-}
-
-const char *model_refusal(const double v[]) {
-    if (v[V_contact_points] > 0.0 && v[V_inner_radius] != v[V_outer_radius])
-        return "contact_points: points are on a ring, where inner_radius is outer_radius";
-    if (no_pressure(v[V_pressure_inner], v[V_pressure_mean], v[V_pressure_outer]))
-        return "pressure_inner, pressure_mean, pressure_outer: the parabola through them must be >= 0 from the inner to "
-               "the outer radius, and not 0 everywhere";
-    if (v[V_inner_radius] > v[V_outer_radius]) return "inner_radius: it must be at most outer_radius";
-    return 0;
-}
-
 int model_exact(const double v[]) {
     (void)v;
     return 0;

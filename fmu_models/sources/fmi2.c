@@ -54,8 +54,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean with_tolerance, fmi2
                                fmi2Boolean with_stop, fmi2Real stop) {
     (void)with_stop, (void)stop;
     UNIT->state.v[V_time] = start;
-    if (with_tolerance) UNIT->state.v[V_tolerance] = tolerance;
-    return fmi2OK;
+    return status_of(with_tolerance && unit_set(UNIT, V_tolerance, 'r', tolerance));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {

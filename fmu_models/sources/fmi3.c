@@ -89,8 +89,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean with_toleranc
                                        fmi3Float64 start, fmi3Boolean with_stop, fmi3Float64 stop) {
     (void)with_stop, (void)stop;
     UNIT->state.v[V_time] = start;
-    if (with_tolerance) UNIT->state.v[V_tolerance] = tolerance;
-    return fmi3OK;
+    return status_of(with_tolerance && unit_set(UNIT, V_tolerance, 'r', tolerance));
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {

@@ -188,6 +188,12 @@ int unit_advance(Unit *unit, double until) {
     char sentence[INTERNAL_DIGITS];
     long tried = 0;
     double begin = s->v[V_time], least = 1e-15 * (1.0 + fabs(begin) + fabs(until));
+    if (!(begin <= until && isfinite(until))) {
+        snprintf(sentence, sizeof sentence, "step from t = %g s to %g s: it must be finite and must not go back", begin,
+                 until);
+        unit->say(unit, 1, sentence);
+        return 1;
+    }
     one.t = begin;
     for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
     rates(s, one.t, one.y, one.k[0]);

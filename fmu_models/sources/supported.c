@@ -44,15 +44,6 @@ static void slip_of(const double v[], double slip[3]) {
 #endif
 }
 
-const char *model_refusal(const double v[]) {
-    (void)v;
-#ifdef V_contact_points
-    if (v[V_contact_points] == 1.0 || v[V_contact_points] == 2.0)
-        return "contact_points: it must be 0 for the continuous ring, or at least 3";
-#endif
-    return 0;
-}
-
 int model_exact(const double v[]) {
 #ifdef V_contact_points
     if (v[V_contact_points] > 0.0) return 0; /* single ones of them may rest, which is a motion of its own */

@@ -20,29 +20,8 @@ static int refuse(Unit *unit, const char *sentence) {
 int unit_initialise(Unit *unit, double time) {
     State *s = &unit->state;
     char sentence[INTERNAL_DIGITS];
-    const char *reason;
     double length, speed, rate, share;
-    for (int i = 0; i < N_VARIABLES; i++) {
-        const Variable *one = &VARIABLES[i];
-        double value = s->v[i];
-        if (one->causality != 'p' && one->causality != 's' && one->causality != 'i') continue;
-        if (!isfinite(value)) {
-            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be finite", one->name, value, one->unit);
-            return refuse(unit, sentence);
-        }
-        if (value < one->least || (one->above && value == one->least)) {
-            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be %s %g", one->name, value, one->unit,
-                     one->above ? ">" : ">=", one->least);
-            return refuse(unit, sentence);
-        }
-        if (value > one->most) {
-            snprintf(sentence, sizeof sentence, "%s = %g %s: it must be <= %g", one->name, value, one->unit,
-                     one->most);
-            return refuse(unit, sentence);
-        }
-    }
-    reason = model_refusal(s->v);
-    if (reason) return refuse(unit, reason);
+    if (broken_rule(s->v, sentence, sizeof sentence)) return refuse(unit, sentence);
     s->v[V_time] = time;
     s->tolerance = s->v[V_tolerance];
     share = model_scales(s, &length, &speed, &rate);
@@ -101,8 +80,13 @@ int unit_set(Unit *unit, size_t variable, char type, double value) {
     if (!unit_has(unit, variable, type)) return 1;
     if (one->causality != 'i' && (one->causality == 'o' || one->causality == 'd' || one->causality == 't' ||
                                   unit->state.initialised)) {
-        snprintf(sentence, sizeof sentence, "%s can %s be set", one->name,
-                 one->causality == 'p' || one->causality == 's' ? "only before the start" : "never");
+        snprintf(sentence, sizeof sentence, "%s cannot be set%s", one->name,
+                 one->causality == 'p' || one->causality == 's' ? " after initialisation" : "");
+        return refuse(unit, sentence);
+    }
+    if (!(one->least <= value && value <= one->most)) {
+        snprintf(sentence, sizeof sentence, "%s = %g%s%s: it must lie between %g and %g", one->name, value,
+                 one->unit[0] ? " " : "", one->unit, one->least, one->most);
         return refuse(unit, sentence);
     }
     unit->state.v[variable] = value;

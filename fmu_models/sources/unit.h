@@ -2,7 +2,6 @@
 #ifndef UNIT_H
 #define UNIT_H
 #include "variables.h"
-#include <stddef.h>
 
 #define INTERNAL_DIGITS 256
 
@@ -47,7 +46,6 @@ struct Unit {
 };
 
 /* What a model is: pin.c, disc.c and clutch.c each define these. */
-const char *model_refusal(const double v[]); /* what is wrong with parameters beyond the table's bounds, or 0 */
 int model_exact(const double v[]);           /* whether the contact sticks by events, or creeps */
 /* The size of what moves, in m and m/s, and its rate in 1/s, 0 where inputs may have any. Returns the share of that size
    by which errors of small states are measured. */
@@ -61,10 +59,10 @@ int model_resting(const State *state, double factor);
 int model_change(State *state); /* begins to stick or to slip if that is due; returns whether it did */
 
 void unit_reset(Unit *unit);
-int unit_initialise(Unit *unit, double time); /* 0, or 1 if parameters were refused */
+int unit_initialise(Unit *unit, double time); /* 0, or 1 if parameters break a rule */
 void unit_refresh(Unit *unit);
 double unit_get(Unit *unit, size_t variable);
-int unit_set(Unit *unit, size_t variable, char type, double value);
+int unit_set(Unit *unit, size_t variable, char type, double value); /* 0, or 1 if the value was refused */
 int unit_has(Unit *unit, size_t variable, char type);
 void unit_tangent(Unit *unit, double d[N_VARIABLES]);
 int unit_advance(Unit *unit, double until); /* by co-simulation; 0, 1 if it failed, 2 if it stopped early */

@@ -249,10 +249,7 @@ def test_what_is_set_is_what_the_unit_starts_with(needs_compiler, tmp_path, caps
 @pytest.mark.parametrize(
     ("setting", "sentence"),
     [
-        ("plates=0", "plates = 0: it must be >= 1"),
         ("plates=1.5", "plates = 1.5: it must be a whole number"),
-        ("wear=2", "wear = 2: it must be <= 1"),
-        ("mass=-1", "mass = -1 kg: it must be > 1e-50"),
         ("radius=1", "unknown parameter 'radius'"),
         ("stiffness", "--set 'stiffness': write it as NAME=VALUE"),
     ],

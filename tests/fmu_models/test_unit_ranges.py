@@ -1,0 +1,147 @@
+"""Ranges of the variables: the table's, in C, on the command line, in the description and through the standard."""
+
+import ctypes
+import math
+
+import pytest
+
+from compare.cli import app as cli
+from fmu_models import MODELS
+
+SETTABLE = [
+    pytest.param(name, variable, id=f"{name} {variable.name}")
+    for name, model in MODELS.items()
+    for variable in model.variables
+    if variable.settable
+]
+BROKEN = [
+    (
+        "disc",
+        {"contact_points": 2.0},
+        "contact_points = 2: it must be 0 for the continuous ring, or at least 3",
+    ),
+    ("clutch", {"outer_radius": 0.05}, "inner_radius = 0.1 m: it must be at most outer_radius = 0.05 m"),
+    (
+        "clutch",
+        {"inner_radius": 0.05, "contact_points": 3.0},
+        "contact_points = 3: points need a ring, but inner_radius = 0.05 m differs from outer_radius = 0.1 m",
+    ),
+    (
+        "clutch",
+        {"pressure_mean": 0.249, "pressure_outer": 0.0},
+        "pressure_mean = 0.249: it is too small, the parabola to pressure_inner = 1 and pressure_outer = 0 would be "
+        "negative between the radii",
+    ),
+    (
+        "clutch",
+        {"pressure_inner": 0.0, "pressure_mean": 0.0, "pressure_outer": 0.0},
+        "pressure_mean = 0: one of pressure_inner, pressure_mean and pressure_outer must be > 0",
+    ),
+]
+"""Of models, start values that contradict each other, and the sentence."""
+
+
+def outside(variable):
+    """Return a value just below and one just above the range of a variable."""
+    if variable.type == "real":
+        return math.nextafter(variable.least, -math.inf), math.nextafter(variable.most, math.inf)
+    return variable.least - 1.0, variable.most + 1.0
+
+
+def sentence(variable, value):
+    told = f"{variable.name} = {value:g} {variable.unit}".rstrip()
+    return f"{told}: it must lie between {variable.least:g} and {variable.most:g}"
+
+
+@pytest.mark.parametrize(("name", "variable"), SETTABLE)
+def test_the_unit_refuses_a_value_outside_its_range_and_keeps_the_last_one(instance, name, variable):
+    unit = instance(name)
+    for value in (*outside(variable), -math.inf, math.inf, math.nan):
+        assert unit.set(**{variable.name: value}) == [1]
+        assert unit.sentence == sentence(variable, value)
+        assert unit[variable.name] == variable.start
+    assert unit.set(**{variable.name: variable.least}) == unit.set(**{variable.name: variable.most}) == [0]
+
+
+@pytest.mark.parametrize("variable", MODELS["clutch"].having("input"), ids=lambda one: one.name)
+def test_the_unit_refuses_an_input_outside_its_range_during_a_run(instance, variable):
+    unit = instance("clutch", speed_a=100.0).started()
+    unit.to(0.01)
+    torque = unit["torque_b"]
+    for value in outside(variable):
+        assert unit.set(**{variable.name: value}) == [1]
+        assert unit.sentence == sentence(variable, value)
+    assert unit["torque_b"] == torque == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize(("name", "variable"), SETTABLE)
+def test_the_command_refuses_a_value_outside_its_range(tmp_path, capsys, name, variable):
+    output = tmp_path / "unit.fmu"
+    for value in outside(variable):
+        setting = f"{variable.name}={value!r}"
+        assert cli.status(["export-fmu", name, "--set", setting, "--output", str(output)]) == 2
+        assert capsys.readouterr().err == f"{sentence(variable, value)}\n"
+    assert not output.exists()
+
+
+@pytest.mark.parametrize(("name", "values", "reason"), BROKEN)
+def test_start_values_that_contradict_each_other_are_refused(
+    instance, tmp_path, capsys, name, values, reason
+):
+    unit = instance(name, **values)
+    assert unit.initialise(ctypes.c_double(0.0)) == 1
+    assert unit.sentence == reason
+    settings = [word for one, value in values.items() for word in ("--set", f"{one}={value}")]
+    assert cli.status(["export-fmu", name, *settings, "--output", str(tmp_path / "unit.fmu")]) == 2
+    assert capsys.readouterr().err == f"{reason}\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_parabola_of_pressure_may_touch_zero(instance):
+    instance("clutch", inner_radius=0.05, pressure_mean=0.25, pressure_outer=0.0).started()
+
+
+def test_the_name_of_a_unit_ends_with_fmu(tmp_path, capsys):
+    output = tmp_path / "clutch.zip"
+    assert cli.status(["export-fmu", "clutch", "--output", str(output)]) == 2
+    assert capsys.readouterr().err == f"output = '{output}': the name of a unit must end with .fmu\n"
+    assert not output.exists()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", MODELS)
+def test_the_description_tells_the_range_of_each_variable(unit, name, fmi):
+    fmpy = pytest.importorskip("fmpy")
+    described = {one.name: one for one in fmpy.read_model_description(str(unit(name, fmi))).modelVariables}
+    for one in MODELS[name].variables:
+        bounds = described[one.name].min, described[one.name].max
+        if one.settable and one.type != "boolean":
+            assert tuple(map(float, bounds)) == (one.least, one.most)
+        else:
+            assert bounds == (None, None)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_inputs_that_no_clutch_has_are_errors_that_the_importer_logs(unit, tmp_path, fmi):
+    fmpy, logged = pytest.importorskip("fmpy"), []
+    file = str(unit("clutch", fmi))
+    description = fmpy.read_model_description(file)
+    places = {one.name: one.valueReference for one in description.modelVariables}
+    fmpy.extract(file, tmp_path)
+    instance = fmpy.instantiate_fmu(
+        tmp_path, description, "CoSimulation", logger=lambda *told: logged.append(told[-1])
+    )
+    if fmi == 2:
+        instance.setupExperiment()
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    put = instance.setReal if fmi == 2 else instance.setFloat64
+    for name, value, reason in (
+        ("normal_load", -600.0, b"normal_load = -600 N: it must lie between 0 and 1e+50"),
+        ("friction_coefficient", -0.3, b"friction_coefficient = -0.3: it must lie between 0 and 1e+50"),
+        ("engagement", 1.5, b"engagement = 1.5: it must lie between 0 and 1"),
+    ):
+        with pytest.raises(Exception, match=f"fmi{fmi}Set.* failed with status 3"):
+            put([places[name]], [value])
+        assert logged[-1] == reason
+    instance.freeInstance()
