@@ -75,6 +75,7 @@ class Workers:
         self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
         self._processes: list[_Worker] = []
         self._refused: list[Done] = []
+        self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
 
     def __enter__(self) -> Workers:
         return self
@@ -84,6 +85,7 @@ class Workers:
     ) -> None:
         for worker in self._processes:
             worker.end()
+        self._temporary.cleanup()  # a process that was killed has left its files there
 
     def submit(
         self, key: Hashable, function: Callable[..., Any], *arguments: Any, first: bool = False
@@ -119,7 +121,7 @@ class Workers:
             if worker is None:
                 if len(self._processes) == self._jobs:
                     return
-                worker = _Worker()
+                worker = _Worker(self._temporary.name)
                 self._processes.append(worker)
             key, function, arguments = self._queue.popleft()
             try:
@@ -156,10 +158,11 @@ class Workers:
 class _Worker:
     """One process and the connection to it; ``key`` is that of its present work, None while it is idle.
 
-    ``started`` is when that work was given to it, in s of the monotonic clock.
+    ``started`` is when that work was given to it, in s of the monotonic clock. The process writes its temporary files
+    into the folder ``temporary``.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, temporary: str) -> None:
         context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
         self.connection, other_end = context.Pipe()
         self.key: Hashable | None = None
@@ -168,7 +171,8 @@ class _Worker:
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
         self._errors = _Errors()
         # Ctrl-C is this process's to handle
-        with interrupts_ignored(), _environment(ONE_THREAD | SAFE_PATH), self._errors.written():
+        environment = ONE_THREAD | SAFE_PATH | {"TMPDIR": temporary}
+        with interrupts_ignored(), _environment(environment), self._errors.written():
             self._process.start()
         other_end.close()
 

@@ -11,7 +11,9 @@ import functools
 import importlib
 import itertools
 import math
+import os
 import tempfile
+import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -43,6 +45,9 @@ A model that tells when its contact sticks does so for pins and rings. Errors of
 
 LEAST_CREEP = 1e-12
 """In m/s: of a motion without any speed."""
+
+MOST_BYTES = 2**30
+"""Of an unpacked archive: a model of a pin or a disc is far smaller, and a disk may be full before."""
 
 
 class FmuError(RuntimeError):
@@ -85,11 +90,11 @@ class Fmu(Unseen):
         except (
             Exception
         ) as error:  # of the library: for another platform, or without what a model has to have
-            raise FmuError(f"{name} can't be started: {error}") from None
+            raise FmuError(f"{name} can't be started: {_reason(error, model.folder)}") from None
         try:
             return _motion(instance, model, values, system, at, **accuracy)
         except Exception as error:  # of FMPy, which has one class for each version of the standard
-            raise FmuError(f"{name}: {error}") from None
+            raise FmuError(f"{name}: {_reason(error, model.folder)}") from None
         finally:
             instance.freeInstance()
 
@@ -135,21 +140,28 @@ def _fmpy() -> Any:
 
 @functools.cache
 def _model(file: str) -> _Model:
-    """Return the model of a file, unpacked; raise ``ValueError`` if it is none."""
+    """Return the model of a file, unpacked; raise ``ValueError`` if it cannot be used."""
     _fmpy()
     fmpy, name = importlib.import_module("fmpy"), Path(file).name
-    try:
-        description = fmpy.read_model_description(file)
-    except Exception as error:  # of the archive, of its XML, or of what stands in it
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise ValueError(f"{name} is no model: {reason}") from None
-    if description.coSimulation is None or not str(description.fmiVersion).startswith(("2", "3")):
-        raise ValueError(
-            f"{name} is a model of FMI {description.fmiVersion}: it must be for co-simulation, by FMI 2 or 3"
-        )
     folder = tempfile.TemporaryDirectory(prefix="friction-discs-")
-    fmpy.extract(file, folder.name)
+    try:
+        with zipfile.ZipFile(file) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+        if size > MOST_BYTES:
+            raise ValueError(f"it would unpack to {size:.3g} bytes, the limit is {MOST_BYTES:.3g}")
+        description = fmpy.read_model_description(file)
+        if description.coSimulation is None or not str(description.fmiVersion).startswith(("2", "3")):
+            raise ValueError(f"FMI {description.fmiVersion}, but it must be for co-simulation by FMI 2 or 3")
+        fmpy.extract(file, folder.name)
+    except Exception as error:  # of the archive, of its XML, or of what stands in it
+        folder.cleanup()
+        raise ValueError(f"{name} cannot be used as a model: {_reason(error, folder)}") from None
     return _Model(description, folder, {one.name: one for one in description.modelVariables})
+
+
+def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
+    """Return what an error says in one line, with paths inside the archive that is unpacked in ``folder``."""
+    return " ".join(str(error).replace(f"{folder.name}{os.sep}", "").split()) or type(error).__name__
 
 
 def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> dict[str, float]:

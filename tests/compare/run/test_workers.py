@@ -3,6 +3,7 @@
 import os
 import sys
 import tempfile
+import time
 
 import pytest
 from processes import wait_until
@@ -41,6 +42,21 @@ def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_i
     assert "it can't be sent to another process" in found["refused"].reason
 
 
+def leave_a_folder_and(end, *arguments):
+    tempfile.mkdtemp()
+    end(*arguments)
+
+
+@pytest.mark.parametrize(("end", "argument"), [(len, ""), (os._exit, 1), (time.sleep, 3600.0)])
+def test_temporary_files_of_a_process_go_with_it_however_it_ends(end, argument, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    with Workers(1, limit=3.0) as workers:
+        workers.submit("key", leave_a_folder_and, end, argument)
+        list(workers.finished())
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """The current folder, with an engine that has been imported from there."""
@@ -59,7 +75,7 @@ def test_a_worker_imports_from_the_folder_of_the_engine(folder):
 @pytest.mark.parametrize("stray", ["random", "socket"])
 def test_a_stray_module_does_not_take_the_place_of_one_of_the_library(stray, folder):
     (folder[0] / f"{stray}.py").write_text("raise SystemExit('the stray one was imported')\n")
-    assert done(tempfile.gettempdir) == tempfile.gettempdir()
+    assert isinstance(done(tempfile.gettempdir), str)
 
 
 def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(capfd):

@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import zipfile
+from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -188,10 +189,61 @@ def test_what_is_no_model_of_a_system_is_refused_in_one_sentence(packed, tmp_pat
     lacking = packed("lacking", names=tuple(name for name in PARAMETERS + STATES if name != "mass"))
     for file, reason in (
         (tmp_path / "missing.fmu", "there is no such file"),
-        (tmp_path / "text.fmu", "text.fmu is no model: "),
+        (tmp_path / "text.fmu", "text.fmu cannot be used as a model: "),
         (lacking, "lacking.fmu is no model of a pin: it has no mass"),
-        (packed("exchange", interface="ModelExchange"), "exchange.fmu is "),
+        (
+            packed("exchange", interface="ModelExchange"),
+            "exchange.fmu cannot be used as a model: FMI 2.0, but ",
+        ),
     ):
         assert cli.status(["report", "--engine", f"fmu:{file}", "--output", str(tmp_path)]) == 2
         (sentence,) = capsys.readouterr().err.splitlines()
         assert reason in sentence
+
+
+BROKEN = {
+    "backslash": ({"resources\\data": b""}, "Illegal path"),
+    "colon": ({"C:/data": b""}, "Illegal path"),
+    "absolute": ({"/etc/data": b""}, "Illegal path"),
+    "file and folder": ({"data": b"", "data/more": b""}, "Not a directory: 'data/more'"),
+    "long name": ({"n" * 300: b""}, "File name too long: 'nnn"),
+    "large": ({"data": bytes(10**6)}, "it would unpack to 1e+06 bytes, the limit is 1e+05"),
+    "no description": ({}, "There is no item named 'modelDescription.xml'"),
+}
+"""Members of archives besides the description, and what the sentence says."""
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path, monkeypatch, capsys, kind):
+    members, reason = BROKEN[kind]
+    monkeypatch.setattr(fmu, "MOST_BYTES", 1e5)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "unpacked"))
+    (tmp_path / "unpacked").mkdir()
+    with zipfile.ZipFile(tmp_path / "broken.fmu", "w") as archive:
+        if members:
+            archive.writestr("modelDescription.xml", description(2, PARAMETERS + STATES))
+        for name, content in members.items():
+            archive.writestr(name, content)
+    assert cli.status(["report", "--engine", f"fmu:{tmp_path}/broken.fmu", "--output", str(tmp_path)]) == 2
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert "broken.fmu cannot be used as a model: " in sentence
+    assert reason in sentence
+    assert str(tmp_path / "unpacked") not in sentence
+    assert not list((tmp_path / "unpacked").iterdir())
+
+
+def test_an_archive_with_any_byte_changed_is_used_or_refused(packed, tmp_path):
+    whole = packed("whole").read_bytes()
+    for place in np.linspace(0, len(whole) - 1, 60).astype(int):
+        file = tmp_path / f"{place}.fmu"
+        file.write_bytes(whole[:place] + bytes([whole[place] ^ 0xFF]) + whole[place + 1 :])
+        with suppress(ValueError):
+            fmu.fmu_engine(str(file))
+
+
+def test_a_library_that_cannot_be_loaded_is_named_as_in_the_archive(packed, tmp_path):
+    with zipfile.ZipFile(packed("loaded")) as archive, zipfile.ZipFile(tmp_path / "pin.fmu", "w") as copy:
+        copy.writestr("modelDescription.xml", archive.read("modelDescription.xml"))
+    (engine,) = engines([f"fmu:{tmp_path}/pin.fmu"])
+    with pytest.raises(FmuError, match=r"^pin\.fmu can't be started: Cannot find shared library binaries"):
+        engine.simulate(FIG5, START, [0.0, 1.0])
