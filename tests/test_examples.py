@@ -3,6 +3,8 @@
 import ast
 import re
 import runpy
+import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -182,3 +184,21 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
                 compared += 1
     assert compared >= 2
     assert set(tmp_path.iterdir()) == given, "a run has left files"
+
+
+def test_the_engine_of_the_tutorial_passes_the_tutorials_command(tmp_path):
+    engine, _ = code_of("docs/tutorial-judge.md")
+    (tmp_path / "mymodule.py").write_text(engine)
+    page = (ROOT / "docs" / "tutorial-judge.md").read_text(encoding="utf-8")
+    command = re.search(r"^pytest (--pyargs .*) --engine mypackage\.(\S+) (.*)$", page, re.MULTILINE)
+    words = f"{command[1]} --engine {command[2]} {command[3]} -p no:cacheprovider".split()
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", *words, "-k", "hardens or resting"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stdout
+    assert "1 passed" in done.stdout
+    assert "3 not attempted" in done.stdout
