@@ -33,6 +33,9 @@ SLIDE = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=FRICTION
 SPEED = 1.0
 """Of what slides, in m/s."""
 
+SETTLES_FOR = 0.05
+"""Time in s before friction is measured: MuJoCo's soft contact takes 0.04 s to reach its steady force."""
+
 SLIDES_FOR = 0.1
 """In s: friction takes a fiftieth of the speed, and less than the nearest heading has across an axis."""
 
@@ -54,18 +57,18 @@ PANELS = 32
 def forces(engine: Engine, tolerance: float) -> FloatArray:
     """Return what acts on blocks that slide along ``HEADINGS``, shape (n, 4): F_x and F_y over μN, and the slip.
 
-    Both are means over the motion; of the slip there is the direction, a unit vector, which a force beside it turns.
+    Both are means over ``SLIDES_FOR``. The slip is given as a unit vector, which a force across it turns.
     """
     velocities = [cmath.rect(SPEED, heading) for heading in HEADINGS.tolist()]
+    times = (0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR)
     runs = engine.simulate_many(
-        [(SLIDE, (0.0, 0.0, v.real, v.imag), (0.0, SLIDES_FOR)) for v in velocities], tolerance=tolerance
+        [(SLIDE, (0.0, 0.0, v.real, v.imag), times) for v in velocities], tolerance=tolerance
     )
     found = []
-    for v, run in zip(velocities, runs, strict=True):
-        end = run.at_end
-        place, at_end = complex(*end[:2]), complex(*end[2:])
-        force = ((at_end - v) * SLIDE.mass / SLIDES_FOR + WEAK * place / 2.0) / FRICTION
-        slip = (v + at_end) / abs(v + at_end)
+    for run in runs:
+        (place, before), (end, after) = run.states[1:, ::2] + 1j * run.states[1:, 1::2]
+        force = ((after - before) * SLIDE.mass / SLIDES_FOR + WEAK * (place + end) / 2.0) / FRICTION
+        slip = (before + after) / abs(before + after)
         found.append([force.real, force.imag, slip.real, slip.imag])
     return np.array(found)
 

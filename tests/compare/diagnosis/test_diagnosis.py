@@ -64,6 +64,20 @@ def test_coulombs_law_is_named_and_nothing_besides(made):
     assert not row.wrong
 
 
+def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
+    """MuJoCo's ellipse with Runge-Kutta steps has one of 5e-7 m/s per m/s, by which μ seemed 0.0025 % too large."""
+
+    def simulate(pin, start, times, *, tolerance):
+        found = reference.simulate(
+            pin, (*start[:2], *np.multiply(start[2:], 1.0 - 5e-7)), times, tolerance=tolerance
+        )
+        return replace(found, states=np.vstack((start, found.states[1:])))
+
+    assert sentences(replace(reference, function=simulate))[1].startswith(
+        "Friction is Coulomb's cone, its force right to ±"
+    )
+
+
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
     fixed, said = sentences(engine("fixed", smooth=1e-2))
     # What is smoothed acts on the slip before the step, which is larger by what the step takes.
