@@ -64,11 +64,11 @@ def _rules(model: Model) -> str:
     """Return the C function that checks the rules of a model."""
     values = {one.name: f"v[V_{one.name}]" for one in model.having("parameter")}
     lines = [f"{BROKEN} {{", "    (void)v, (void)sentence, (void)size;"]
-    for rule in model.rules:
-        condition = re.sub(r"[a-z_]+", lambda word: values.get(word[0], word[0]), rule.holds)
-        used = "".join(f", {values[name]}" for name in re.findall(r"{(\w+):g}", rule.sentence))
-        said = re.sub(r"{\w+:g}", "%g", rule.sentence)
-        lines += [f"    if (!({condition}))", f'        return snprintf(sentence, size, "{said}"{used});']
+    for condition, sentence in model.rules:
+        in_c = re.sub(r"[a-z_]+", lambda word: values.get(word[0], word[0]), condition)
+        used = "".join(f", {values[name]}" for name in re.findall(r"{(\w+):g}", sentence))
+        said = re.sub(r"{\w+:g}", "%g", sentence)
+        lines += [f"    if (!({in_c}))", f'        return snprintf(sentence, size, "{said}"{used});']
     return "\n".join([*lines, "    return 0;", "}"])
 
 

@@ -69,31 +69,18 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Rule:
-    """A condition on several parameters, checked by the export and, in C, at initialisation.
-
-    Parameters
-    ----------
-    holds : str
-        The condition, as an expression that means the same in Python and C.
-    sentence : str
-        Message if it does not hold, in which "{name:g}" stands for a value.
-
-    """
-
-    holds: str
-    sentence: str
-
-
-@dataclass(frozen=True)
 class Model:
-    """A model: name, description, its own C source, variables in the order of value references, and rules."""
+    """A model: name, description, its own C source, variables in the order of value references, and rules.
+
+    A rule is a condition on parameters, as an expression that means the same in Python and C, and the message if it
+    does not hold, in which "{name:g}" stands for a value. The export checks it, and the unit at initialisation.
+    """
 
     name: str
     about: str
     source: str
     variables: tuple[Variable, ...]
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[tuple[str, str], ...] = ()
 
     @property
     def states(self) -> tuple[Variable, ...]:
@@ -118,9 +105,9 @@ class Model:
                 raise ValueError(f"{name}: it must be one of {', '.join(known)}")
             known[name] = replace(known[name], start=_checked(known[name], value))
         starts = {name: one.start for name, one in known.items()}
-        for rule in self.rules:
-            if not eval(rule.holds, {"sqrt": math.sqrt, "fabs": math.fabs}, starts):
-                raise ValueError(rule.sentence.format(**starts))
+        for condition, sentence in self.rules:
+            if not eval(condition, {"sqrt": math.sqrt, "fabs": math.fabs}, starts):
+                raise ValueError(sentence.format(**starts))
         return replace(self, variables=tuple(known.get(one.name, one) for one in self.variables))
 
 
@@ -274,7 +261,7 @@ DISC = Model(
         ),
     ),
     (
-        Rule(
+        (
             "contact_points * (contact_points - 3.0) >= 0.0",
             "contact_points = {contact_points:g}: it must be 0 for the continuous ring, or at least 3",
         ),
@@ -283,16 +270,9 @@ DISC = Model(
 
 
 def _clutch() -> tuple[Variable, ...]:
-    supports = {name: (unit, least) for name, unit, least in PARAMETERS[PinOnDisc]}
+    of_pin = {one.name: one for one in PIN.variables}
     support = tuple(
-        Variable(
-            name,
-            REFERENCE_UNITS.get(supports[name][0], supports[name][0]),
-            ABOUT[name],
-            "parameter",
-            value,
-            supports[name][1],
-        )
+        replace(of_pin[name], start=value)
         for name, value in (
             ("mass", 1.0),
             ("stiffness", 1e6),
@@ -360,21 +340,21 @@ CLUTCH = Model(
     "clutch.c",
     _clutch(),
     (
-        Rule(
+        (
             "inner_radius <= outer_radius",
             "inner_radius = {inner_radius:g} m: it must be at most outer_radius = {outer_radius:g} m",
         ),
-        Rule(
+        (
             "contact_points * (outer_radius - inner_radius) <= 0.0",
             "contact_points = {contact_points:g}: points need a ring, but inner_radius = {inner_radius:g} m differs "
             "from outer_radius = {outer_radius:g} m",
         ),
-        Rule(
+        (
             "pressure_inner + pressure_mean + pressure_outer > 0.0",
             "pressure_mean = {pressure_mean:g}: one of pressure_inner, pressure_mean and pressure_outer must be > 0",
         ),
         # a parabola with the values a, b and c at 0, 1/2 and 1 is negative in between if 4 b < (sqrt(a) - sqrt(c))^2
-        Rule(
+        (
             "2.0 * sqrt(pressure_mean) >= fabs(sqrt(pressure_inner) - sqrt(pressure_outer))",
             "pressure_mean = {pressure_mean:g}: it is too small, the parabola to pressure_inner = {pressure_inner:g} "
             "and pressure_outer = {pressure_outer:g} would be negative between the radii",
