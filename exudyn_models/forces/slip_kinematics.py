@@ -63,6 +63,7 @@ Axes = tuple[Vector, Vector, Vector]
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
+    That is the angle of the disc's x-axis, or of its y-axis if its x-axis lies along the master's z-axis.
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
     about the z-axis through the global origin, where the ground rests, a planar body about one parallel to it.
     """
@@ -84,7 +85,10 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
         result[2, before + k] = -_product(axes[2], turning[k])
     for k in range(SIZES[disc] - first):
         result[2, size + first + k] = _product(axes[2], disc_turning[k])
-    return result, axes, (_product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1]))
+    cosine, sine = _product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1])
+    if abs(cosine * cosine + sine * sine) < 0.5:
+        cosine, sine = _product(disc_axes[1], axes[0]), _product(disc_axes[1], axes[1])
+    return result, axes, (cosine, sine)
 
 
 @compiled

@@ -44,7 +44,12 @@ def brake_beside_a_clutch_that_sticks_and_slips(steps, solver, breaks=()):
     settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = UNTIL, steps
     solve_dynamic(mbs, settings, solver, breaks=breaks)
     speed = float(mbs.GetNodeOutput(wheel, exu.OutputVariableType.Coordinates_t))
-    return speed, mbs.GetSensorValues(heat), mbs.GetSensorValues(temperature)[0], np.abs(read().residual).max()
+    return (
+        speed,
+        mbs.GetSensorValues(heat),
+        mbs.GetSensorValues(temperature)[0],
+        np.abs(read().residual).max(),
+    )
 
 
 @pytest.mark.parametrize("breaks", [(), (0.3141,)], ids=["one run", "with a break"])
@@ -57,6 +62,6 @@ def test_heat_and_temperature_are_exact_whatever_steps_are_repeated(solver, brea
     heat = INERTIA * (SPEED**2 - speed**2) / 2.0
     exact = [speed, heat, heat / CAPACITY]
     np.testing.assert_allclose(found[:, :3], np.broadcast_to(exact, (len(found), 3)), rtol=0.0, atol=1e-6)
-    # The clutch's power ends in a corner ten times: the trapezoidal rule is off by half a step of what it loses there.
+    # The clutch comes to stick ten times: across such a corner the rule is off by half a step of the power lost there.
     corner = FRICTION * (DRIVE + 2.0 * FRICTION) / ROTOR * (UNTIL / steps) ** 2 / 2.0
     assert all(found[:, 3] < 10.0 * corner)
