@@ -69,8 +69,8 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
     """
     master, disc = kinds
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
-    place, axes, turning = _frame(master, coordinates, 0)
-    disc_place, disc_axes, disc_turning = _frame(disc, coordinates, size)
+    place, axes, turning = frame(master, coordinates, 0)
+    disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[i]
@@ -115,7 +115,7 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
 
 
 @compiled
-def _frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
+def frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
     """Return place and axes of a body with coordinates from ``q[at]`` on, and what each rate of angles adds to ω."""
     zero = 0.0 * q[0]
     one, none = zero + 1.0, (zero, zero, zero)

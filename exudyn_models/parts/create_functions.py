@@ -91,22 +91,10 @@ def MainSystemCreateRadialSupport(
 
 
 def _two_bodies(mbs: Any, numbers: Sequence[Any]) -> tuple[Any, Any]:
-    """Return both, the first as None if it is a ground; raise ``ValueError`` if there are not two."""
+    """Return both; raise ``ValueError`` if there are not two."""
     if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
         raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
-    first, second = numbers
-    if type(first).__name__ != "ObjectIndex" or int(first) not in range(mbs.systemData.NumberOfObjects()):
-        return first, second
-    entry = mbs.GetObject(first)
-    if entry["objectType"] != "Ground":
-        return first, second
-    place = [float(value) for value in entry["referencePosition"]]
-    if any(place):
-        raise ValueError(
-            f"bodyNumbers[0] {int(first)} is an ObjectGround at {place}: it must be at the global origin, through "
-            "which the axis of the ground goes"
-        )
-    return None, second
+    return numbers[0], numbers[1]
 
 
 install()  # type: ignore[no-untyped-call]

@@ -48,7 +48,7 @@ def restored_accelerations(mbs: Any) -> Iterator[None]:
     Exudyn restores them when a function after Newton's method reports a discontinuity, so this one reports one, once,
     for each repeated step. The functions that the model itself has there are still called.
     """
-    hooks = mbs.GetPreStepUserFunction(), mbs.GetPostNewtonUserFunction()
+    hooks: Any = mbs.GetPreStepUserFunction(), mbs.GetPostNewtonUserFunction()
     own_pre_step, own_post_newton = (hook["function"] if hook else 0 for hook in hooks)
     last_start, spoilt = math.nan, False
 

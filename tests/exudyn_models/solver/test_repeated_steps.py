@@ -62,6 +62,6 @@ def test_heat_and_temperature_are_exact_whatever_steps_are_repeated(solver, brea
     heat = INERTIA * (SPEED**2 - speed**2) / 2.0
     exact = [speed, heat, heat / CAPACITY]
     np.testing.assert_allclose(found[:, :3], np.broadcast_to(exact, (len(found), 3)), rtol=0.0, atol=1e-6)
-    # The clutch comes to stick ten times: across such a corner the rule is off by half a step of the power lost there.
+    # The clutch comes to stick ten times: a step across such a corner is off by half of the power lost in it.
     corner = FRICTION * (DRIVE + 2.0 * FRICTION) / ROTOR * (UNTIL / steps) ** 2 / 2.0
     assert all(found[:, 3] < 10.0 * corner)
