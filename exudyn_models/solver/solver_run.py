@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -305,19 +305,25 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
 
 
 @contextmanager
-def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> Iterator[None]:
-    """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
-    before = mbs.GetPostStepUserFunction()
-    own: Any = before["function"] if before else 0
+def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[None]:
+    """Have Exudyn call what ``wrap`` makes of the model's own function, or of one that does nothing.
 
-    def both(mbs: Any, t: float) -> bool:
-        return function(mbs, t) and bool(own(mbs, t))
-
-    mbs.SetPostStepUserFunction(both if own else function)
+    ``place`` is "PreStep", "PostNewton" or "PostStep".
+    """
+    before = getattr(mbs, f"Get{place}UserFunction")()
+    own = before["function"] if before else 0
+    result = [0.0, -1.0] if place == "PostNewton" else True
+    replace_by = getattr(mbs, f"Set{place}UserFunction")
+    replace_by(wrap(own or (lambda mbs, t: result)))
     try:
         yield
     finally:
-        mbs.SetPostStepUserFunction(own)
+        replace_by(own)
+
+
+def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
+    """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
+    return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 
 def raise_interrupt(error: exu.ExudynError) -> None:
