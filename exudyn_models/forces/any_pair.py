@@ -146,31 +146,21 @@ def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, 
 @compiled
 def slip_in_step(
     kinds: Kinds,
-    start: FloatArray,
-    start_velocities: FloatArray,
-    end: FloatArray,
-    end_velocities: FloatArray,
     contact: Contact,
-    lever: float,
-) -> tuple[float, float, float, float, float, float]:
-    """Return P in m/s at start and end of a step, of the change between, and where slip on the way is least.
-
-    Spin in rad/s and radius in m at the end come with them. ``start`` and ``end`` are the nodes' coordinates; a
-    relative spin counts times ``lever`` (m).
-    """
+    start: FloatArray,
+    rates: FloatArray,
+    end: FloatArray,
+    end_rates: FloatArray,
+) -> tuple[float, float, float, float, float]:
+    """Return P (m/s) at start and end of a step and of the change between; S (rad/s) and radius (m) at the end."""
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, end)
     angle = math.atan2(sine, cosine)
-    ux, uy, spin = _slip(to_slip, end_velocities)
-    before_x, before_y, spin_before = _slip(slip_jacobian(kinds, start)[0], start_velocities)
-    dx, dy, turn = ux - before_x, uy - before_y, spin - spin_before
-    square = dx * dx + dy * dy + lever * lever * turn * turn
-    share = 0.0
-    if square > 0.0:
-        share = -(before_x * dx + before_y * dy + lever * lever * spin_before * turn) / square
-        share = min(1.0, max(0.0, share))
-    near = before_x + share * dx, before_y + share * dy, spin_before + share * turn
-    first = slip_potential_of_contact(before_x, before_y, spin_before, angle, contact)
-    last = slip_potential_of_contact(ux, uy, spin, angle, contact)
-    change = slip_potential_of_contact(dx, dy, turn, angle, contact)
-    least = slip_potential_of_contact(near[0], near[1], near[2], angle, contact)
-    return first, last, change, least, spin, radius_of_disc(kinds, end, axes)
+    ux, uy, spin = _slip(to_slip, end_rates)
+    vx, vy, before = _slip(slip_jacobian(kinds, start)[0], rates)
+    return (
+        slip_potential_of_contact(vx, vy, before, angle, contact),
+        slip_potential_of_contact(ux, uy, spin, angle, contact),
+        slip_potential_of_contact(ux - vx, uy - vy, spin - before, angle, contact),
+        spin,
+        radius_of_disc(kinds, end, axes),
+    )

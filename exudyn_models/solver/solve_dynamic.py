@@ -13,15 +13,9 @@ from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
-from exudyn_models.solver.solver_run import (
-    NOT_FINITE,
-    advice,
-    after_every_step,
-    raise_interrupt,
-    user_function,
-)
+from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
-from exudyn_models.solver.steep_laws import PeakCheck
+from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import StepCheck
 from reference_model.trajectory import SimulationError
 
@@ -125,15 +119,7 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
             if jumps is not None:
                 repairs.enter_context(starting_rates(mbs, start))
                 repairs.enter_context(newton_without_restart(mbs, options.newton))
-                peaks = PeakCheck(mbs, options)
-                if peaks.contacts:
-                    repairs.enter_context(
-                        user_function(
-                            mbs,
-                            "PostNewton",
-                            lambda own: lambda mbs, t: peaks.recommend(mbs, t) or own(mbs, t),
-                        )
-                    )
+                repairs.enter_context(peaks_resolved(mbs, options))
                 if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
                     repairs.enter_context(restored_accelerations(mbs))
                 jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
