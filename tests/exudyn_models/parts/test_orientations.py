@@ -30,7 +30,6 @@ ADD = {
     "native friction": lambda mbs, *bodies: add_native_friction(mbs, *bodies, **POINTS, reach=1.0),
     "support": lambda mbs, *bodies: add_radial_support(mbs, *bodies, stiffness=1.0),
 }
-ALL = pytest.mark.parametrize("add", ADD.values(), ids=ADD)
 
 
 def ball(mbs, node, axes, mass, inertia, *motion):
@@ -84,31 +83,25 @@ def test_only_a_body_without_inertia_is_said_to_have_none_in_any_orientation(ine
         assert singular_mass(mbs) == "" if inertia else "coordinate 6 of node 0" in singular_mass(mbs)
 
 
-@ALL
+@pytest.mark.parametrize("add", ADD.values(), ids=ADD)
 @pytest.mark.parametrize(
     "moved",
     [{"referencePosition": [0.1, 0.0, 0.0]}, {"referenceRotation": ACROSS}, {"referenceRotation": REVERSED}],
 )
-def test_a_rotor_or_a_ground_off_the_global_z_axis_is_refused(add, moved):
+def test_a_rotor_or_a_ground_off_the_global_z_axis_and_a_mass_that_slides_are_refused(add, moved):
     mbs = exu.SystemContainer().AddSystem()
-    disc, node = mbs.AddNode(items.NodeRigidBody2D()), mbs.AddNode(items.Node1D())
+    disc, node, slide = mbs.AddNode(items.NodeRigidBody2D()), *[mbs.AddNode(items.Node1D()) for _ in range(2)]
     mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, **moved))
-    with pytest.raises(ValueError, match=r"_node 1 is the Node1D of .* about the global z-axis"):
-        add(mbs, node, disc)
-    with pytest.raises(ValueError, match=r"_node 1 is an ObjectGround.* global origin"):
-        add(mbs, mbs.AddObject(items.ObjectGround(**moved)), disc)
-
-
-@ALL
-def test_a_ground_of_exudyn_is_a_master_and_a_mass_that_slides_is_not(add):
-    mbs = exu.SystemContainer().AddSystem()
-    disc, node = mbs.AddNode(items.NodeRigidBody2D()), mbs.AddNode(items.Node1D())
-    ground = mbs.AddObject(items.ObjectGround())
-    mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=disc, mass=1.0, inertia=1.0))
-    assert add(mbs, ground, disc)
-    mbs.AddObject(items.ObjectMass1D(nodeNumber=node, mass=1.0))
-    with pytest.raises(ValueError, match="_node 1 is the Node1D of an ObjectMass1D"):
-        add(mbs, node, disc)
+    mbs.AddObject(items.ObjectMass1D(nodeNumber=slide, mass=1.0))
+    ground = mbs.AddObject(items.ObjectGround(**moved))
+    refused = {
+        node: r"_node 1 is the Node1D of .* about the global z-axis",
+        slide: "_node 2 is the Node1D of an ObjectMass1D",
+        ground: r"_node 2 is an ObjectGround.* global origin",
+    }
+    for master, words in refused.items():
+        with pytest.raises(ValueError, match=words):
+            add(mbs, master, disc)
 
 
 @pytest.mark.parametrize("is_master", [False, True])
