@@ -39,7 +39,7 @@ def MainSystemCreateRingFriction(
     origin, or None, is a master that rests. All else is as ``add_ring_friction`` has it: radii in m, N in N, ε in
     m/s. Raises ``ValueError`` as that does, or if there are not two bodies.
     """
-    master, disc = _two_bodies(mbs, bodyNumbers)
+    master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
         mbs,
         master,
@@ -76,7 +76,7 @@ def MainSystemCreateRadialSupport(
     at the global origin, or None. All else is as ``add_radial_support`` has it: N/m, N s/m, N/m³, m. Raises
     ``ValueError`` as that does, or if there are not two bodies.
     """
-    base, disc = _two_bodies(mbs, bodyNumbers)
+    base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(
         mbs,
         base,
@@ -90,7 +90,7 @@ def MainSystemCreateRadialSupport(
     )
 
 
-def _two_bodies(mbs: Any, numbers: Sequence[Any]) -> tuple[Any, Any]:
+def _two_bodies(numbers: Sequence[Any]) -> tuple[Any, Any]:
     """Return both; raise ``ValueError`` if there are not two."""
     if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
         raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")

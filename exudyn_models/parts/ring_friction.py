@@ -176,11 +176,11 @@ def checked_pair(
 
 def _check_spins(mbs: Any, nodes: Sequence[Any], kinds: Kinds) -> None:
     """Raise ``ValueError`` if a body starts with a spin across the axis of the contact, which would not resist it."""
-    axis = np.eye(3)[2]
-    for name, node, kind in list(zip(("disc_node", "master_node"), nodes[::-1], kinds[::-1], strict=False))[
-        ::-1
-    ]:
-        spin = np.eye(3)[2]  # of rotors and planar bodies, whatever its size
+    z = axis = np.array([0.0, 0.0, 1.0])
+    for name, node, kind in zip(
+        ("master_node", "disc_node")[-len(nodes) :], nodes, kinds[-len(nodes) :], strict=True
+    ):
+        spin = z  # of rotors and planar bodies, whatever its size
         if kind in SPATIAL:
             entry = mbs.GetNode(node)
             rates = entry["initialVelocities"][TRANSLATIONS[kind] :]

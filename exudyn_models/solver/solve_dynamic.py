@@ -48,9 +48,10 @@ def solve_dynamic(
 
     An implicit run starts with the rates that heat and works have, which Exudyn takes to be zero. Steps that Exudyn
     repeats begin with all of the state from their start, see ``repeated_steps``; for that modified Newton renews its
-    Jacobian where it would start over, whatever ``newton`` says about that. Where a power of
-    ``add_energy_balance`` or of a sensor of heat jumps in it a ``RuntimeWarning`` tells so at the end of the run, see
-    ``jumps``.
+    Jacobian where it would start over, whatever ``newton`` says about that. Steps that skip a peak of friction are
+    repeated with a smaller size; if steps are fixed, a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
+    Where a power of ``add_energy_balance`` or of a sensor of heat jumps a ``RuntimeWarning`` tells so at the end of
+    the run, see ``jumps``.
 
     Parameters
     ----------
