@@ -9,13 +9,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import exudyn as exu
-
-from exudyn_models.solver.solver_run import user_function
 
 WITHOUT_RESTART = {
     "modifiedNewtonContractivity": 1e300,
@@ -37,6 +35,23 @@ def newton_without_restart(mbs: Any, newton: Any) -> Iterator[None]:
     finally:
         for name, value in before.items():
             setattr(newton, name, value)
+
+
+@contextmanager
+def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[None]:
+    """Have Exudyn call what ``wrap`` makes of the model's own function, or of one that does nothing.
+
+    ``place`` is "PreStep", "PostNewton" or "PostStep".
+    """
+    before = getattr(mbs, f"Get{place}UserFunction")()
+    own = before["function"] if before else 0
+    result = [0.0, -1.0] if place == "PostNewton" else True
+    replace_by = getattr(mbs, f"Set{place}UserFunction")
+    replace_by(wrap(own or (lambda mbs, t: result)))
+    try:
+        yield
+    finally:
+        replace_by(own)
 
 
 @contextmanager

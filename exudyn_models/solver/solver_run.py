@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.solver.model import Model
+from exudyn_models.solver.repeated_steps import restored_accelerations, user_function
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -190,7 +191,11 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
         try:
             if explicit:
                 first_acceleration = _initial_acceleration(model, settings.timeIntegration.startTime)
-            with after_every_step(model.mbs, look):
+            alpha = integrator == "GeneralizedAlpha"
+            with (
+                after_every_step(model.mbs, look),
+                restored_accelerations(model.mbs) if alpha else nullcontext(),
+            ):
                 success = solver.SolveSystem(model.mbs, settings)
         except exu.ExudynError as error:
             raise_interrupt(error)
@@ -302,23 +307,6 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
     if not solver.SolveSystem(model.mbs, settings):
         raise SimulationError(advice("GeneralizedAlpha", start, "no initial acceleration"))
     return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1 : 1 + model.size]
-
-
-@contextmanager
-def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[None]:
-    """Have Exudyn call what ``wrap`` makes of the model's own function, or of one that does nothing.
-
-    ``place`` is "PreStep", "PostNewton" or "PostStep".
-    """
-    before = getattr(mbs, f"Get{place}UserFunction")()
-    own = before["function"] if before else 0
-    result = [0.0, -1.0] if place == "PostNewton" else True
-    replace_by = getattr(mbs, f"Set{place}UserFunction")
-    replace_by(wrap(own or (lambda mbs, t: result)))
-    try:
-        yield
-    finally:
-        replace_by(own)
 
 
 def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:

@@ -15,7 +15,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.any_pair import slip_in_step
-from exudyn_models.solver.solver_run import user_function
+from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.step_limit import contacts_of
 
 RESOLVED = 0.05

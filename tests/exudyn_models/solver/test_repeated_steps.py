@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from free_bodies import rotor
 
-from exudyn_models import add_ring_friction, add_thermal_node, solve_dynamic
+from exudyn_models import add_ring_friction, add_thermal_node, simulate_fixed_step, solve_dynamic
+from reference_model import PinOnDisc
 
 items: Any = exudyn.itemInterface
 SOLVERS = exu.DynamicSolverType
@@ -48,3 +49,19 @@ def test_heat_and_temperature_are_exact_whatever_steps_are_repeated(solver, brea
     for steps in STEPS[::4] if breaks else STEPS:
         found = brake_next_to_a_clutch_that_sticks_and_slips(steps, solver, breaks)
         np.testing.assert_allclose(found, [speed, heat, heat / CAPACITY], rtol=0.0, atol=1e-6)
+
+
+def test_generalised_alpha_with_rejected_steps_is_of_second_order_for_a_pin_too():
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+    coarse, fine = (
+        simulate_fixed_step(
+            pin,
+            [0.1, 0.0, 0.03, 0.0],
+            np.linspace(0.0, 40.0, 41),
+            integrator="GeneralizedAlpha",
+            step=step,
+            regularisation=1e-4,
+        ).states
+        for step in (1e-2, 2.5e-3)
+    )
+    assert np.abs(coarse - fine).max() < 1e-2**2
