@@ -62,22 +62,16 @@ def singular_mass(mbs: Any) -> str:
         solver.ComputeMassMatrix(mbs)
         mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
         solver.FinalizeSolver(mbs, settings)
-    _add_norms(mbs, mass)
+    for node in range(mbs.systemData.NumberOfNodes()):
+        if mbs.GetNode(node)["nodeType"] == "RigidBodyEP":  # a constraint holds the norm, in place of inertia
+            first = mbs.GetNodeODE2Index(node) + 3
+            rotation = mass[first : first + 4, first : first + 4]
+            rotation += rotation.any() * np.eye(4)
     massless = np.flatnonzero(~mass.any(axis=1))
     if not len(massless):
         return ""
     told = ", ".join(f"coordinate {place} of node {node}" for node, place in _nodes_of(mbs, massless))
     return f"the mass matrix is singular: {told} has neither mass nor inertia"
-
-
-def _add_norms(mbs: Any, mass: FloatArray) -> None:
-    """Fill the diagonals of Euler parameters with inertia, along which a constraint holds their norm in its place."""
-    for node in range(mbs.systemData.NumberOfNodes()):
-        if mbs.GetNode(node)["nodeType"] == "RigidBodyEP":
-            first = mbs.GetNodeODE2Index(node) + 3
-            rotation = mass[first : first + 4, first : first + 4]
-            if rotation.any():
-                rotation += np.eye(4)
 
 
 def _nodes_of(mbs: Any, coordinates: Any) -> list[tuple[int, int]]:
