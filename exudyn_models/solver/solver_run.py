@@ -256,7 +256,9 @@ def _recorded(
 def _evaluations(solver: Any, explicit: bool) -> int:
     """Return how often a solver has evaluated the equations of motion."""
     if not explicit:
-        return int(solver.it.newtonStepsCount + solver.it.currentStepIndex)
+        found = solver.it.discontinuousIterationsCount
+        failed = found - solver.it.currentStepIndex  # each leads to one repetition, see restored_accelerations
+        return int(solver.it.newtonStepsCount + found + failed)
     steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
     return int(steps * (solver.GetNumberOfStages() + 1))
 
