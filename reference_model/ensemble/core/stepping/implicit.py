@@ -20,7 +20,7 @@ import numpy as np
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
-from reference_model.ensemble.core.stepping.linear import complex_zeros, solve, zeros
+from reference_model.ensemble.core.stepping.linear import complex_zeros, length_of, solve, zeros
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES
@@ -321,15 +321,6 @@ def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArra
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])
     place: complex = turns[node] * (z + step * way)
     return place
-
-
-@scalar
-def length_of(vector: FloatArray) -> float:
-    """Return the Euclidean norm."""
-    total = 0.0
-    for value in vector:
-        total += value * value
-    return math.sqrt(total)
 
 
 @inlined
