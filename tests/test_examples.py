@@ -54,6 +54,13 @@ def test_a_block_stops_straight_ahead_by_a_cone_and_too_soon_by_a_box():
     assert stops[1] == pytest.approx([0.25, 0.25, 0.0, 0.0], abs=1e-3)  # each axis by itself
 
 
+def test_exudyn_keeps_the_rates_of_first_order_with_full_newton_only():
+    example = run("11_exudyn_first_order_rates.py")
+    right = example["expected"]()
+    assert example["obtained"](False) == pytest.approx(right, rel=1e-6)
+    assert abs(example["obtained"](True) - right) > 1.0  # once this fails, Exudyn is mended: drop our repair
+
+
 def test_the_steady_motions_of_the_pin_are_those_of_the_formulas():
     example = run("01_pin.py")
     assert (example["equilibrium"].x, example["equilibrium"].y) == pytest.approx(

@@ -141,3 +141,26 @@ def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, 
         coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
         velocities[i] = q_t[i]
     return contact, (int(kinds[0]), int(kinds[1])), coordinates, velocities
+
+
+@compiled
+def slip_in_step(
+    kinds: Kinds,
+    contact: Contact,
+    start: FloatArray,
+    rates: FloatArray,
+    end: FloatArray,
+    end_rates: FloatArray,
+) -> tuple[float, float, float, float, float]:
+    """Return P (m/s) at start and end of a step and of the change between; S (rad/s) and radius (m) at the end."""
+    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, end)
+    angle = math.atan2(sine, cosine)
+    ux, uy, spin = _slip(to_slip, end_rates)
+    vx, vy, before = _slip(slip_jacobian(kinds, start)[0], rates)
+    return (
+        slip_potential_of_contact(vx, vy, before, angle, contact),
+        slip_potential_of_contact(ux, uy, spin, angle, contact),
+        slip_potential_of_contact(ux - vx, uy - vy, spin - before, angle, contact),
+        spin,
+        radius_of_disc(kinds, end, axes),
+    )

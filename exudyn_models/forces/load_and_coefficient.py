@@ -77,6 +77,7 @@ class LoadAndCoefficient:
         if self._static_ratio > 1.0 or curve is not None:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
+        self.depends_on_slip = not self._reads <= {"time", "radius"}
         #: Whether no function of Python is called for it.
         self.compiled = all(function is None or function.address != 0.0 for function in functions)
         is_number = not self._reads and functions == [None, None]

@@ -63,13 +63,14 @@ Axes = tuple[Vector, Vector, Vector]
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
+    That is the angle of the disc's x-axis, or of its y-axis if its x-axis lies along the master's z-axis.
     ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
     about the z-axis through the global origin, where the ground rests, a planar body about one parallel to it.
     """
     master, disc = kinds
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
-    place, axes, turning = _frame(master, coordinates, 0)
-    disc_place, disc_axes, disc_turning = _frame(disc, coordinates, size)
+    place, axes, turning = frame(master, coordinates, 0)
+    disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[i]
@@ -84,7 +85,10 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
         result[2, before + k] = -_product(axes[2], turning[k])
     for k in range(SIZES[disc] - first):
         result[2, size + first + k] = _product(axes[2], disc_turning[k])
-    return result, axes, (_product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1]))
+    cosine, sine = _product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1])
+    if abs(cosine * cosine + sine * sine) < 0.5:
+        cosine, sine = _product(disc_axes[1], axes[0]), _product(disc_axes[1], axes[1])
+    return result, axes, (cosine, sine)
 
 
 @compiled
@@ -111,7 +115,7 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
 
 
 @compiled
-def _frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
+def frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
     """Return place and axes of a body with coordinates from ``q[at]`` on, and what each rate of angles adds to ω."""
     zero = 0.0 * q[0]
     one, none = zero + 1.0, (zero, zero, zero)

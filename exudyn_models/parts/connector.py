@@ -14,7 +14,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.slip_kinematics import KINDS
+from exudyn_models.forces.slip_kinematics import KINDS, ROTOR
 from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -41,10 +41,10 @@ BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody")
 """The objects whose nodes may be those of ``KINDS``, by the names that Exudyn gives them."""
 
 
-def node_of(name: str, mbs: Any, node_or_body: Any) -> Any:
-    """Return the ``NodeIndex`` of a body from its ``ObjectIndex``, and anything else as it is.
+def node_of(name: str, mbs: Any, node_or_body: Any, *, or_ground: bool = False) -> Any:
+    """Return the ``NodeIndex`` of a body from its ``ObjectIndex``, None for a ground, and anything else as it is.
 
-    Raises ``ValueError`` for the ``ObjectIndex`` of what is no body with a node.
+    Raises ``ValueError`` for any other object, and for a ground that is not allowed here, shifted or turned.
     """
     if type(node_or_body).__name__ != "ObjectIndex":
         return node_or_body
@@ -53,6 +53,13 @@ def node_of(name: str, mbs: Any, node_or_body: Any) -> Any:
     except exu.ExudynIndexError:
         count = mbs.systemData.NumberOfObjects()
         raise ValueError(f"{name} {int(node_or_body)} is none of the {count} objects of this model") from None
+    if or_ground and body["objectType"] == "Ground":
+        if body["referencePosition"].any() or (body["referenceRotation"] != np.eye(3)).any():
+            raise ValueError(
+                f"{name} {int(node_or_body)} is an ObjectGround at {body['referencePosition'].tolist()}: it must be "
+                "at the global origin with the global axes, because its axis is the global z-axis"
+            )
+        return None
     if body["objectType"] not in BODIES:
         raise ValueError(
             f"{name} {int(node_or_body)} is an Object{body['objectType']}: it must be a body with a node, which is "
@@ -62,7 +69,11 @@ def node_of(name: str, mbs: Any, node_or_body: Any) -> Any:
 
 
 def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
-    """Return which of ``KINDS`` the node is; raise ``ValueError`` if it is none of those ``allowed``."""
+    """Return which of ``KINDS`` the node is.
+
+    Raises ``ValueError`` if it is not one of those ``allowed``, or if its body turns about another axis than a rotor
+    must, or slides. A body that is added later is not checked.
+    """
     try:
         kind = mbs.GetNode(node)["nodeType"]
     except exu.ExudynIndexError:
@@ -74,8 +85,25 @@ def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(
             "ObjectIndex of a body"
         ) from None
     if KINDS.get(kind) in allowed:
+        if KINDS[kind] == ROTOR:
+            _check_axis(name, mbs, node)
         return KINDS[kind]
     names = [f"Node{key}" for key, value in KINDS.items() if value in allowed]
     raise ValueError(
         f"{name} {int(node)} is a Node{kind}: it must be a {' or '.join(', '.join(names).rsplit(', ', 1))}"
     )
+
+
+def _check_axis(name: str, mbs: Any, node: Any) -> None:
+    """Raise ``ValueError`` if the body of a ``Node1D`` does not turn about the global z-axis."""
+    for item in range(mbs.systemData.NumberOfObjects()):
+        body = mbs.GetObject(item)
+        kind = body["objectType"]
+        if kind not in ("RotationalMass1D", "Mass1D") or int(body["nodeNumber"]) != int(node):
+            continue
+        place, axis = body["referencePosition"], body["referenceRotation"][:, 2]
+        if kind == "Mass1D" or place[:2].any() or (axis != [0.0, 0.0, 1.0]).any():
+            raise ValueError(
+                f"{name} {int(node)} is the Node1D of an Object{kind} at {place.tolist()} with the axis "
+                f"{axis.tolist()}: it must be that of an ObjectRotationalMass1D about the global z-axis"
+            )

@@ -39,7 +39,7 @@ def MainSystemCreateRingFriction(
     origin, or None, is a master that rests. All else is as ``add_ring_friction`` has it: radii in m, N in N, ε in
     m/s. Raises ``ValueError`` as that does, or if there are not two bodies.
     """
-    master, disc = _two_bodies(mbs, bodyNumbers)
+    master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
         mbs,
         master,
@@ -76,7 +76,7 @@ def MainSystemCreateRadialSupport(
     at the global origin, or None. All else is as ``add_radial_support`` has it: N/m, N s/m, N/m³, m. Raises
     ``ValueError`` as that does, or if there are not two bodies.
     """
-    base, disc = _two_bodies(mbs, bodyNumbers)
+    base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(
         mbs,
         base,
@@ -90,23 +90,11 @@ def MainSystemCreateRadialSupport(
     )
 
 
-def _two_bodies(mbs: Any, numbers: Sequence[Any]) -> tuple[Any, Any]:
-    """Return both, the first as None if it is a ground; raise ``ValueError`` if there are not two."""
+def _two_bodies(numbers: Sequence[Any]) -> tuple[Any, Any]:
+    """Return both; raise ``ValueError`` if there are not two."""
     if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
         raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
-    first, second = numbers
-    if type(first).__name__ != "ObjectIndex" or int(first) not in range(mbs.systemData.NumberOfObjects()):
-        return first, second
-    entry = mbs.GetObject(first)
-    if entry["objectType"] != "Ground":
-        return first, second
-    place = [float(value) for value in entry["referencePosition"]]
-    if any(place):
-        raise ValueError(
-            f"bodyNumbers[0] {int(first)} is an ObjectGround at {place}: it must be at the global origin, through "
-            "which the axis of the ground goes"
-        )
-    return None, second
+    return numbers[0], numbers[1]
 
 
 install()  # type: ignore[no-untyped-call]

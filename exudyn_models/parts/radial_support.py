@@ -177,7 +177,8 @@ def add_radial_support(
     """
     law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
     place = _checked_offset(offset)
-    base_node, disc_node = node_of("base_node", mbs, base_node), node_of("disc_node", mbs, disc_node)
+    base_node = node_of("base_node", mbs, base_node, or_ground=True)
+    disc_node = node_of("disc_node", mbs, disc_node)
     kinds, hidden = _checked_nodes(mbs, base_node, disc_node)
     nodes = (disc_node,) if base_node is None else (base_node, disc_node)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]

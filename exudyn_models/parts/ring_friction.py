@@ -14,7 +14,7 @@ import numpy as np
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import GROUND, KINDS, Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, KINDS, SPATIAL, TRANSLATIONS, Kinds, frame
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
@@ -144,6 +144,8 @@ def add_ring_friction(
         coefficient = thermal_node.with_temperature(coefficient)
     factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
+    if contact[0] > 0.0:  # a pin exerts no moment
+        _check_spins(mbs, nodes, kinds)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     force, jacobian = force_and_jacobian(kinds, reference, factors)
     item = add_connector(mbs, nodes, force, jacobian)
@@ -163,13 +165,33 @@ def checked_pair(
     """
     disc = node_of("disc_node", mbs, disc_node)
     disc_kind = checked_kind("disc_node", mbs, disc, discs)
-    if master_node is None:
+    master = node_of("master_node", mbs, master_node, or_ground=True)
+    if master is None:
         return (disc,), (GROUND, disc_kind)
-    master = node_of("master_node", mbs, master_node)
     master_kind = checked_kind("master_node", mbs, master, masters)
     if int(master) == int(disc):
         raise ValueError(f"disc_node {int(disc)} is the master_node too: friction takes two bodies")
     return (master, disc), (master_kind, disc_kind)
+
+
+def _check_spins(mbs: Any, nodes: Sequence[Any], kinds: Kinds) -> None:
+    """Raise ``ValueError`` if a body starts with a spin across the axis of the contact, which would not resist it."""
+    z = axis = np.array([0.0, 0.0, 1.0])
+    for name, node, kind in zip(
+        ("master_node", "disc_node")[-len(nodes) :], nodes, kinds[-len(nodes) :], strict=True
+    ):
+        spin = z  # of rotors and planar bodies, whatever its size
+        if kind in SPATIAL:
+            entry = mbs.GetNode(node)
+            rates = entry["initialVelocities"][TRANSLATIONS[kind] :]
+            _, axes, turning = frame(kind, entry["referenceCoordinates"] + entry["initialCoordinates"], 0)
+            spin = np.array(turning[: len(rates)]).T @ rates
+            axis = np.array(axes[2]) if name == "master_node" else axis
+        if np.linalg.norm(np.cross(axis, spin)) > abs(axis @ spin):
+            raise ValueError(
+                f"{name} {int(node)} spins about {spin.round(6).tolist()} at the start: it must do so about the axis "
+                f"of the contact, {axis.round(6).tolist()}, which is the z-axis of the master's body or of the ground"
+            )
 
 
 def _checked_geometry(

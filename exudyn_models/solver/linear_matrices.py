@@ -62,6 +62,11 @@ def singular_mass(mbs: Any) -> str:
         solver.ComputeMassMatrix(mbs)
         mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
         solver.FinalizeSolver(mbs, settings)
+    for node in range(mbs.systemData.NumberOfNodes()):
+        if mbs.GetNode(node)["nodeType"] == "RigidBodyEP":  # a constraint holds the norm, in place of inertia
+            first = mbs.GetNodeODE2Index(node) + 3
+            rotation = mass[first : first + 4, first : first + 4]
+            rotation += rotation.any() * np.eye(4)
     massless = np.flatnonzero(~mass.any(axis=1))
     if not len(massless):
         return ""

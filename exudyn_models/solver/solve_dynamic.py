@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import closing, nullcontext
+from contextlib import ExitStack, closing
 from typing import Any
 
 import exudyn as exu
@@ -12,8 +12,10 @@ import exudyn as exu
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
+from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
+from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import StepCheck
 from reference_model.trajectory import SimulationError
 
@@ -44,9 +46,12 @@ def solve_dynamic(
     are looked at at the start and at a hundred times of the run, where the warning may come too: they are never asked
     about a time or a motion that is not the run's.
 
-    An implicit run starts with the rates that heat and works have, which Exudyn takes to be zero. Where a power of
-    ``add_energy_balance`` or of a sensor of heat jumps in it a ``RuntimeWarning`` tells so at the end of the run, see
-    ``jumps``.
+    An implicit run starts with the rates that heat and works have, which Exudyn takes to be zero. Steps that Exudyn
+    repeats begin with all of the state from their start, see ``repeated_steps``; for that modified Newton renews its
+    Jacobian where it would start over, whatever ``newton`` says about that. Steps that skip a peak of friction are
+    repeated with a smaller size; if steps are fixed, a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
+    Where a power of ``add_energy_balance`` or of a sensor of heat jumps a ``RuntimeWarning`` tells so at the end of
+    the run, see ``jumps``.
 
     Parameters
     ----------
@@ -84,13 +89,12 @@ def solve_dynamic(
 def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool) -> None:
     """Run an assembled model without a break."""
     data = mbs.systemData
-    start = reached = simulationSettings.timeIntegration.startTime
+    options = simulationSettings.timeIntegration
+    start = reached = options.startTime
     finite = True
-    check = StepCheck(mbs, solver.name, simulationSettings.timeIntegration)
+    check = StepCheck(mbs, solver.name, options)
     check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
-    implicit = solver in IMPLICIT
-    jumps = JumpCheck(mbs) if implicit else None
-    rates = starting_rates(mbs, start) if implicit else nullcontext()
+    jumps = JumpCheck(mbs) if solver in IMPLICIT else None
 
     positions, velocities, others = (
         data.GetODE2Coordinates,
@@ -111,8 +115,14 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
         return finite
 
     try:
-        with rates, after_every_step(mbs, look):
+        with ExitStack() as repairs:
+            repairs.enter_context(after_every_step(mbs, look))
             if jumps is not None:
+                repairs.enter_context(starting_rates(mbs, start))
+                repairs.enter_context(newton_without_restart(mbs, options.newton))
+                repairs.enter_context(peaks_resolved(mbs, options))
+                if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
+                    repairs.enter_context(restored_accelerations(mbs))
                 jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
             mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.solver.model import Model
+from exudyn_models.solver.repeated_steps import restored_accelerations, user_function
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -190,7 +191,11 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
         try:
             if explicit:
                 first_acceleration = _initial_acceleration(model, settings.timeIntegration.startTime)
-            with after_every_step(model.mbs, look):
+            alpha = integrator == "GeneralizedAlpha"
+            with (
+                after_every_step(model.mbs, look),
+                restored_accelerations(model.mbs) if alpha else nullcontext(),
+            ):
                 success = solver.SolveSystem(model.mbs, settings)
         except exu.ExudynError as error:
             raise_interrupt(error)
@@ -251,7 +256,9 @@ def _recorded(
 def _evaluations(solver: Any, explicit: bool) -> int:
     """Return how often a solver has evaluated the equations of motion."""
     if not explicit:
-        return int(solver.it.newtonStepsCount + solver.it.currentStepIndex)
+        found = solver.it.discontinuousIterationsCount
+        failed = found - solver.it.currentStepIndex  # each leads to one repetition, see restored_accelerations
+        return int(solver.it.newtonStepsCount + found + failed)
     steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
     return int(steps * (solver.GetNumberOfStages() + 1))
 
@@ -304,20 +311,9 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
     return np.array(model.mbs.GetSensorStoredData(model.sensors[2]))[0, 1 : 1 + model.size]
 
 
-@contextmanager
-def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> Iterator[None]:
+def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
     """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
-    before = mbs.GetPostStepUserFunction()
-    own: Any = before["function"] if before else 0
-
-    def both(mbs: Any, t: float) -> bool:
-        return function(mbs, t) and bool(own(mbs, t))
-
-    mbs.SetPostStepUserFunction(both if own else function)
-    try:
-        yield
-    finally:
-        mbs.SetPostStepUserFunction(own)
+    return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 
 def raise_interrupt(error: exu.ExudynError) -> None:

@@ -55,7 +55,7 @@ class ModelInStick:
 
         Raises what functions of the model raise.
         """
-        found = _contacts(mbs)
+        found = contacts_of(mbs)
         if not found:
             return None
         mass, _, damping = matrices_of_model(mbs, t)
@@ -189,7 +189,7 @@ def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
         return None
 
 
-def _contacts(mbs: Any) -> list[tuple[int, StickDampers, Any]]:
+def contacts_of(mbs: Any) -> list[tuple[int, StickDampers, Any]]:
     """Return number, dampers and Jacobian of all contacts of a model."""
     found = []
     for item in range(mbs.systemData.NumberOfObjects()):

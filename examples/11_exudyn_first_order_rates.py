@@ -1,0 +1,49 @@
+"""Exudyn's modified Newton method loses the rates of first-order coordinates when it starts a step over.
+
+Exudyn 1.13 resets ODE1Coords to the start of the step, but not ODE1Coords_t (CSolverBase::Newton), from which the
+next predictor takes h/2·ẋ (ComputeNewtonUpdate): the step begins with the rate of the iterate that diverged. It
+happens with a fixed step too, wherever a Jacobian changes fast, as here. Full Newton is right.
+"""
+
+import exudyn as exu
+from exudyn.itemInterface import NodeGenericODE1, ObjectGenericODE1
+
+STEPS, STEP = 60, 0.01
+
+
+def rate(t, x):
+    """Return ẋ in 1/s: a decay that becomes a thousand times as fast."""
+    return -x if t < 0.555 else -1000.0 * x
+
+
+def obtained(modified_newton):
+    """Return x at the end by Exudyn's TrapezoidalIndex2 from x(0) = 1."""
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    coordinates = {"referenceCoordinates": [0.0], "initialCoordinates": [1.0], "numberOfODE1Coordinates": 1}
+    node = mbs.AddNode(NodeGenericODE1(**coordinates))
+    mbs.AddObject(
+        ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=lambda mbs, t, item, x: [rate(t, x[0])])
+    )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    run = settings.timeIntegration
+    run.endTime, run.numberOfSteps, run.newton.useModifiedNewton = STEPS * STEP, STEPS, modified_newton
+    mbs.SolveDynamic(settings, exu.DynamicSolverType.TrapezoidalIndex2)
+    return mbs.systemData.GetODE1Coordinates()[0]
+
+
+def expected():
+    """Return x at the end by the trapezoidal rule, whose first rate is 0 as in Exudyn."""
+    x, before = 1.0, 0.0
+    for step in range(1, STEPS + 1):
+        x = (x + STEP / 2 * before) / (1.0 - STEP / 2 * rate(step * STEP, 1.0))
+        before = rate(step * STEP, x)
+    return x
+
+
+if __name__ == "__main__":
+    print(
+        f"expected {expected():.6g}; obtained with full Newton {obtained(False):.6g}, modified {obtained(True):.6g}"
+    )

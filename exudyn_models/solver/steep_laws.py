@@ -1,0 +1,81 @@
+"""Implicit steps that skip a peak of friction, as that of ``static_ratio`` or of Stribeck's curve.
+
+Where friction falls within the slip change of a step, the equations of the step have several solutions: a contact
+that holds, and one that has passed its peak and runs away. Newton's method finds either.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_models.forces.any_pair import slip_in_step
+from exudyn_models.solver.repeated_steps import user_function
+from exudyn_models.solver.step_limit import contacts_of
+
+RESOLVED = 0.05
+"""Slip change of a step, over ε, that is small enough: tests hold 99 % of static friction with it.
+
+The trapezoidal rule swings by half of it about the place at which a contact comes to hold."""
+
+LEAST_FALL = 1e-3
+"""Fall of friction from its peak, over the peak, that counts."""
+
+
+def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
+    """Repeat the steps of an assembled model that skip a peak with a smaller size, or warn if steps are fixed."""
+    data, places = mbs.systemData, mbs.systemData.GetObjectLTGODE2
+    contacts = [
+        (np.array(places(item)), contact)
+        for item, contact, _ in contacts_of(mbs)
+        if contact.factors.depends_on_slip
+    ]
+    times = exu.ConfigurationType.StartOfStep, exu.ConfigurationType.Current
+    warned = False
+
+    def look(t: float) -> list[float] | None:
+        nonlocal warned
+        step = t - data.GetTime(times[0])
+        motions = [
+            values(one) for one in times for values in (data.GetODE2Coordinates, data.GetODE2Coordinates_t)
+        ]
+        share = min(_right_share(contact, t, *[one[own] for one in motions]) for own, contact in contacts)
+        if share == 1.0 or step <= 2.0 * options.minimumStepSize:
+            return None
+        if options.adaptiveStep:
+            return [math.inf, 0.9 * share * step]
+        if not warned:
+            warned = True
+            warnings.warn(
+                f"the step of {step:.3g} s to t = {t:.6g} s skips a peak of friction, so that a contact that should "
+                f"hold may run away: take adaptiveStep = True or steps of {share * step:.2g} s",
+                RuntimeWarning,
+                stacklevel=4,
+            )
+        return None
+
+    if not contacts:
+        return nullcontext()
+    return user_function(mbs, "PostNewton", lambda own: lambda mbs, t: look(t) or own(mbs, t))
+
+
+def _right_share(contact: Any, t: float, start: Any, rates: Any, end: Any, end_rates: Any) -> float:
+    """Return the share, up to 1, of a step to the time t (s) that skips no peak of a contact's friction."""
+    factors, reference = contact.factors, contact.reference
+    before, after, change, spin, radius = slip_in_step(
+        contact.kinds, factors.geometry, reference + start, rates, reference + end, end_rates
+    )
+    epsilon = factors.geometry[3]
+    resolved = RESOLVED * epsilon
+    passes_zero = before < epsilon or change > max(before, after - epsilon)
+    if after <= epsilon or change <= resolved or not passes_zero:
+        return 1.0
+    peak = factors.friction_force(t, radius, epsilon, spin * epsilon / after)
+    if factors.friction_force(t, radius, after, spin) >= (1.0 - LEAST_FALL) * peak:
+        return 1.0
+    return float(max(resolved, before - epsilon) / change)

@@ -1,0 +1,118 @@
+"""Contacts of bodies however their axes lie: the same motion, or a refusal where it would be wrong."""
+
+from itertools import permutations, product
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import exudyn.utilities
+import numpy as np
+import pytest
+from free_bodies import rotor
+
+from exudyn_models import add_native_friction, add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models.solver.linear_matrices import singular_mass
+
+items: Any = exudyn.itemInterface
+NODES = pytest.mark.parametrize(
+    "node", [exu.NodeType.RotationEulerParameters, exu.NodeType.RotationRotationVector], ids=str
+)
+SIGNED = product(permutations(np.eye(3)), product((1.0, -1.0), repeat=3))
+MATRICES = [np.array(rows) * signs for rows, signs in SIGNED]
+AXES = [matrix for matrix in MATRICES if np.linalg.det(matrix) > 0.0]
+"""The 24 rotations that take axes into axes."""
+ACROSS, REVERSED = AXES[5], AXES[1]
+"""Their z-axes are along y and against z."""
+LAW = {"friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
+POINTS = LAW | {"contact_radius": 0.12, "contact_points": 4}  # which a quarter turn takes into each other
+ADD = {
+    "friction": lambda mbs, *bodies: add_ring_friction(mbs, *bodies, **POINTS),
+    "native friction": lambda mbs, *bodies: add_native_friction(mbs, *bodies, **POINTS, reach=1.0),
+    "support": lambda mbs, *bodies: add_radial_support(mbs, *bodies, stiffness=1.0),
+}
+
+
+def ball(mbs, node, axes, mass, inertia, *motion):
+    """Add a body with ``axes`` in global coordinates and its position, velocity and angular velocity."""
+    names = "referencePosition", "initialVelocity", "initialAngularVelocity"
+    moving = dict(zip(names, motion, strict=True))
+    whole = exudyn.utilities.RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3))
+    return mbs.CreateRigidBody(inertia=whole, nodeType=node, referenceRotationMatrix=axes, **moving)
+
+
+def motion(node, master_axes, disc_axes, points):
+    """Return positions, velocities and angular velocities of both bodies at 0.1 s, in the master's first axes."""
+    mbs = exu.SystemContainer().AddSystem()
+    master = [0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0]
+    disc = [0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0]
+    bodies = [
+        ball(mbs, node, axes, *numbers, *[master_axes @ np.array(vector) for vector in vectors])
+        for axes, numbers, vectors in (
+            (master_axes, (2.0, 0.7), master),
+            (master_axes @ disc_axes, (1.0, 0.02), disc),
+        )
+    ]
+    add_ring_friction(mbs, *bodies, **POINTS | {"contact_points": points})
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    run = settings.timeIntegration
+    run.endTime, run.numberOfSteps, run.verboseMode = 0.1, 20, 0
+    run.newton.relativeTolerance = run.newton.absoluteTolerance = 1e-12
+    solve_dynamic(mbs, settings, exu.DynamicSolverType.TrapezoidalIndex2)
+    kinds = exu.OutputVariableType
+    quantities = kinds.Position, kinds.Velocity, kinds.AngularVelocity
+    return np.hstack(
+        [master_axes.T @ mbs.GetObjectOutputBody(body, one) for body in bodies for one in quantities]
+    )
+
+
+@pytest.mark.parametrize("points", [None, 4])
+@NODES
+def test_all_orientations_of_both_bodies_give_the_same_motion(node, points):
+    expected = motion(node, np.eye(3), np.eye(3), points)
+    found = [motion(node, *axes, points) for axes in product(AXES, AXES)]
+    np.testing.assert_allclose(found, np.broadcast_to(expected, (576, 18)), rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("inertia", [0.5, 0.0])
+def test_only_a_body_without_inertia_is_said_to_have_none_in_any_orientation(inertia):
+    for axes in AXES:
+        mbs = exu.SystemContainer().AddSystem()
+        ball(mbs, exu.NodeType.RotationEulerParameters, axes, 1.0, inertia, *np.zeros((3, 3)))
+        mbs.Assemble()
+        assert singular_mass(mbs) == "" if inertia else "coordinate 6 of node 0" in singular_mass(mbs)
+
+
+@pytest.mark.parametrize("add", ADD.values(), ids=ADD)
+@pytest.mark.parametrize(
+    "moved",
+    [{"referencePosition": [0.1, 0.0, 0.0]}, {"referenceRotation": ACROSS}, {"referenceRotation": REVERSED}],
+)
+def test_a_rotor_or_a_ground_off_the_global_z_axis_and_a_mass_that_slides_are_refused(add, moved):
+    mbs = exu.SystemContainer().AddSystem()
+    disc, node, slide = mbs.AddNode(items.NodeRigidBody2D()), *[mbs.AddNode(items.Node1D()) for _ in range(2)]
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, **moved))
+    mbs.AddObject(items.ObjectMass1D(nodeNumber=slide, mass=1.0))
+    ground = mbs.AddObject(items.ObjectGround(**moved))
+    refused = {
+        node: r"_node 1 is the Node1D of .* about the global z-axis",
+        slide: "_node 2 is the Node1D of an ObjectMass1D",
+        ground: r"_node 2 is an ObjectGround.* global origin",
+    }
+    for master, words in refused.items():
+        with pytest.raises(ValueError, match=words):
+            add(mbs, master, disc)
+
+
+@pytest.mark.parametrize("is_master", [False, True])
+@NODES
+def test_a_body_that_spins_across_the_axis_of_the_contact_is_refused(node, is_master):
+    mbs = exu.SystemContainer().AddSystem()
+    body = ball(mbs, node, np.eye(3), 1.0, 0.1, np.zeros(3), np.zeros(3), [50.0, 0.0, 1.0])
+    bodies = (body, rotor(mbs, 1.0, 0.0)) if is_master else (None, body)
+    with pytest.raises(ValueError, match=r"_node 0 spins about \[50.0, 0.0, 1.0\] at the start"):
+        add_ring_friction(mbs, *bodies, **POINTS)
+    add_ring_friction(mbs, *bodies, **LAW, contact_radius=0.0)  # a pin exerts no moment
+    tilted = ball(mbs, node, ACROSS, 1.0, 0.1, *np.zeros((3, 3)))
+    with pytest.raises(ValueError, match=r"disc_node .* spins about"):
+        add_ring_friction(mbs, tilted, rotor(mbs, 1.0, 0.0), **POINTS)

@@ -1,0 +1,62 @@
+"""Implicit steps across a peak of friction: a load below static friction comes to rest and is held."""
+
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+import pytest
+from free_bodies import rotor
+
+from exudyn_models import add_ring_friction, solve_dynamic
+
+items: Any = exudyn.itemInterface
+SOLVERS = exu.DynamicSolverType
+IMPLICIT = pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha], ids=str)
+
+SLIDING, STATIC, LEVER, NORMAL = 24.0, 28.8, 0.1, 800.0
+LAWS = {
+    "static ratio": {"friction_coefficient": 0.3, "static_ratio": STATIC / SLIDING},
+    "steep table": {"friction_coefficient": [[0.0, 0.36], [5e-3, 0.3], [0.05, 0.3]]},
+}
+
+
+def speed_after_a_stop(solver, first, load=27.0, epsilon=1e-3, adaptive=True, **law):
+    """Return the speed in rad/s of a rotor that friction stops, and a load (N m) would turn back, after 0.15 s."""
+    mbs = exu.SystemContainer().AddSystem()
+    wheel = rotor(mbs, 0.5, first)
+    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=wheel, coordinate=0))
+    mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=-load))
+    add_ring_friction(
+        mbs, None, wheel, contact_radius=LEVER, normal_load=NORMAL, regularisation=epsilon, **law
+    )
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    run = settings.timeIntegration
+    run.endTime, run.numberOfSteps, run.adaptiveStep, run.verboseMode = 0.15, 150, adaptive, 0
+    solve_dynamic(mbs, settings, solver)
+    return float(mbs.GetNodeOutput(wheel, exu.OutputVariableType.Coordinates_t))
+
+
+@IMPLICIT
+@pytest.mark.parametrize("epsilon", [1e-3, 1e-4])
+@pytest.mark.parametrize(
+    ("law", "share"), [("static ratio", 0.9375), ("static ratio", 0.99), ("steep table", 0.9375)]
+)
+def test_a_load_that_static_friction_holds_never_rolls_back(law, share, epsilon, solver):
+    for first in np.linspace(5.0, 6.0, 21):
+        speed = speed_after_a_stop(solver, first, share * STATIC, epsilon, **LAWS[law])
+        assert abs(speed) <= epsilon / LEVER  # the creep of a contact that holds
+
+
+@IMPLICIT
+def test_a_load_beyond_static_friction_rolls_back_as_by_hand(solver):
+    speed = speed_after_a_stop(solver, 5.0, load=30.0, **LAWS["static ratio"])
+    stop = 5.0 / ((30.0 + SLIDING) / 0.5)
+    assert speed == pytest.approx(-(30.0 - SLIDING) / 0.5 * (0.15 - stop), rel=0.02)
+
+
+@IMPLICIT
+def test_a_fixed_step_across_the_peak_is_told(solver):
+    with pytest.warns(RuntimeWarning, match="skips a peak of friction"):
+        assert speed_after_a_stop(solver, 5.2, adaptive=False, **LAWS["steep table"]) < -0.1
