@@ -38,7 +38,7 @@ def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_i
         wait_until(place.exists)
         found = {one.key: one.value for one in workers.finished()}
     assert found["begun"] is None
-    assert "it can't be sent to another process" in found["refused"].reason
+    assert "it cannot be sent to another process" in found["refused"].reason
 
 
 @pytest.fixture
