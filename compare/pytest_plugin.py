@@ -377,7 +377,7 @@ def _engine_of(report: pytest.TestReport) -> str:
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
     """Say why claims have no verdict, each reason once, and what is behind those that differ."""
     failed = terminalreporter.stats.get("failed", [])
-    if not hasattr(config, "workerinput"):
+    if failed and _engines(config) and not hasattr(config, "workerinput"):
         for line in _diagnoses(failed):
             terminalreporter.write_line(f"diagnosis: {line}")
     for why in NO_VERDICT:

@@ -20,7 +20,6 @@ from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
 from compare.output.text_files import replacing
 
-
 LONGEST = 100
 """Letters of a file's name that say what is in it: the name of a program may be longer than a file's may be."""
 

@@ -71,8 +71,8 @@ class Done:
 class Workers:
     """Up to ``jobs`` processes; use as a context manager.
 
-    With a ``limit`` in s a piece of work that takes longer has failed. Leaving the context ends the processes, whatever
-    they do.
+    With a ``limit`` in s a piece of work that takes longer has failed. Leaving the context ends the processes,
+    whatever they do.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:

@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Callable, Hashable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from types import SimpleNamespace
 
 import fake_studies
 import pytest
@@ -44,6 +45,7 @@ def in_this_process(monkeypatch) -> None:
     """Let all workers work in this process, where what a test has changed is changed for them too."""
     monkeypatch.setattr(workers, "_Worker", WorkerHere)
     monkeypatch.setattr(workers, "wait", lambda connections, left: connections)
+    monkeypatch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
 
 
 @pytest.fixture(scope="session")
