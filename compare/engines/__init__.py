@@ -35,11 +35,13 @@ from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import (
     engines,
     imported,
+    is_registered,
     known_name,
     on_request,
     register,
     repeated_by,
     shares_code,
+    told_apart,
 )
 from compare.engines.stick import StatesOnly
 from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
@@ -66,6 +68,7 @@ __all__ = [
     "exudyn_native",
     "imported",
     "installed_engine",
+    "is_registered",
     "known_name",
     "on_request",
     "one_of",
@@ -74,4 +77,5 @@ __all__ = [
     "register",
     "repeated_by",
     "shares_code",
+    "told_apart",
 ]

@@ -5,6 +5,7 @@ Libraries that keep results of functions (joblib, diskcache) pickle them: that i
 
 from __future__ import annotations
 
+import hashlib
 import json
 import lzma
 import re
@@ -18,6 +19,9 @@ import numpy as np
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
 from compare.output.text_files import replacing
+
+LONGEST = 100
+"""Letters of a file's name that say what is in it: the name of a program may be longer than a file's may be."""
 
 
 @dataclass(frozen=True)
@@ -76,5 +80,7 @@ class Store:
         return self._path(study, engine).with_suffix(".json.xz")
 
     def _path(self, study: str, engine: str) -> Path:
-        # no dot: with_suffix would take it for a suffix
-        return self.folder / re.sub(r"[^\w-]", "_", f"{study}--{engine}")
+        # Names differ by the digest alone, also on file systems that ignore case; the words are for people.
+        words = re.sub(r"[^\w-]", "_", f"{study}--{engine}", flags=re.ASCII)[:LONGEST]
+        digest = hashlib.sha256(repr((study, engine)).encode()).hexdigest()[:16]
+        return self.folder / f"{words}--{digest}"

@@ -10,13 +10,12 @@ from typing import Any
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import Engine, UnsupportedSystemError
-from compare.run.code_files import UnknownCodeError
+from compare.engines import ByName, Engine, UnsupportedSystemError
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES, engine_version, stamp
-from compare.run.workers import Done, Failure, Workers
+from compare.run.workers import Done, Failure, Workers, attempted
 
 CODE = ("compare.run", "compare.claims.as_json")
 """What runs a study and writes its findings down: they depend on it beside the study's and the engine's own."""
@@ -119,7 +118,7 @@ def run(
     folder : Path
         Findings and drawings are written there as they come in; what was drawn of equal data is taken from there.
     jobs : int
-        Number of processes; with 1, and no ``limit``, all happens in this one.
+        Number of processes.
     limit : float, optional
         Seconds after which a measurement is given up, as its engine's failure.
     resume : bool
@@ -200,11 +199,10 @@ class _Runner:
     def _fingerprint(self, name: str, thing: object) -> str | None:
         """Return what ``thing`` depends on; file why that is not known."""
         if id(thing) not in self._prints:
-            try:
-                self._prints[id(thing)] = fingerprint(thing, PACKAGES)
-            except UnknownCodeError as error:
-                self._prints[id(thing)] = None
-                self._result.unknown[name] = str(error)
+            found = _printed(thing)
+            if isinstance(found, Failure):
+                self._result.unknown[name] = found.reason
+            self._prints[id(thing)] = None if isinstance(found, Failure) else found
         return self._prints[id(thing)]
 
     def _take(self, done: Done) -> str:
@@ -239,6 +237,17 @@ class _Runner:
             self._result.drawings[name] = found
         else:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
+
+
+def _printed(thing: object) -> str | Failure:
+    """Return the fingerprint of a study or an engine; one that has to be imported for it is so in another process."""
+    function = getattr(thing, "function", None)
+    if isinstance(function, ByName) and function.module.partition(".")[0] not in PACKAGES:
+        with Workers() as workers:
+            found: str | Failure = workers.ask(fingerprint, thing, PACKAGES)
+            return found
+    found, _ = attempted(fingerprint, thing, PACKAGES)
+    return found
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:

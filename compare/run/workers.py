@@ -40,6 +40,12 @@ STANDARD_ERROR = 2
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
 """How the loader of shared libraries says it."""
 
+FAREWELL = 1.0
+"""Time in s that a process without work has to end by itself, to remove its temporary files for instance."""
+
+TICK = 0.005
+"""In s: how often the process is looked at meanwhile."""
+
 
 @dataclass(frozen=True)
 class Failure:
@@ -63,13 +69,13 @@ class Done:
 
 
 class Workers:
-    """``jobs`` processes, or this very process for ``jobs=1``; use as a context manager.
+    """Up to ``jobs`` processes; use as a context manager.
 
-    With a ``limit`` in s a piece of work that takes longer has failed, and one job has a process of its own too,
-    since only a process can be ended. Leaving the context ends the processes at once, whatever they do.
+    With a ``limit`` in s a piece of work that takes longer has failed. Leaving the context ends the processes,
+    whatever they do.
     """
 
-    def __init__(self, jobs: int, limit: float | None = None) -> None:
+    def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
         self._jobs = jobs
         self._limit = limit
         self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
@@ -83,6 +89,8 @@ class Workers:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        for worker in self._processes:
+            worker.dismiss()
         for worker in self._processes:
             worker.end()
         self._temporary.cleanup()  # a process that was killed has left its files there
@@ -98,21 +106,22 @@ class Workers:
             self._queue.append(work)
 
     def begin(self) -> None:
-        """Let other processes begin with what is submitted; whoever calls this has something else to do first."""
-        if self._jobs > 1 or self._limit is not None:
-            self._refused += self._start()
+        """Let the processes begin with what is submitted; whoever calls this has something else to do first."""
+        self._refused += self._start()
 
     def finished(self) -> Iterator[Done]:
         """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
         yield from self._refused
         self._refused.clear()
         while self._queue or any(worker.key is not None for worker in self._processes):
-            if self._jobs == 1 and self._limit is None:
-                key, function, arguments = self._queue.popleft()
-                yield Done(key, *_timed(function, arguments))
-            else:
-                yield from self._start()
-                yield from self._collect()
+            yield from self._start()
+            yield from self._collect()
+
+    def ask(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return the result of ``function(*arguments)`` or its ``Failure``, when no other work is submitted."""
+        self.submit("", function, *arguments)
+        (done,) = self.finished()
+        return done.value
 
     def _start(self) -> Iterator[Done]:
         """Give work to all that are idle; what can't be sent to another process has failed."""
@@ -126,10 +135,8 @@ class Workers:
             key, function, arguments = self._queue.popleft()
             try:
                 message = pickle.dumps((function, arguments))
-            except (pickle.PicklingError, AttributeError, TypeError) as error:
-                reason = (
-                    f"it can't be sent to another process ({error}): use --jobs 1 or functions of a module"
-                )
+            except Exception as error:  # whatever an object's own pickling raises
+                reason = f"it cannot be sent to another process ({error}): use functions of a module"
                 yield Done(key, Failure(reason), 0.0)
                 continue
             worker.start(key, message)
@@ -186,23 +193,46 @@ class _Worker:
         try:
             value, seconds = pickle.loads(self.connection.recv_bytes())
             self._errors.hand_on()
-        except (EOFError, OSError):
-            self.dead = True
-            self._process.join()
-            code = self._process.exitcode or 0
-            cause = signal.Signals(-code).name if code < 0 else f"exit status {code}"
+        except Exception:  # the engine has ended the process, or used its connection
+            cause = _cause_of_end(self._exit_code())
             said = self._errors.hand_on().strip().splitlines()
-            self._errors.close()
+            self.end()
             reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
             value, seconds = Failure(reason), 0.0
         return Done(key, value, seconds)
 
+    def dismiss(self) -> None:
+        """Let the process end by itself if it has no work."""
+        if self.key is None:
+            self.connection.close()
+
     def end(self) -> None:
         self.dead = True
+        if self.connection.closed:
+            self._exit_code()
         self._process.kill()  # compiled code may not listen to less
         self._process.join()
         self._errors.close()
         self.connection.close()
+
+    def _exit_code(self) -> int | None:
+        """Return the exit code of the process, None if it has none after ``FAREWELL``.
+
+        ``join`` would wait for ever: a process that closes all its descriptors looks as if it had ended.
+        """
+        deadline = time.monotonic() + FAREWELL
+        while self._process.exitcode is None and time.monotonic() < deadline:
+            time.sleep(TICK)
+        return self._process.exitcode
+
+
+def _cause_of_end(code: int | None) -> str:
+    """Return how a process with an exit code ended; None is that of one that still runs."""
+    if code is None:
+        return "it closed its connection"
+    if code >= 0:
+        return f"exit status {code}"
+    return next((one.name for one in signal.Signals if one == -code), f"signal {-code}")
 
 
 class _Errors:
@@ -253,15 +283,19 @@ def _serve(connection: Connection) -> None:
     """Work until the other end of the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    with suppress(EOFError):
+    try:
         while True:
             message = connection.recv_bytes()
-            value, seconds = _timed(_unpickled_call, (message,))
+            value, seconds = attempted(_unpickled_call, message)
             try:
                 answer = pickle.dumps((value, seconds))
             except Exception as error:
                 answer = pickle.dumps((Failure(f"its result can't be sent back: {error}"), seconds))
             connection.send_bytes(answer)
+    except EOFError:
+        pass
+    except OSError:  # an engine has closed the connection, and standard streams perhaps
+        os._exit(1)
 
 
 def _end_with_parent() -> None:
@@ -277,17 +311,17 @@ def _unpickled_call(message: bytes) -> Any:
     return function(*arguments)
 
 
-def _timed(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
+def attempted(function: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """Return the result of the call, or its failure, and the seconds that it took."""
     start = time.perf_counter()
     try:
         value = function(*arguments)
-    except Exception as error:  # whatever an engine raises: the others go on
+    except BaseException as error:  # whatever an engine raises, SystemExit too: the others go on
         value = failure(error)
     return value, time.perf_counter() - start
 
 
-def failure(error: Exception) -> Failure:
+def failure(error: BaseException) -> Failure:
     """Return what an exception says as a sentence, and the lines of code on its way, innermost last."""
     lines = str(error).strip().splitlines()
     # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name

@@ -10,7 +10,7 @@ from typing import Any
 
 from typer.core import TyperCommand
 
-FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
+FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 class BadInputError(Exception):

@@ -11,6 +11,7 @@ from compare.cli.door.command import (
     BAD_INPUT,
     FINE,
     INTERRUPTED,
+    NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     BadInputError,
     printing,
@@ -31,6 +32,9 @@ STORE = "sweep.zarr"
 
 CHUNK = 32768
 """Trajectories in a chunk, unless another number is asked for."""
+
+MOST_UNDECIDED = 0.5
+"""Share of all trajectories: beyond it a sweep says less about where they end than it leaves open."""
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
@@ -140,20 +144,26 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
 
 
 def finish(store: SweepStore, folder: Files) -> int:
-    """Print and draw the results; return whether the plain reference finds the same."""
+    """Print and draw the results; return the exit status, by what the plain reference finds and what is undecided."""
     from compare.sweep.show.figures import write_figures
-    from compare.sweep.show.summary import same_ends, summary
+    from compare.sweep.show.summary import same_ends, summary, undecided
 
     written = write_figures(store, folder)
     with printing():
         for line in summary(store):
             print(line)
         print(f"Results: {store.path}; figures: {', '.join(written)}")
-    return FINE if same_ends(store) else SOMETHING_DIFFERS
+    if not same_ends(store):
+        return SOMETHING_DIFFERS
+    if undecided(store) > MOST_UNDECIDED:
+        return say(
+            f"{undecided(store):.0%} are undecided: raise --until to follow them longer", NOTHING_SHOWN
+        )
+    return FINE
 
 
-def redraw(place: str) -> None:
-    """Draw and print a finished sweep once more; raise ``BadInputError`` for one that is not finished."""
+def redraw(place: str) -> int:
+    """Do as ``finish`` for a finished sweep; raise ``BadInputError`` for one that is not finished."""
     from compare.sweep.store.files import Files
     from compare.sweep.store.store import SweepStore
 
@@ -162,7 +172,7 @@ def redraw(place: str) -> None:
         store = SweepStore.open(folder.below(STORE))
         _check_finished(store)
     with _looking():
-        finish(store, folder)
+        return finish(store, folder)
 
 
 def _check_finished(store: SweepStore) -> None:

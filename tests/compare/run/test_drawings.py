@@ -11,6 +11,8 @@ import pytest
 from compare.run import drawings, runner, stamp
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 DRAWING = Drawing({"radius": b"<svg/>", "spin": b""}, {"motion": bytes(range(256))})
 
 

@@ -1,9 +1,11 @@
 """Processes that work for others: what they import, and what is known of their end."""
 
 import os
+import signal
 import sys
 import tempfile
 import time
+from functools import partial
 
 import pytest
 from processes import wait_until
@@ -16,6 +18,43 @@ def last_words(status):
     """End this process suddenly, with two lines on its standard error."""
     os.write(2, "what comes before\nthe last word: 1 µm\n".encode())
     os._exit(status)
+
+
+def kill(number):
+    os.kill(os.getpid(), number)
+
+
+def raise_it(error):
+    raise error
+
+
+def close_all_descriptors(then, *arguments):
+    os.closerange(0, 200)
+    then(*arguments)
+
+
+SUDDEN = "its process came to a sudden end"
+
+ENDS = [
+    (sys.exit, 0, "SystemExit: 0"),
+    (raise_it, KeyboardInterrupt(), "KeyboardInterrupt"),
+    (os._exit, 0, f"{SUDDEN} (exit status 0)"),
+]
+
+POSIX_ENDS = [
+    (kill, signal.SIGSEGV, f"{SUDDEN} (SIGSEGV)"),
+    (kill, 37, f"{SUDDEN} (signal 37)"),  # of real time, without a name
+    (partial(close_all_descriptors, time.sleep), 0.0, f"{SUDDEN} (exit status 1)"),
+    (partial(close_all_descriptors, time.sleep), 3600.0, f"{SUDDEN} (it closed its connection)"),
+] * (os.name == "posix")
+
+
+@pytest.mark.parametrize(("function", "argument", "reason"), [*ENDS, *POSIX_ENDS])
+def test_however_work_ends_its_process_that_is_a_sentence_and_no_traceback(function, argument, reason, capfd):
+    with Workers() as workers:
+        assert workers.ask(function, argument).reason == reason
+        assert workers.ask(len, "next") == 4
+    assert capfd.readouterr().err == ""
 
 
 def warn(text):
@@ -39,7 +78,7 @@ def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_i
         wait_until(place.exists)
         found = {one.key: one.value for one in workers.finished()}
     assert found["begun"] is None
-    assert "it can't be sent to another process" in found["refused"].reason
+    assert "it cannot be sent to another process" in found["refused"].reason
 
 
 def leave_a_folder_and(end, *arguments):

@@ -218,6 +218,13 @@ def test_figures_are_drawn_again_on_demand(finished):
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
+def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys):
+    output = str(tmp_path / "short")
+    assert cli.status([*BASIN[:-2], "--until", "0.1", "--output", output]) == 3
+    assert "100% are undecided: raise --until" in capsys.readouterr().err
+    assert cli.status(["sweep", "figures", output]) == 3
+
+
 def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys):
     assert cli.status([*BASIN, "--output", str(tmp_path)]) == 0
     (tmp_path / STORE / "result").rename(tmp_path / "gone")
