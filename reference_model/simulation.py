@@ -37,7 +37,8 @@ def simulate(
         whichever is less; L the largest of X0 and, at the start, distance from the axis, speed times T and friction
         over mass times T² (:class:`motion.nondimensional.Units`). It is meant at all times alike, at ends of steps
         and between them. A step may err by a twentieth of it. A motion that forgets, by damping or by rest, keeps to
-        it but for a small factor: of random ones the worst had 13, compiled 26, a disc on four points in 3,000 steps.
+        it but for a small factor, by which the errors of steps add up until they are forgotten: of random ones the
+        worst had 13, compiled 68, a pin on a disc 45 times as fast as its swings, which forgets in a thousand steps.
         In one that does not forget, errors add up: to some 40 times the tolerance after 10,000 steps. What parts by
         itself parts by that growth.
     contact : Contact or None

@@ -15,7 +15,8 @@ from reference_model.systems import FloatArray
 class EndState(IntEnum):
     """The motion that a trajectory ends in.
 
-    ``SELF_CENTRED``: an equilibrium that slips (section 2). ``STUCK``: turning with the master disc for ever.
+    It is the motion that a trajectory tends to. ``SELF_CENTRED``: an equilibrium that slips (section 2). ``STUCK``:
+    turning with the master disc for ever, also where ever shorter slips lead there like one over the time.
     ``WHIRL``: on a circle about the axis or, with an offset, on a closed orbit without stick. ``MODULATED``: a whirl
     whose radius swings slowly (section 4; discs only). ``STICK_SLIP``: it sticks and slips again and again.
     ``UNDECIDED``: none for certain.

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import gc
 import multiprocessing
-import os
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +21,11 @@ from reference_model.numerics.compiled_cache import known_by_content
 from reference_model.numerics.vector_width import WideCompiler
 
 LONG = 1.0
-"""Time in s after which a terminal is told that something is being compiled."""
+"""Time in s after which a terminal is told that something is being compiled, here or by another process."""
 
-ABANDONED = 120.0
-"""Age in s from which on a lock is that of a process that was killed: nothing takes so long to compile."""
 
-LOOK_AGAIN = 0.05
-"""Time in s between two looks at a lock."""
+with suppress(ImportError):  # of Windows
+    import fcntl
 
 
 class Kept(CPUDispatcher):
@@ -56,11 +52,9 @@ class Kept(CPUDispatcher):
         if arguments in self.overloads or self._is_kept(sig):  # looking at the disk takes a millisecond
             return super().compile(sig)
         folder = Path(self._files.cache_path)
-        with _locked(folder / f"{self._files._cache_file._index_name}.lock"):
-            if self._is_kept(sig):  # by now
-                return super().compile(sig)
-            with _told(folder), _without_garbage_collection():
-                return super().compile(sig)
+        lock = folder / f"{self._files._cache_file._index_name}.lock"
+        with _told(folder), _locked(lock), _without_garbage_collection():
+            return super().compile(sig)  # or what another process has kept by now
 
     def _is_kept(self, sig: Any) -> bool:
         target: Any = self.targetctx
@@ -74,28 +68,18 @@ class Kept(CPUDispatcher):
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes. It saves work and nothing else: one that can't be had is done without."""
-    held = False
-    with suppress(OSError):
-        lock.parent.mkdir(parents=True, exist_ok=True)
-        while not held:
-            try:
-                os.close(os.open(lock, os.O_CREAT | os.O_EXCL))
-                held = True
-            except FileExistsError:
-                if time.time() - lock.stat().st_mtime > ABANDONED:
-                    lock.unlink(missing_ok=True)
-                time.sleep(LOOK_AGAIN)
-    try:
+    """Hold a lock between processes, which ends with its owner. Where there is none, work may be done twice."""
+    with ExitStack() as held:
+        with suppress(OSError, NameError):
+            lock.parent.mkdir(parents=True, exist_ok=True)
+            file = held.enter_context(lock.open("w"))
+            fcntl.flock(file, fcntl.LOCK_EX)
         yield
-    finally:
-        if held:
-            lock.unlink(missing_ok=True)
 
 
 @contextmanager
 def _told(folder: Path) -> Iterator[None]:
-    """Tell a terminal, once, if what is done takes long."""
+    """Tell a terminal, once, if compiling takes long, or waiting for a process that compiles."""
     timer = threading.Timer(LONG, _tell, (folder,))
     timer.daemon = True
     timer.start()

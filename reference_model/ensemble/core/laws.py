@@ -10,6 +10,9 @@ from reference_model.ensemble.core.contact_shares import LEAST, points_shares, r
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
+CREEP = 0.1
+"""Excess of the pull, as a fraction of by how much it changes in a turn or of g, up to which slip creeps."""
+
 
 class PinLaw(NamedTuple):
     """The constants of a pin, divided by its mass, in units in which motion is of order one.
@@ -104,3 +107,31 @@ def release_delay(z: complex, law: PinLaw) -> float:
     if 2.0 * math.pi - turn < ROUNDING:
         turn = 0.0  # at the limit already
     return turn / abs(law.disc_speed)
+
+
+@scalar
+def sticking_radius(law: PinLaw) -> float:
+    """Return the largest distance from the axis at which a pin may stay stuck for ever (9): where p + q = g."""
+    turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
+    spare = law.friction - law.stiffness * abs(law.offset)
+    return spare / turning if turning > 0.0 else math.inf
+
+
+@scalar
+def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
+    """Tell whether a pin that was released at the radius ``last`` and then at ``radius`` creeps inward for ever.
+
+    Of its pull the part p = k²|X0| is constant, and q, in proportion to the radius, turns with it. Once a turn they
+    add up to g + δ, from which the pull falls like B·(ωt)²/2 before and after, B = p·q/(p + q). With
+    K = k² − ω² the slip that this sets off takes 4.5·K·δ²/(B·ω²) from δ: less than all of it, so that δ never
+    comes to zero. Nor does it where c² >= 4K, however far the slip goes: see ``pin.slip.creeps_steadily``.
+    """
+    inward = law.stiffness - law.disc_speed**2
+    constant = law.stiffness * abs(law.offset)
+    turning = abs(complex(inward, law.disc_speed * law.damping))
+    q = turning * last
+    peak = constant * q / (constant + q) if q > 0.0 else 0.0
+    most = CREEP * peak * min(1.0, law.disc_speed**2 / inward) if inward > 0.0 else 0.0
+    if inward > 0.0 and law.damping**2 >= 4.0 * inward:
+        most = max(most, CREEP * law.friction)
+    return radius < last and law.friction < constant + turning * radius and constant + q < law.friction + most

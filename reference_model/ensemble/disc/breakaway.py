@@ -18,10 +18,9 @@ from reference_model.ensemble.core.stepping.implicit import (
     PLACES,
     SERIES,
     collocate_ring,
-    length_of,
     place_after,
 )
-from reference_model.ensemble.core.stepping.linear import zeros
+from reference_model.ensemble.core.stepping.linear import length_of, zeros
 from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
 from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
@@ -48,7 +47,7 @@ def grown(
     for k in range(3):
         rate[k] = first * along[k]
     w, f, power = zeros(NODES * 3).reshape(NODES, 3), zeros(NODES * 3).reshape(NODES, 3), zeros(NODES)
-    t = turn = work = 0.0
+    t = turn = work = outward = 0.0
     step = FIRST_STEP
     while t < longest:
         step = min(step, longest - t)
@@ -63,7 +62,11 @@ def grown(
             if step < LEAST_STEP:
                 return z, 0j, 0.0, 0.0, 0.0, 0.0
             continue
-        z = place_after(z, w, step, law)
+        there = place_after(z, w, step, law)
+        goes = (complex(w[-1, 0], w[-1, 1]) * there.conjugate()).real
+        if goes * outward < 0.0:
+            break  # the largest or the smallest radius is to be seen
+        z, outward = there, goes
         for j in range(NODES):
             turn += step * INTEGRAL[-1, j] * w[j, 2]
             work += step * INTEGRAL[-1, j] * power[j]

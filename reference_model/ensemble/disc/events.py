@@ -4,7 +4,8 @@ Self-centred
     Once in every free period the motion is looked at: the places, velocities and spins of a motion that goes to an
     equilibrium go to a fixed point. With d the distance from one look to the next and q the larger of its last two
     ratios, d·q/(1 − q) is what is left to go (:mod:`.convergence`). Since a motion may come close to one that is
-    unstable and leave it later (some of Fig. 11 begin so), it must attract, too (:mod:`.stability`).
+    unstable and leave it later (some of Fig. 11 begin so), it must attract, too, and by Newton's method be as near
+    (:mod:`.stability`).
 
 Whirl
     The same from one place to the next where x is largest; without an offset the whirl is a circle, on which radius,
@@ -12,6 +13,9 @@ Whirl
 
 Modulated
     Without an offset, the same from one largest radius to the next, where the radius goes on swinging.
+
+Stuck, or stick–slip
+    As of a pin, by the radii of a ring at its releases (:mod:`.pin.end_states`).
 
 What is known of the basins beforehand (:mod:`.trapping`) ends the trajectories that come into it earlier.
 """
@@ -66,8 +70,8 @@ Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
 Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscAims], bool]
 """Sees to slow slip, or to rest; tells whether the trajectory ends."""
 
-Shows = Callable[[complex, complex, float, DiscLaw, bool], bool]
-"""Tells whether the steady motion with z, v and r attracts, an equilibrium or a circle."""
+Shows = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
+"""Tells whether a steady motion near z, v and r attracts, an equilibrium or a circle, as ``stability.attracts``."""
 
 STILL = 1e-2
 """Share of its radius or of ω times it by which a motion may swing that goes to a point or to a circle."""
@@ -207,13 +211,16 @@ def looked(
     else:
         values = (z.real, z.imag, v.real, v.imag, r)
         swing, centred = abs(v), False
-    met = compared(memory.looks, values, 1.0 if centred else abs(z))
+    scale = 1.0 if centred else abs(z)
+    met = compared(memory.looks, values, scale)
     if not met or (swing > STILL * abs(law.disc_speed * z) and not centred):
         return False
-    if not shows(z, v, r, law, law.offset == 0.0 and not centred):
+    circle = law.offset == 0.0 and not centred
+    if not shows(z, v, r, law, circle, ACCURACY * scale):
         return False
-    memory.end = WHIRL if law.offset == 0.0 and not centred else SELF_CENTRED
-    fill(memory.found, Measures(abs(z), abs(z), k.way / k.time))
+    memory.end = WHIRL if circle else SELF_CENTRED
+    radius = 0.0 if centred else abs(z)
+    fill(memory.found, Measures(radius, radius, k.way / k.time))
     lanes.watch[lane] = UNWATCHED
     return aims.early
 

@@ -154,13 +154,13 @@ def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> 
 
 
 @scalar
-def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
+def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
     """Tell whether the steady motion attracts that a disc on a ring has come to."""
-    return attracts(z, v, r, law, circle)
+    return attracts(z, v, r, law, circle, near)
 
 
 @scalar
-def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
+def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
     """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look.
 
     But without friction all that is damped attracts.

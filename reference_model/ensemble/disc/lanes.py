@@ -11,7 +11,7 @@ from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import Record, Row, Rows, at, put
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
-from reference_model.ensemble.core.stepping.runge_kutta import Tuple, factor_of, moved, step
+from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, Tuple, factor_of, moved, step
 from reference_model.ensemble.disc.breakaway import grown
 from reference_model.ensemble.disc.slip import direction
 
@@ -121,6 +121,8 @@ def advance_with(
         new = DiscState(*moved(state, h, (1.0,), (mean,)))
         k1 = DiscState(*rates(new[:6], law))
         error = error_of_slip(state, new, h, third, fifth, lanes.tolerance[lane], law)
+        along = new.ux * state.ux + new.uy * state.uy + new.r * state.r
+        error = error if (along > 0.0) | (law.friction == 0.0) else TURNED_BACK
         good = error < 1.0
         next_step = h * factor_of(error)
 

@@ -11,7 +11,7 @@ import math
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
 from reference_model.ensemble.core.asked import recorded
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.laws import DiscLaw
+from reference_model.ensemble.core.laws import DiscLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
 from reference_model.ensemble.core.window import Measures
 from reference_model.ensemble.disc.events import found
@@ -36,7 +36,7 @@ from reference_model.ensemble.disc.memory import (
     pass_asked,
     take_checkpoint,
 )
-from reference_model.ensemble.disc.slip import held_friction, points_rates, ring_rates, stuck_for
+from reference_model.ensemble.disc.slip import centre_of, held_friction, points_rates, ring_rates, stuck_for
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
@@ -136,7 +136,8 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     if t >= end - AT_END:
         return True
     memory.looks.count = memory.turns.count = 0  # they begin anew
-    held = stuck_for(z, held_friction(law), law)
+    friction = held_friction(law)
+    held = stuck_for(z, friction, law)
     if held == math.inf:
         memory.end = STUCK
         fill(memory.found, Measures(abs(z), abs(z), 0.0))
@@ -154,8 +155,16 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     if held > 0.0:
         take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
-        met = compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z))
-        if met and found(lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, aims):
+        # Its centre slips no farther than a pin that friction holds as firmly, and creeps inward where that does.
+        centre, last = centre_of(law, friction), memory.peaks.values[0]
+        if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
+            memory.end, radius = STUCK, sticking_radius(centre)
+            fill(memory.found, Measures(radius, radius, 0.0))
+            if aims.early:
+                return True
+        elif compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z)) and found(
+            lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, aims
+        ):
             return True
     return not begin_slip(lanes, lane, z, angle, t, law)
 

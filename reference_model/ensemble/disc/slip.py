@@ -96,7 +96,13 @@ def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
     """Return how long a disc on a ring rests at ``z`` whose centre friction can hold with ``held``."""
     if held < 0.0 or abs(pull(z, 0j, law)) > held:
         return 0.0
-    return release_delay(z, PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0))
+    return release_delay(z, centre_of(law, held))
+
+
+@inlined
+def centre_of(law: DiscLaw, held: float) -> PinLaw:
+    """Return the pin that sticks where a disc on a ring does whose centre friction can hold with ``held``."""
+    return PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0)
 
 
 @scalar

@@ -1,7 +1,7 @@
-"""Whether a steady motion of a disc attracts, told in compiled code without eigenvalues.
+"""Whether a steady motion of a disc attracts and is near, told in compiled code without eigenvalues.
 
-With the derivative A of the rates at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane in which eigenvalues decay
-to the inside of the unit circle. So its powers vanish if all do.
+With the derivative A of the rates f at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane in which eigenvalues decay
+to the inside of the unit circle. So its powers vanish if all do. A⁻¹f is what Newton's method would take off.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
-from reference_model.ensemble.core.stepping.linear import powers_vanish, solve, zeros
+from reference_model.ensemble.core.stepping.linear import length_of, powers_vanish, solve, zeros
 from reference_model.systems import FloatArray
 
 APART = 1e-5
@@ -21,8 +21,8 @@ DIMENSION = 5
 
 
 @scalar
-def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bool:
-    """Tell whether the equilibrium or the circle attracts in which a disc on a ring has z, v and r."""
+def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
+    """Tell whether an equilibrium or a circle attracts that is no farther than ``near`` from z, v and r of a ring."""
     if circle:
         radius = max(abs(z), LEAST)
         along = (1.0 / radius) * v * z.conjugate()
@@ -39,6 +39,13 @@ def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool) -> bo
         y[j] += APART
         for i in range(DIMENSION):
             slopes[i, j] = (more[i] - less[i]) / (2.0 * APART)
+    rates = _rates(y, law, circle)
+    for i in range(DIMENSION):
+        column[i] = rates[i]
+        for j in range(DIMENSION):
+            matrix[i, j] = slopes[i, j]
+    if not solve(matrix, column) or length_of(column) > near:
+        return False
     for j in range(DIMENSION):
         for i in range(DIMENSION):
             column[i] = slopes[i, j]

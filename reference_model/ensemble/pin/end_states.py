@@ -7,7 +7,7 @@ Stuck for ever
     size δ^(3/2), and its way, by which the radius changes, ~δ². That leads inward where k > |ω|, and there is no
     radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
     what is left, creeps on for ever and never beyond that radius: it counts as stuck there
-    (``slip.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
+    (``laws.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
     is damped enough not to pass by (``slip.creeps_steadily``); the same is said of it when its time is up earlier, if
     its slip is along the pull by then (``slip.creeps_slaved``).
 
@@ -30,7 +30,8 @@ Whirl
     with d the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is what
     is left to go, and that must be below ACCURACY of the speed at the crossing, which would vanish at an
     equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. Since a motion may
-    come close to an orbit that is unstable and leave it later, the orbit must attract, too (``stability``).
+    come close to an orbit that is unstable and leave it later, the orbit must attract, too, and be as near by the
+    derivative of the return map (``stability``).
 
 Stick–slip
     Released pins of one set of parameters differ in a single number, their distance from the axis: from there on the

@@ -6,9 +6,15 @@ import math
 
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
 from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.convergence import converged
+from reference_model.ensemble.core.convergence import ACCURACY, converged
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.laws import PinLaw, pull, release_delay
+from reference_model.ensemble.core.laws import (
+    PinLaw,
+    creeps_by_turns,
+    pull,
+    release_delay,
+    sticking_radius,
+)
 from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
     place_on,
@@ -53,10 +59,8 @@ from reference_model.ensemble.pin.memory import (
 from reference_model.ensemble.pin.slip import (
     begin_slip,
     creeping_ends,
-    creeps_by_turns,
     creeps_slaved,
     creeps_steadily,
-    sticking_radius,
     time_to_rest,
 )
 from reference_model.ensemble.pin.stability import orbit_attracts
@@ -162,9 +166,8 @@ def turn_made(
         lanes.watch[lane] = UNWATCHED
         return aims.early
     turns = memory.turns
-    distance = math.sqrt(
-        (z.real - turns.place.real) ** 2 + (z.imag - turns.place.imag) ** 2 + (speed - turns.speed) ** 2
-    )
+    came = z.real - turns.place.real, z.imag - turns.place.imag, speed - turns.speed
+    distance = math.sqrt(came[0] ** 2 + came[1] ** 2 + came[2] ** 2)
     before, first = turns.last, turns.before
     turns.place, turns.speed = z, speed
     turns.last, turns.before = distance, before
@@ -173,7 +176,10 @@ def turn_made(
         return False
     way = lanes.now.state.way[lane] + way_along(step, u, law.disc_speed)
     if memory.window.kind == OF_TURN:
-        if not orbit_attracts(z, velocity_on(step, u), t - memory.window.since, law):
+        # Where little is left the last distance may be small by chance, as noise is.
+        share = distance / max(distance, before, first, 1e-300)
+        period, near = t - memory.window.since, ACCURACY * abs(speed) * share
+        if not orbit_attracts(z, velocity_on(step, u), period, law, came, near):
             forget_turns(lanes, memory, lane)
             return False
         close_window(memory, WHIRL, t, way, abs(z))

@@ -8,7 +8,7 @@ from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import LANES, Record, Row, Rows, at, put
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output, size_of
-from reference_model.ensemble.core.stepping.runge_kutta import error_of, factor_of, moved, step
+from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, error_of, factor_of, moved, step
 from reference_model.ensemble.pin.slip import pin_rates
 
 
@@ -87,6 +87,8 @@ def _advance_in(lanes: PinLanes, count: int) -> None:
         new = PinState(*moved(state, h, (1.0,), (mean,)))
         k1 = PinState(*pin_rates(new[:4], law))
         error = error_of(state[:4], new[:4], h, third, fifth, lanes.tolerance[lane])
+        along = new.wx * state.wx + new.wy * state.wy
+        error = error if (along > 0.0) | (law.friction == 0.0) else TURNED_BACK
         good = error < 1.0
         shorter = h * factor_of(error)
 

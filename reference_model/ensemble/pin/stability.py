@@ -14,7 +14,13 @@ from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.stepping.dense_output import size_of
-from reference_model.ensemble.core.stepping.linear import complex_zeros, powers_vanish, zeros
+from reference_model.ensemble.core.stepping.linear import (
+    complex_zeros,
+    length_of,
+    powers_vanish,
+    solve,
+    zeros,
+)
 from reference_model.systems import FloatArray
 
 STRIDE, STABLE = 0.5, 1.5
@@ -32,10 +38,25 @@ COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 
 
 
 @scalar
-def orbit_attracts(z: complex, v: complex, period: float, law: PinLaw) -> bool:
-    """Tell whether the orbit attracts on which a pin has place z and velocity v where x is largest."""
-    derivative = zeros(9).reshape(3, 3)
-    return return_derivative(z, v, period, law, derivative) and powers_vanish(derivative)
+def orbit_attracts(
+    z: complex, v: complex, period: float, law: PinLaw, came: tuple[float, float, float], near: float
+) -> bool:
+    """Tell whether an orbit attracts on which a pin has place z and velocity v where x is largest, and is near.
+
+    ``came`` is by how much x, y and ẏ differ there from the crossing before. With the derivative M of the return map
+    the orbit crosses by (1 − M)⁻¹ times that from the crossing before, and it may be up to ``near`` from this one.
+    """
+    derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
+    if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):
+        return False
+    for i in range(3):
+        left[i] = came[i]
+        for j in range(3):
+            matrix[i, j] = (1.0 if i == j else 0.0) - derivative[i, j]
+    solvable = solve(matrix, left)
+    for i in range(3):
+        left[i] -= came[i]
+    return solvable and length_of(left) <= near
 
 
 @scalar

@@ -211,6 +211,40 @@ def test_slip_that_dies_out_for_ever_is_followed_to_any_time(points):
     assert late.radius[-1] == pytest.approx(sticking_radius(CREEPING), rel=1e-9)
 
 
+def straight_swing(share, times):
+    """Place and velocity of a free pin with k = 1 that starts at rest in 1: each half swing loses 2μN/C exactly."""
+    half = np.floor(times / np.pi)
+    side = 1.0 - 2.0 * (half % 2.0)
+    swing = 1.0 - (2.0 * half + 1.0) * share
+    phase = times - np.pi * half
+    return side * (share + swing * np.cos(phase)), -side * swing * np.sin(phase)
+
+
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize(
+    ("points", "number"), [("pin", 100), (None, 10), (4, 10)], ids=["pin", "ring", "four points"]
+)
+def test_what_reverses_on_a_line_loses_what_the_closed_form_says(points, number, tolerance):
+    rng = np.random.default_rng(35)
+    errors = []
+    for share, angle in zip(
+        10.0 ** rng.uniform(-3.0, -1.5, number), rng.uniform(0.0, 6.28, number), strict=True
+    ):
+        along = np.array([np.cos(angle), np.sin(angle)])
+        times = np.linspace(0.0, min(200.0, np.pi * (0.5 / share - 0.5)), 50)  # until it sticks
+        system = PinOnDisc(
+            mass=1.0, stiffness=1.0, damping=0.0, friction_force=share, disc_speed=0.0, offset=0.0
+        )
+        system = system if points == "pin" else as_disc(system, points)
+        start = np.zeros(system.state_size)
+        start[:2] = along
+        states = simulate(system, start, times, tolerance=tolerance, compiled=True).states
+        x, v = straight_swing(share, times)
+        at = system.state_size // 2
+        errors += [states[:, :2] - np.outer(x, along), states[:, at : at + 2] - np.outer(v, along)]
+    assert np.max(np.abs(errors)) < 26.0 * tolerance
+
+
 LIGHT = replace(as_disc(CREEPING, None), mass=1e-6, contact_radius=1e3, damping=1e6)
 
 

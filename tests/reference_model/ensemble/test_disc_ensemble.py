@@ -281,3 +281,46 @@ def test_a_disc_on_six_points_ends_about_where_the_ring_rests():
     assert np.mean(found.time) < 0.5 * 1500.0
     # Points add a moment and a force that come round six times a turn, a few per cent of what the ring gives.
     assert np.all(np.hypot(full.states[:, 0] - point.x, full.states[:, 1] - point.y) < 0.05 * point.x)
+
+
+def ring(inertia, damping, friction, speed, offset, radius, shaft_damping, shaft_speed):
+    return DiscOnDisc(
+        mass=1.0, stiffness=1.0, polar_inertia=inertia, damping=damping, friction_force=friction, disc_speed=speed,
+        offset=offset, contact_radius=radius, shaft_damping=shaft_damping, shaft_speed=shaft_speed,
+    )  # fmt: skip
+
+
+def ended(disc, start, duration=1000.0):
+    """Where it ends, told by the motion itself."""
+    return simulate_ensemble(disc, start, duration=duration, parameters={"mass": [1.0]})
+
+
+def test_a_ring_that_comes_to_the_axis_ends_at_radius_zero():
+    disc = ring(0.04472, 0.152, 0.06584, -1.385, 0.0, 0.3582, 0.09325, 0.7529)
+    found = ended(disc, [0.1, 0.0, 0.0, 0.03, 0.0, 0.5])
+    assert found.end[0] == EndState.SELF_CENTRED
+    assert found.least_radius[0] == found.largest_radius[0] == 0.0
+    # A ring that spins on the spot slips by R·(spin − ω), with the moment of friction at its largest, μN·R.
+    most = disc.friction_force * disc.contact_radius
+    slip = disc.disc_speed - disc.shaft_speed + most / disc.shaft_damping
+    assert found.slip_power[0] == pytest.approx(most * abs(slip), rel=1e-3)
+
+
+def test_a_ring_that_creeps_inward_by_turns_is_stuck_where_its_motion_leads():
+    disc = ring(0.8, 0.1511, 0.1354, -0.7539, 0.01847, 0.05522, 0.003907, -0.4767)
+    found = ended(disc, turning_with(disc, 0.27, 0.0))
+    assert found.end[0] == EndState.STUCK
+    limit = found.largest_radius[0]
+    turns = 400.0 * 2.0 * math.pi / abs(disc.disc_speed)
+    left = simulate(disc, found.states[0], [0.0, turns, 4.0 * turns], compiled=True).radius - limit
+    assert left[2] < 1e-3 * limit
+    assert left[1] / left[2] == pytest.approx(4.0, rel=0.2)  # the way left falls like one over the turns made
+
+
+def test_the_largest_radius_of_stick_and_slip_is_seen_while_slip_begins():
+    disc = ring(0.0747428, 1.63329, 0.0985983, -1.502217, 0.0964475, 0.9644915, 0.00126935, 0.6208175)
+    found = ended(disc, [0.4, 0.1, 0.0, 0.0, 0.0, 0.0])
+    assert found.end[0] == EndState.STICK_SLIP
+    radius = simulate(disc, found.states[0], np.linspace(0.0, 5.0, 2001), compiled=True).radius
+    assert found.least_radius[0] == pytest.approx(radius.min(), rel=1e-4)
+    assert found.largest_radius[0] == pytest.approx(radius.max(), rel=1e-4)

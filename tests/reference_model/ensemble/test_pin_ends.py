@@ -344,7 +344,12 @@ def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
         np.testing.assert_allclose(
             np.sort(np.abs(np.linalg.eigvals(derivative))), expected, rtol=1e-3, atol=1e-4
         )
-        assert orbit_attracts(complex(x, y), complex(vx, vy), orbit.period, law) == orbit.stable
+        # Of a motion that was a little aside in the crossing before, M times that is left.
+        aside = np.array([1e-3, 2e-3, -1e-3])
+        came, left = tuple(derivative @ aside - aside), np.linalg.norm(derivative @ aside)
+        turn = complex(x, y), complex(vx, vy), orbit.period, law, came
+        assert orbit_attracts(*turn, 1.001 * left) == orbit.stable
+        assert not orbit_attracts(*turn, 0.999 * left)
 
 
 def test_the_whirl_of_a_strongly_damped_pin_attracts_and_is_decided():

@@ -167,7 +167,7 @@ def test_a_short_excursion_beyond_friction_ends_in_rest_again():
     work = np.zeros((6, pin_slip.MOST_TERMS + 2), dtype=complex)
     for pin in (strong, slow_disc):
         motion, law = SlipMotion.of(pin), law_of(pin)
-        largest = pin_slip.sticking_radius(law)
+        largest = laws.sticking_radius(law)
         for excess in (1e-4, 2e-4, 3.6e-4, 1e-3):
             z = largest * (1.0 + excess) + 0j
             z *= np.exp(1j * pin.disc_speed * release_delay(motion, z))

@@ -1,7 +1,7 @@
 """Of those that need a compiled function at once the first compiles it and the others wait; a terminal is told."""
 
 import importlib
-import os
+import subprocess
 import sys
 import threading
 import time
@@ -28,35 +28,38 @@ def test_who_needs_what_another_process_compiles_waits_and_loads_it(function):
     index = Path(other._cache._cache_file._index_path)
     away, lock = index.with_suffix(".away"), index.with_suffix(".nbi.lock")
     index.rename(away)
-    lock.touch()  # as if the other were not done yet
     found = []
     thread = threading.Thread(target=lambda: found.append(waiting(3.0)))
-    thread.start()
-    thread.join(5.0 * compiled_once.LOOK_AGAIN)
-    away.rename(index)
-    lock.unlink()
+    with compiled_once._locked(lock):  # as if the other were not done yet
+        thread.start()
+        thread.join(0.3)
+        away.rename(index)
     thread.join()
     assert found == [1.5]
     assert sum(waiting.stats.cache_misses.values()) == 0
 
 
-def test_a_lock_is_gone_after_a_failure_and_one_of_a_killed_process_is_taken_over(tmp_path):
+HOLDS_A_LOCK = """
+import sys, time
+from pathlib import Path
+from reference_model.numerics.compiled_once import _locked
+with _locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(600.0)
+"""
+
+
+def test_a_lock_ends_with_a_failure_and_with_a_process_that_is_killed(tmp_path):
     lock = tmp_path / "new" / "lock"
-
-    def fail():
-        with compiled_once._locked(lock):
-            assert lock.exists()
-            raise KeyError
-
-    with pytest.raises(KeyError):
-        fail()
-    assert not lock.exists()
-    lock.touch()
-    long_ago = time.time() - 2.0 * compiled_once.ABANDONED
-    os.utime(lock, (long_ago, long_ago))
+    with pytest.raises(KeyError), compiled_once._locked(lock):
+        raise KeyError
+    arguments = [sys.executable, "-c", HOLDS_A_LOCK, str(lock)]
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE) as owner:
+        owner.stdout.readline()
+        owner.kill()
+    began = time.monotonic()
     with compiled_once._locked(lock):
-        assert time.time() - lock.stat().st_mtime < compiled_once.ABANDONED
-    assert not lock.exists()
+        assert time.monotonic() - began < 1.0
 
 
 def test_where_no_lock_can_be_it_is_done_without(tmp_path):

@@ -20,13 +20,14 @@ import numpy as np
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
-from reference_model.ensemble.core.stepping.linear import complex_zeros, solve, zeros
+from reference_model.ensemble.core.stepping.linear import complex_zeros, length_of, solve, zeros
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
+LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
 """As in :mod:`reference_model.numerics.collocation`, with the places of the nodes in 0..1."""
 
@@ -266,12 +267,12 @@ def stride_with(
             w[i, 0], w[i, 1] = along.real, along.imag
             if d == 3:
                 w[i, 2] = guess[2]
-        if collocate(z, angle, start, span, law, w, f, power) < 0.0 or _turns_back(w):
+        if collocate(z, angle, start, span, law, w, f, power) < 0.0 or _turns_back(start, w):
             span *= 0.25
             continue
         allowed = max(min(tolerance, SHARE * min(s, length_of(w[NODES - 1]))), ROUNDED)
-        error = _last_term(w)
-        factor = CAUTION * (allowed / max(error, 1e-30)) ** (1.0 / (NODES - 1))
+        error = _last_term(start, w)
+        factor = CAUTION * (allowed / max(error, 1e-30)) ** (1.0 / NODES)
         if error > allowed:
             span *= max(factor, 0.25)
             continue
@@ -322,15 +323,6 @@ def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArra
     return place
 
 
-@scalar
-def length_of(vector: FloatArray) -> float:
-    """Return the Euclidean norm."""
-    total = 0.0
-    for value in vector:
-        total += value * value
-    return math.sqrt(total)
-
-
 @inlined
 def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
     """Take the direction ``along`` out of a symmetric matrix, from both sides; ``size`` is the length of that."""
@@ -360,24 +352,29 @@ def _size_of(matrix: FloatArray) -> float:
 
 
 @scalar
-def _turns_back(w: FloatArray) -> bool:
-    """Tell whether slip turns by more than a right angle from one node to the next: then it came to rest between."""
-    for i in range(1, NODES):
+def _turns_back(start: FloatArray, w: FloatArray) -> bool:
+    """Tell whether slip turns by more than a right angle before a node: then it came to rest on the way."""
+    before = start
+    for i in range(NODES):
         along = 0.0
-        for k in range(w.shape[1]):
-            along += w[i, k] * w[i - 1, k]
+        for k in range(len(start)):
+            along += w[i, k] * before[k]
         if not along > 0.0:
             return True
+        before = w[i]
     return False
 
 
 @scalar
-def _last_term(w: FloatArray) -> float:
-    """Return the largest of the last coefficients of the polynomials through the slip at the nodes."""
+def _last_term(start: FloatArray, w: FloatArray) -> float:
+    """Return the largest of the last coefficients of the polynomials through the slip at the start and the nodes.
+
+    Those through the nodes alone would not see what happens before the first of them.
+    """
     largest = 0.0
-    for k in range(w.shape[1]):
-        term = 0.0
+    for k in range(len(start)):
+        term = LAST_TERM[0] * start[k]
         for j in range(NODES):
-            term += SERIES[NODES - 1, j] * w[j, k]
+            term += LAST_TERM[j + 1] * w[j, k]
         largest = max(largest, abs(term))
     return largest

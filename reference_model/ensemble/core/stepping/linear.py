@@ -31,6 +31,15 @@ def complex_zeros(n: int) -> ComplexArray:
 
 
 @scalar
+def length_of(vector: FloatArray) -> float:
+    """Return the Euclidean norm."""
+    total = 0.0
+    for value in vector:
+        total += value * value
+    return math.sqrt(total)
+
+
+@scalar
 def solve(matrix: FloatArray, right: FloatArray) -> bool:
     """Solve a linear system in place, by elimination with pivots; tell whether that went."""
     n = len(right)
