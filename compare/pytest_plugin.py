@@ -256,7 +256,7 @@ class Bench:
         """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(_measured, study, engine, parts)
+            self._outcomes[key] = self._workers.ask(_measured, study, engine, parts, owner=engine)
         return self._outcomes[key]
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:

@@ -75,6 +75,11 @@ def is_registered(name: str) -> bool:
     return name in _REGISTRY
 
 
+def owner_of(engine: Engine | None) -> str:
+    """Return the name of a foreign engine, "" for those of this project: foreign code gets processes of its own."""
+    return "" if engine is None or is_registered(engine.name) else engine.name
+
+
 def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
     """Return the engines, called as they were asked for where a shorter name of theirs is another's too."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])

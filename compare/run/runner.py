@@ -10,7 +10,7 @@ from typing import Any
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import ByName, Engine, UnsupportedSystemError
+from compare.engines import ByName, Engine, UnsupportedSystemError, owner_of
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
@@ -171,7 +171,7 @@ class _Runner:
             for column in result.columns(study)
         }
         for key, (study, engine) in () if resume else work.items():
-            self._workers.submit(key, measured, study, engine)
+            self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
         self._workers.begin()  # while it is found out what the findings depend on
         for key, (study, engine) in work.items():
             self._stamps[key] = self._stamp(study, engine)
@@ -179,7 +179,7 @@ class _Runner:
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             elif resume:
-                self._workers.submit(key, measured, study, engine)
+                self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
         for study in result.studies:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):
@@ -246,8 +246,7 @@ def _printed(thing: object) -> str | Failure:
         with Workers() as workers:
             found: str | Failure = workers.ask(fingerprint, thing, PACKAGES)
             return found
-    found, _ = attempted(fingerprint, thing, PACKAGES)
-    return found
+    return attempted(fingerprint, thing, PACKAGES)  # type: ignore[no-any-return]
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:

@@ -41,10 +41,10 @@ NO_MEMORY = ("failed to map segment", "annot allocate memory")
 """How the loader of shared libraries says it."""
 
 FAREWELL = 1.0
-"""Time in s that a process without work has to end by itself, to remove its temporary files for instance."""
+"""Time in s until a process whose connection has closed must have an exit status."""
 
 TICK = 0.005
-"""In s: how often the process is looked at meanwhile."""
+"""Interval in s at which its exit status is checked."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,14 @@ class Done:
     seconds: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Work:
+    key: Hashable
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    owner: str
+
+
 class Workers:
     """Up to ``jobs`` processes; use as a context manager.
 
@@ -78,7 +86,7 @@ class Workers:
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
         self._jobs = jobs
         self._limit = limit
-        self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
         self._refused: list[Done] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
@@ -90,16 +98,23 @@ class Workers:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         for worker in self._processes:
-            worker.dismiss()
-        for worker in self._processes:
             worker.end()
         self._temporary.cleanup()  # a process that was killed has left its files there
 
     def submit(
-        self, key: Hashable, function: Callable[..., Any], *arguments: Any, first: bool = False
+        self,
+        key: Hashable,
+        function: Callable[..., Any],
+        *arguments: Any,
+        first: bool = False,
+        owner: str = "",
     ) -> None:
-        """Put ``function(*arguments)`` into the queue, at its end unless ``first``."""
-        work = (key, function, arguments)
+        """Put ``function(*arguments)`` into the queue, at its end unless ``first``.
+
+        A process that has worked for an ``owner``, a foreign engine for example, works for no other one: foreign code
+        may have changed the modules in it.
+        """
+        work = _Work(key, function, arguments, owner)
         if first:
             self._queue.appendleft(work)
         else:
@@ -117,9 +132,9 @@ class Workers:
             yield from self._start()
             yield from self._collect()
 
-    def ask(self, function: Callable[..., Any], *arguments: Any) -> Any:
+    def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:
         """Return the result of ``function(*arguments)`` or its ``Failure``, when no other work is submitted."""
-        self.submit("", function, *arguments)
+        self.submit("", function, *arguments, owner=owner)
         (done,) = self.finished()
         return done.value
 
@@ -127,19 +142,24 @@ class Workers:
         """Give work to all that are idle; what can't be sent to another process has failed."""
         while self._queue:
             worker = next((worker for worker in self._processes if worker.key is None), None)
-            if worker is None:
-                if len(self._processes) == self._jobs:
-                    return
-                worker = _Worker(self._temporary.name)
-                self._processes.append(worker)
-            key, function, arguments = self._queue.popleft()
+            if worker is None and len(self._processes) == self._jobs:
+                return
+            work = next((one for one in self._queue if worker and one.owner == worker.owner), self._queue[0])
+            self._queue.remove(work)
             try:
-                message = pickle.dumps((function, arguments))
+                message = pickle.dumps((work.function, work.arguments))
             except Exception as error:  # whatever an object's own pickling raises
                 reason = f"it cannot be sent to another process ({error}): use functions of a module"
-                yield Done(key, Failure(reason), 0.0)
+                yield Done(work.key, Failure(reason), 0.0)
                 continue
-            worker.start(key, message)
+            if worker and worker.owner not in ("", work.owner):
+                worker.end()
+                self._processes.remove(worker)
+                worker = None
+            if worker is None:
+                worker = _Worker(self._temporary.name)
+                self._processes.append(worker)
+            worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
         """Wait for the first result, or for the first limit to be reached, and yield what is there by then."""
@@ -173,6 +193,7 @@ class _Worker:
         context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
         self.connection, other_end = context.Pipe()
         self.key: Hashable | None = None
+        self.owner = ""
         self.started = 0.0
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
@@ -183,33 +204,28 @@ class _Worker:
             self._process.start()
         other_end.close()
 
-    def start(self, key: Hashable, message: bytes) -> None:
-        self.key, self.started = key, time.monotonic()
+    def start(self, key: Hashable, message: bytes, owner: str) -> None:
+        self.key, self.owner, self.started = key, owner, time.monotonic()
         with suppress(BrokenPipeError):  # its end shows in result()
             self.connection.send_bytes(message)
 
     def result(self) -> Done:
         key, self.key = self.key, None
         try:
-            value, seconds = pickle.loads(self.connection.recv_bytes())
+            value = pickle.loads(self.connection.recv_bytes())
             self._errors.hand_on()
         except Exception:  # the engine has ended the process, or used its connection
             cause = _cause_of_end(self._exit_code())
             said = self._errors.hand_on().strip().splitlines()
             self.end()
             reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
-            value, seconds = Failure(reason), 0.0
-        return Done(key, value, seconds)
-
-    def dismiss(self) -> None:
-        """Let the process end by itself if it has no work."""
-        if self.key is None:
-            self.connection.close()
+            value = Failure(reason)
+        return Done(key, value, time.monotonic() - self.started)
 
     def end(self) -> None:
         self.dead = True
-        if self.connection.closed:
-            self._exit_code()
+        with suppress(AttributeError, ProcessLookupError, PermissionError):  # no groups, or not a leader yet
+            os.killpg(self._process.pid or 0, signal.SIGKILL)  # with the processes that an engine has started
         self._process.kill()  # compiled code may not listen to less
         self._process.join()
         self._errors.close()
@@ -282,15 +298,20 @@ class _Errors:
 def _serve(connection: Connection) -> None:
     """Work until the other end of the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
+    if hasattr(os, "setsid"):
+        os.setsid()  # signals to the group of an engine's process stay there
+    here = os.getpid()
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         while True:
             message = connection.recv_bytes()
-            value, seconds = attempted(_unpickled_call, message)
+            value = attempted(_unpickled_call, message)
+            if os.getpid() != here:  # a copy that an engine has forked must not answer too
+                os._exit(1)
             try:
-                answer = pickle.dumps((value, seconds))
+                answer = pickle.dumps(value)
             except Exception as error:
-                answer = pickle.dumps((Failure(f"its result can't be sent back: {error}"), seconds))
+                answer = pickle.dumps(Failure(f"its result cannot be sent back: {error}"))
             connection.send_bytes(answer)
     except EOFError:
         pass
@@ -311,14 +332,12 @@ def _unpickled_call(message: bytes) -> Any:
     return function(*arguments)
 
 
-def attempted(function: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
-    """Return the result of the call, or its failure, and the seconds that it took."""
-    start = time.perf_counter()
+def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the result of the call, or its failure."""
     try:
-        value = function(*arguments)
+        return function(*arguments)
     except BaseException as error:  # whatever an engine raises, SystemExit too: the others go on
-        value = failure(error)
-    return value, time.perf_counter() - start
+        return failure(error)
 
 
 def failure(error: BaseException) -> Failure:

@@ -257,7 +257,9 @@ def _evaluations(solver: Any, explicit: bool) -> int:
     """Return how often a solver has evaluated the equations of motion."""
     if not explicit:
         found = solver.it.discontinuousIterationsCount
-        failed = found - solver.it.currentStepIndex  # each leads to one repetition, see restored_accelerations
+        failed = (
+            found - solver.it.currentStepIndex
+        )  # each leads to one repetition, see restored_accelerations
         return int(solver.it.newtonStepsCount + found + failed)
     steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
     return int(steps * (solver.GetNumberOfStages() + 1))

@@ -24,20 +24,18 @@ Process = subprocess.CompletedProcess[str]
 class WorkerHere:
     """Does the work of a process in this one, in no time to start."""
 
-    def __init__(self) -> None:
-        self.key, self.started, self.dead, self.connection = None, math.inf, False, self
+    def __init__(self, temporary: str) -> None:
+        self.key, self.owner, self.started, self.dead, self.connection = None, "", math.inf, False, self
 
-    def start(self, key: Hashable, message: bytes) -> None:
+    def start(self, key: Hashable, message: bytes, owner: str) -> None:
         self.key, self.message = key, message
 
     def result(self) -> workers.Done:
         key, self.key = self.key, None
-        return workers.Done(key, *workers.attempted(workers._unpickled_call, self.message))
+        return workers.Done(key, workers.attempted(workers._unpickled_call, self.message), 0.0)
 
-    def dismiss(self) -> None:
+    def end(self) -> None:
         pass
-
-    end = dismiss
 
 
 @pytest.fixture

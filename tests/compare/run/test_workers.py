@@ -2,10 +2,12 @@
 
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import time
 from functools import partial
+from pathlib import Path
 
 import pytest
 from processes import wait_until
@@ -127,3 +129,41 @@ def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(capfd):
 def test_what_a_worker_writes_to_its_standard_error_is_not_lost(capfd):
     assert done(warn, "once") == 4
     assert capfd.readouterr().err == "once\n"
+
+
+def spoil(module):
+    sys.modules[module] = None
+    return os.getpid()
+
+
+def test_a_process_that_worked_for_one_engine_works_for_no_other():
+    with Workers() as workers:
+        spoilt = workers.ask(spoil, "json", owner="mine")
+        assert workers.ask(os.getpid, owner="mine") == spoilt
+        assert workers.ask(os.getpid) != spoilt
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_the_copy_of_a_process_does_not_answer_in_its_place():
+    with Workers() as workers:
+        assert isinstance(workers.ask(os.fork), int)
+        assert workers.ask(len, "four") == 4
+
+
+@pytest.mark.skipif(os.name != "posix", reason="this system has no process groups")
+def test_processes_that_work_has_started_end_with_it():
+    with Workers() as workers:
+        child = workers.ask(start_a_child)
+    wait_until(lambda: not is_alive(child))
+
+
+def start_a_child():
+    return subprocess.Popen(["sleep", "60"]).pid
+
+
+def is_alive(number):
+    """Whether a process runs; one that has ended may wait for its new parent."""
+    try:
+        return "Z" not in Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
