@@ -11,11 +11,12 @@ from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import ByName, Engine, UnsupportedSystemError, owner_of
+from compare.run.code_files import UnknownCodeError
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
 from compare.run.fingerprint import fingerprint
 from compare.run.stamp import PACKAGES, engine_version, stamp
-from compare.run.workers import Done, Failure, Workers, attempted
+from compare.run.workers import Done, Failure, Workers
 
 CODE = ("compare.run", "compare.claims.as_json")
 """What runs a study and writes its findings down: they depend on it beside the study's and the engine's own."""
@@ -246,7 +247,10 @@ def _printed(thing: object) -> str | Failure:
         with Workers() as workers:
             found: str | Failure = workers.ask(fingerprint, thing, PACKAGES)
             return found
-    return attempted(fingerprint, thing, PACKAGES)  # type: ignore[no-any-return]
+    try:
+        return fingerprint(thing, PACKAGES)
+    except UnknownCodeError as error:
+        return Failure(str(error))
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:

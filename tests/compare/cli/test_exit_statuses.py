@@ -60,21 +60,17 @@ def test_the_theorys_own_algebra_is_not_conclusive(tmp_path, capsys):
     assert algebra > 0
 
 
+def itself(engine, value):
+    return value and Measured(predicted=value, value=value, error=0.0)
+
+
 @pytest.mark.usefixtures("in_this_process")
 def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_path, capsys):
     study = Study("silent", "A study with nothing to measure", "")
-
-    @study.claim("One is one", resolution=1.0)
-    def nothing(engine):
-        return None
-
-    @study.claim("Two is two", resolution=1.0)
-    def two(engine):
-        return Measured(predicted=2.0, value=2.0, error=0.0)
-
+    study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--engine", "fake_studies:straight"], (study,)) == 4
-    sentence = "silent fake_studies:straight: no ground to measure: One is one\n"
+    sentence = "silent fake_studies:straight: no ground to measure: One is itself\n"
     assert capsys.readouterr().err.endswith(sentence)
 
 
