@@ -64,7 +64,7 @@ def _check_phases(phases: Sequence[object], times: FloatArray, components: int) 
     for i, phase in enumerate(phases):
         if not isinstance(phase, Phase) or phase.kind not in PHASES:
             raise BadTrajectoryError(
-                f"phases[{i}] is {reprlib.repr(phase)}: it must be a Phase of a kind in {PHASES}"
+                f"phases[{i}] is of the kind {getattr(phase, 'kind', None)!r}: it must be a Phase of {PHASES}"
             )
         if not (_is_real(phase.initial_state, (components,)) and _is_real([phase.start, phase.end], (2,))):
             raise BadTrajectoryError(

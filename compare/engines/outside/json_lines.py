@@ -153,6 +153,7 @@ def _array(name: str, rows: object) -> Any:
         if not set(map(type, itertools.chain.from_iterable(parts))) <= {
             int,
             float,
+            type(None),
         }:  # NumPy converts "1" and true
             raise TypeError
         return np.array(rows, dtype=float)
