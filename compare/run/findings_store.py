@@ -9,6 +9,7 @@ import hashlib
 import json
 import lzma
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from lzma import LZMAError
 from pathlib import Path
@@ -18,6 +19,7 @@ import numpy as np
 
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
+from compare.output.outside_text import all_printable
 from compare.output.text_files import replacing
 
 LONGEST = 100
@@ -54,14 +56,22 @@ class Store:
         with replacing(self._json(study, engine), "wb") as stream:
             stream.write(lzma.compress(json.dumps(content).encode(), preset=1))
 
-    def find(self, study: str, engine: str, stamp: str | None) -> tuple[Findings, float] | None:
-        """Return findings and their seconds if they are there, legible, and of this stamp."""
+    def find(
+        self, study: str, engine: str, stamp: str | None, identities: Collection[str] = ()
+    ) -> tuple[Findings, float] | None:
+        """Return findings and their seconds if they are there, legible, and of this stamp.
+
+        A claim of theirs must have one of the ``identities`` or none, since files of the report have its name.
+        """
         path = self._path(study, engine)
         try:
-            content = json.loads(lzma.decompress(self._json(study, engine).read_bytes()))
+            raw = lzma.decompress(self._json(study, engine).read_bytes())
+            content = all_printable(json.loads(raw))
             if stamp is None or content["stamp"] != stamp:
                 return None
             claims = tuple(claim_from_json(claim) for claim in content["claims"])
+            if not {claim.identity for claim in claims} <= {"", *identities}:
+                return None
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
                 data = {name: arrays[name] for name in arrays.files}
             return Findings(claims, data, content["not_simulated"]), float(content["seconds"])

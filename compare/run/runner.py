@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import ByName, Engine, UnsupportedSystemError, owner_of
+from compare.output.outside_text import printable
 from compare.run.code_files import UnknownCodeError
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
@@ -176,7 +177,7 @@ class _Runner:
         self._workers.begin()  # while it is found out what the findings depend on
         for key, (study, engine) in work.items():
             self._stamps[key] = self._stamp(study, engine)
-            found = self._store.find(*key, self._stamps[key]) if resume else None
+            found = self._store.find(*key, self._stamps[key], _identities(study)) if resume else None
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             elif resume:
@@ -233,7 +234,7 @@ class _Runner:
         data, code, found = self._result.data(study), self._fingerprint(name, study), None
         if code is not None:
             self._drawn_from[name] = drawing_stamp(code, data)
-            found = self._drawings.find(name, self._drawn_from[name])
+            found = self._drawings.find(name, self._drawn_from[name], study.figures)
         if found is not None:
             self._result.drawings[name] = found
         else:
@@ -268,4 +269,9 @@ def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) ->
         findings = study.measure_theory(only=only)
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
-    return findings
+    return replace(findings, not_simulated=printable(findings.not_simulated))
+
+
+def _identities(study: Study) -> set[str]:
+    """Return the names of the claims that a study declares."""
+    return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}

@@ -24,6 +24,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from compare.output.outside_text import printable
+
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
@@ -33,9 +35,12 @@ SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 """Until it has been told this process's path, a new one would look into the current folder first."""
 
 
-STANDARD_ERROR = 2
-"""Its file descriptor."""
+STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
+"""Their file descriptors."""
 
+
+MOST_ERRORS = 100_000
+"""Characters of a process's standard error that are handed on after a piece of work."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
 """How the loader of shared libraries says it."""
@@ -53,6 +58,11 @@ class Failure:
 
     reason: str
     where: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make its text printable: most of it is an engine's."""
+        object.__setattr__(self, "reason", printable(self.reason))
+        object.__setattr__(self, "where", tuple(map(printable, self.where)))
 
     def __str__(self) -> str:
         """Return the sentence with the innermost place in brackets."""
@@ -288,7 +298,7 @@ class _Errors:
         # Both processes share one place in the file, where the other one writes.
         new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
         self._handed_on += len(new)
-        text = new.decode(errors="replace")
+        text = printable(new.decode(errors="replace"), MOST_ERRORS)
         if text and sys.stderr is not None:
             sys.stderr.write(text)
             sys.stderr.flush()
@@ -302,6 +312,9 @@ def _serve(connection: Connection) -> None:
         os.setsid()  # signals to the group of an engine's process stay there
     here = os.getpid()
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    sys.stdout = sys.stderr  # what an engine prints is handed on as its errors are
+    with suppress(OSError):  # closed by the caller
+        os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
     try:
         while True:
             message = connection.recv_bytes()
@@ -342,7 +355,7 @@ def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
 
 def failure(error: BaseException) -> Failure:
     """Return what an exception says as a sentence, and the lines of code on its way, innermost last."""
-    lines = str(error).strip().splitlines()
+    lines = printable(error).strip().splitlines()
     # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
@@ -359,7 +372,7 @@ def lacks_memory(error: BaseException | None) -> bool:
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
-        if any(words in str(error) for words in NO_MEMORY):
+        if any(words in printable(error) for words in NO_MEMORY):
             return True
         error = error.__cause__ or error.__context__
     return False

@@ -10,6 +10,8 @@ from typing import Any
 
 from typer.core import TyperCommand
 
+from compare.output.outside_text import printable
+
 FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
@@ -74,5 +76,5 @@ def refused() -> Iterator[None]:
 
 def say(sentence: str, result: int) -> int:
     """Print a sentence on the error stream and return the exit status ``result``."""
-    print(sentence, file=sys.stderr)
+    print(printable(sentence), file=sys.stderr)
     return result

@@ -46,18 +46,23 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     from compare.sweep.store.files import Files, StoreError
     from compare.sweep.store.store import SweepStore
 
-    with _looking():
-        folder = _checked(place)
-        files = Files.at(folder.below(STORE))
-        store = _there(files, plan, chunk, resume)
+    folder, store = Files.at(place), None
+    files = Files.at(folder.below(STORE))
     try:
-        with _executor(scheduler) as executor, trajectories() as progress:
-            if store is None:
-                store = SweepStore.create(files.url, plan, chunk or CHUNK)
-            run(store, executor, progress)
+        with _executor(scheduler) as executor:
+            with _looking():
+                _check_writable(folder)
+                store = _there(files, plan, chunk, resume)
+            with trajectories() as progress:
+                if store is None:
+                    store = SweepStore.create(files.url, plan, chunk or CHUNK)
+                run(store, executor, progress)
         return finish(store, folder)
     except FileExistsError:
-        return say(_already(files), BAD_INPUT)
+        return say(
+            f"another command has just begun {files.url!r}: wait until it ends, or take another --output",
+            BAD_INPUT,
+        )
     except (ClusterError, OtherCodeError) as error:
         return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
     except (OSError, MemoryError, StoreError) as error:
@@ -87,21 +92,15 @@ def _looking() -> Iterator[None]:
             raise BadInputError(str(error)) from None
 
 
-def _checked(place: str) -> Files:
-    """Return the files at a folder or URL; raise ``ValueError`` or ``StoreError`` where none can be written."""
-    from compare.sweep.store.files import Files, is_remote
+def _check_writable(folder: Files) -> None:
+    """Raise ``ValueError`` or ``StoreError`` for a folder or URL in which no file can be written."""
+    from compare.sweep.store.files import is_remote
 
-    files = Files.at(place)
-    if is_remote(place):
-        files.write({f"{STORE}.try": b""})
-        files.remove(f"{STORE}.try")
+    if is_remote(folder.url):
+        folder.write({f"{STORE}.try": b""})
+        folder.remove(f"{STORE}.try")
     else:
-        check_folder(Path(place))
-    return files
-
-
-def _already(files: Files) -> str:
-    return f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+        check_folder(Path(folder.url))
 
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
@@ -115,7 +114,9 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
     if store.plan != plan:
         raise ValueError(f"{files.url!r} belongs to another sweep: take another --output")
     if not resume:
-        raise ValueError(_already(files))
+        raise ValueError(
+            f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+        )
     if store.stamp != sweep_stamp():
         raise ValueError(
             f"{files.url!r} was computed by other code or libraries ({store.stamp}): take another --output"

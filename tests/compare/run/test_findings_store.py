@@ -57,6 +57,14 @@ def test_broken_files_are_computed_again(tmp_path):
     assert store.find("fig03", "good", NOW) is None
 
 
+def test_only_claims_that_a_study_declares_are_taken(tmp_path):
+    store = Store(tmp_path)
+    for identity, taken in {"": True, "fig03/rests": True, "fig03/../../escaped": False}.items():
+        findings = Findings((claim("c", "good", 0.0, 0.0, 0.0, identity=identity),))
+        store.keep("fig03", "good", NOW, findings, 0.0)
+        assert (store.find("fig03", "good", NOW, {"fig03/rests"}) is not None) is taken
+
+
 SIMILAR = [
     ("fig03", "exec:./a.b"),
     ("fig03", "exec:./a_b"),

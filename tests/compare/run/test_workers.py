@@ -22,6 +22,12 @@ def last_words(status):
     os._exit(status)
 
 
+def speak(text):
+    os.write(1, f"raw {text}\n".encode())
+    print(text, flush=True)
+    print(text, file=sys.stderr, flush=True)
+
+
 def kill(number):
     os.kill(os.getpid(), number)
 
@@ -124,6 +130,11 @@ def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(capfd):
         "its process came to a sudden end (exit status 3): the last word: 1 µm"
     )
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
+
+
+def test_nothing_that_a_worker_writes_reaches_the_terminal_as_it_is(capfd):
+    assert done(speak, "\x1b[31m \x9b") is None
+    assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
 
 
 def test_what_a_worker_writes_to_its_standard_error_is_not_lost(capfd):

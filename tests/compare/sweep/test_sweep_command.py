@@ -14,6 +14,7 @@ from compare.cli.door.command import NOTHING_SHOWN
 from compare.cli.sweep.commands import MAPS, PLANES
 from compare.cli.sweep.run import STORE
 from compare.sweep.define.distributions import KINDS
+from compare.sweep.store.files import Files
 from compare.sweep.store.store import SweepStore
 
 SMALL = ["--until", "20"]  # most are undecided then
@@ -91,6 +92,8 @@ def test_help_of_sweeps_starts_without_the_heavy_libraries():
         (["continuation", "pin", "--vary", "mass=uniform(1, 2)"], "unknown component 'mass'"),
         (["continuation", "pin", "--set", "disc_speed=2"], "it has its values from --x"),
         (["continuation", "pin", "--x", "mass=-1:1:3"], "mass = -1 kg: it must be > 0"),
+        (["continuation", "pin", "--scheduler", "1e-400"], "1e-400"),
+        (["basin", "pin", "--scheduler", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1"),
         (["figures", "nowhere"], "is no store of a sweep"),
     ],
 )
@@ -102,7 +105,17 @@ def test_bad_input_is_refused_in_one_sentence_and_nothing_is_written(arguments, 
     assert out == ""
     assert words in err
     assert err.count("\n") == 1
-    assert not (folder / STORE).exists()
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("more", [[], ["--resume"]])
+def test_of_two_commands_that_begin_at_once_the_later_one_is_told(more, tmp_path, monkeypatch, capsys):
+    there = [set(), {".zattrs"}]  # it is there when the store is made, and not when the command looks
+    monkeypatch.setattr(Files, "inside", lambda self, folder="": there.pop(0))
+    assert cli.status([*BASIN, "--output", str(tmp_path), *more]) == 2
+    place = str(tmp_path / STORE)
+    sentence = f"another command has just begun {place!r}: wait until it ends, or take another --output\n"
+    assert capsys.readouterr() == ("", sentence)
 
 
 @pytest.fixture(scope="module")
