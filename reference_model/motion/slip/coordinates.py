@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.motion.stepper import Run, Stepper, SwitchingSurface
-from reference_model.numerics.explicit import TIGHTEST, Tolerated
+from reference_model.motion.stepper import TIGHTEST, Run, Stepper, SwitchingSurface
 from reference_model.support import Support
 from reference_model.systems import FloatArray
 
@@ -23,9 +22,6 @@ LEAST_SLIP = 1e-100
 
 DIFFERENCE = 1e-7
 """Change of unknowns of order one by which derivatives are found."""
-
-LOOSEST = 0.03
-"""The largest error of a step in ln s."""
 
 SHARE = 1e-5
 """Change of a relative velocity, as a share of it, by which derivatives are found if that is less."""
@@ -57,8 +53,6 @@ class Coordinates:
     turning : int or None
         Which unknown besides the slip is a relative velocity, if one is: friction may change with it at its own size,
         however small that is.
-    leverage : float
-        By how much the velocity of the centre changes with the slip.
     grip : callable or None
         How much more could be held of what friction holds in this motion, which ends when that falls to zero.
     surfaces : tuple of SwitchingSurface
@@ -74,7 +68,6 @@ class Coordinates:
     standard: Callable[[FloatArray], FloatArray] = lambda y: y
     angle: int | None = None
     turning: int | None = None
-    leverage: float = 1.0
     grip: Callable[[Sequence[float]], float] | None = None
     surfaces: tuple[SwitchingSurface, ...] = ()
 
@@ -94,26 +87,12 @@ class Coordinates:
             changes[:, self.turning] = np.minimum(DIFFERENCE, own)
         return changes
 
-    def tolerated(self, run: Run, unknowns: int, polar: int = 0, least: float = 0.0) -> Tolerated:
-        """Return what tells the errors, not below ``least``, that a step may have of these first ``unknowns``.
-
-        ``polar`` others may follow, with ln s after the ``slip`` components of a direction. Their absolute errors
-        count, and that of s in place of that of ln s.
-        """
-        relative = np.full(unknowns + polar, TIGHTEST)
-        relative[:unknowns] = run.local_tolerance
+    def tolerances(self, run: Run, unknowns: int) -> FloatArray:
+        """Return the relative tolerances of the first ``unknowns``."""
+        result = np.full(unknowns, run.local_tolerance)
         if self.angle is not None:
-            relative[self.angle] = TIGHTEST
-        tolerance, logarithm = max(run.local_tolerance, least), unknowns + self.slip
-
-        def errors(y: FloatArray) -> FloatArray:
-            result = np.asarray(tolerance + relative * abs(y))
-            if polar:
-                over_slip = math.exp(min(-float(y[logarithm]), 500.0))
-                result[logarithm] = min(tolerance / self.leverage * over_slip, LOOSEST)
-            return result
-
-        return errors
+            result[self.angle] = TIGHTEST
+        return result
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:

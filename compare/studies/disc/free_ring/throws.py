@@ -18,7 +18,6 @@ from compare.studies.disc.free_ring.parameters import (
     RINGS,
     SPEED,
     TABLE,
-    TOLERANCE,
     Throw,
 )
 from compare.studies.disc.free_ring.theory import expected_approach
@@ -28,13 +27,9 @@ from reference_model.systems import FloatArray
 
 @functools.cache
 def roughly_rest(engine: Engine, throw: Throw) -> float:
-    """Return when the ring of ``engine`` rests, in s, which sets the times that the claims sample.
-
-    It is of the claims' own tolerance. A smaller one then moves the rest against these times by about their error,
-    so that the change of what a claim measures covers that error.
-    """
+    """Return about when the ring of ``engine`` rests, in s: it decides at which times it is looked at."""
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
-    found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
+    found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=1e-6))
     return found if math.isfinite(found) else longest
 
 
