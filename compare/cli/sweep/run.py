@@ -158,7 +158,8 @@ def finish(store: SweepStore, folder: Files) -> int:
         return SOMETHING_DIFFERS
     if undecided(store) > MOST_UNDECIDED:
         return say(
-            f"{undecided(store):.0%} are undecided: raise --until to follow them longer", NOTHING_SHOWN
+            f"{100.0 * undecided(store):.0f} % are undecided: raise --until to follow them longer",
+            NOTHING_SHOWN,
         )
     return FINE
 

@@ -235,7 +235,7 @@ def test_figures_are_drawn_again_on_demand(finished):
 def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys):
     output = str(tmp_path / "short")
     assert cli.status([*BASIN[:-2], "--until", "0.1", "--output", output]) == NOTHING_SHOWN
-    assert "100% are undecided: raise --until" in capsys.readouterr().err
+    assert "100 % are undecided: raise --until" in capsys.readouterr().err
     assert cli.status(["sweep", "figures", output]) == NOTHING_SHOWN
 
 

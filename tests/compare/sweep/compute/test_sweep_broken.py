@@ -9,11 +9,19 @@ import zarr
 from long_sweeps import assert_same, content
 
 from compare.cli import app as cli
+from compare.cli.sweep import run
 from compare.cli.sweep.run import STORE
 from compare.sweep.store.round import CHECKSUM, DESCRIPTION
 from compare.sweep.store.store import FILES_OF_ROUND, SweepStore, _checksum, digest_of
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def most_may_be_undecided():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "MOST_UNDECIDED", 1.0)
+        yield
 
 
 @pytest.fixture(scope="module")
