@@ -52,7 +52,7 @@ benchmarks: $(VENV)/for-tests $(VENV)/kernels
 	$(BIN)/python benchmarks/sweep_cluster.py
 
 clean:
-	rm -rf $(VENV) report report.data site docs/paper/paper.pdf build dist *.egg-info
+	rm -rf $(VENV) report report.data report-part report-part.data site docs/paper/paper.pdf build dist *.egg-info
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

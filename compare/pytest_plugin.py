@@ -34,10 +34,10 @@ INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
 NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
 """What a test without a verdict is called in pytest's totals, and its sign among the dots."""
 
-PROPERTY = "friction-discs"
+PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
-NOTHING_SHOWN = 6
-"""Exit status beyond those of pytest: no claim differs, but too few say anything."""
+NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
+"""Exit statuses beyond those of pytest: nothing differs, but too few claims pass, or an engine has no verdict."""
 
 
 # Options of these names may well be another's: they are there only for a run that asks for this package.
@@ -85,7 +85,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=int,
         default=1,
         metavar="N",
-        help=f"how many claims have to pass, or pytest ends with status {NOTHING_SHOWN} if none fails (default: 1)",
+        help=f"how many claims have to pass, or pytest ends with status {NOTHING_SHOWN} if none fails (default: 1); "
+        f"it ends with status {NOTHING_MEASURED} if an engine has no verdict at all",
     )
 
 
@@ -123,6 +124,7 @@ def pytest_configure(config: pytest.Config) -> None:
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
     config.stash[_BENCH] = Bench(limit)
+    config.pluginmanager.register(config.stash[_BENCH])
 
 
 def _instead_of(module: str) -> str:
@@ -133,12 +135,6 @@ def _instead_of(module: str) -> str:
     named = {"-".join(parts[i:j]) for i in range(len(parts)) for j in range(i + 1, len(parts) + 1)}
     name = next((study.name for study in ALL if study.name in named), "NAME")
     return f"{module}: a study is asked for by its name, with --pyargs compare --study {name}"
-
-
-def pytest_unconfigure(config: pytest.Config) -> None:
-    """End the process that measures."""
-    if _BENCH in config.stash:
-        config.stash[_BENCH].close()
 
 
 def pytest_report_header(config: pytest.Config) -> str | None:
@@ -154,6 +150,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile 
     if (
         not file_path.is_relative_to(STUDIES)
         or file_path.name != "__init__.py"
+        or file_path.parents[2] != STUDIES  # the claims of some studies are packages too
         or not _engines(parent.config)
     ):
         return None
@@ -200,6 +197,7 @@ class ClaimTest(pytest.Item):
         """Return the test of ``sentence``; its name is the sentence, and the engine's unless it is ``alone``."""
         test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
         test.study, test.engine, test.sentence = parent.study, engine, sentence
+        test.user_properties.append((ENGINE, engine))
         return test
 
     def reportinfo(self) -> tuple[Path, None, str]:
@@ -242,24 +240,31 @@ class ClaimTest(pytest.Item):
 
 
 class Bench:
-    """Measures each study with each engine once, as far as it is asked for, when its first claim is."""
+    """Measures each study with each engine once, as far as it is asked for, when its first claim is.
+
+    As a plugin of its own it counts the results of each engine, those from other processes too.
+    """
 
     def __init__(self, limit: float) -> None:
         from compare.run.workers import Workers
 
         self._workers = Workers(1, limit)
         self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
+        self.counts: Counter[tuple[str, str]] = Counter()
 
     def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
         """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._workers.submit(key, _measured, study, engine, parts)
-            for done in self._workers.finished():
-                self._outcomes[key] = done.value
+            self._outcomes[key] = self._workers.ask(_measured, study, engine, parts, owner=engine)
         return self._outcomes[key]
 
-    def close(self) -> None:
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Count the result of a test."""
+        if report.when == "call":
+            self.counts[_engine_of(report), _why_none(report) or report.outcome] += 1
+
+    def pytest_unconfigure(self) -> None:
         """End the process that measures."""
         self._workers.__exit__(None, None, None)
 
@@ -338,40 +343,42 @@ def _why_none(report: pytest.TestReport) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """End with a status of its own where nothing was shown."""
-    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-    if not _engines(session.config) or exitstatus != pytest.ExitCode.OK or reporter is None:
+    """End with a status of its own where an engine has no verdict, or where too little was shown."""
+    config, names = session.config, _engines(session.config)
+    if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return
-    if session.config.getoption("collectonly"):
-        return
-    if len(reporter.stats.get("passed", [])) < session.config.getoption("friction_discs_least"):
+    counts = config.stash[_BENCH].counts
+    if any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
+        session.exitstatus = NOTHING_MEASURED
+    elif sum(counts[name, "passed"] for name in names) < config.getoption("friction_discs_least"):
         session.exitstatus = NOTHING_SHOWN
 
 
-def _diagnoses(config: pytest.Config, failed: list[pytest.TestReport]) -> Iterator[str]:
+def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
     """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
     from compare.diagnosis.run import IN_SHORT, in_short
-    from compare.engines import engines
+    from compare.run.loading import loaded
     from compare.run.workers import Workers
 
-    names = [name for name in _engines(config) if len(_engines(config)) == 1 or _is_named(name, failed)]
     with Workers(1, IN_SHORT) as workers:
-        for name in names:
+        for name in dict.fromkeys(filter(None, map(_engine_of, failed))):
             try:
-                yield f"{name}: {' '.join(in_short(engines([name])[0], workers).sentences)}"
+                (engine,) = loaded([name], workers)
+                yield f"{name}: {' '.join(in_short(engine, workers).sentences)}"
             except ValueError as error:  # it can't even be imported
                 yield str(error)
 
 
-def _is_named(name: str, reports: list[pytest.TestReport]) -> bool:
-    return any(report.nodeid.endswith(f"[{name}]") for report in reports)
+def _engine_of(report: pytest.TestReport) -> str:
+    """Return the engine that a test is about, "" for a test of somebody else."""
+    return next((str(value) for name, value in report.user_properties if name == ENGINE), "")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
     """Say why claims have no verdict, each reason once, and what is behind those that differ."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
-        for line in _diagnoses(config, failed):
+        for line in _diagnoses(failed):
             terminalreporter.write_line(f"diagnosis: {line}")
     for why in NO_VERDICT:
         reports = terminalreporter.stats.get(why, [])

@@ -67,6 +67,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
     """
     if sys.stdout is None:  # closed by the caller
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # of names of files
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 

@@ -15,7 +15,9 @@ from compare.cli.door.options import Settings, Tolerance, changed, finite, posit
 from compare.output.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
-    from reference_model.systems import System
+    from compare.engines import Engine
+    from reference_model.systems import FloatArray, System
+    from reference_model.trajectory import Trajectory
 
 MOST_SAMPLES = 10_000_000
 """More would fill the memory of a machine."""
@@ -121,24 +123,28 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
     import numpy as np
 
     from compare.cli.trajectory_files import write_csv, writer
-    from compare.engines import UnsupportedSystemError, engines
+    from compare.engines import UnsupportedSystemError
+    from compare.run.loading import loaded
+    from compare.run.workers import Failure, Workers
     from reference_model.systems import checked_state
 
     output = request.output
-    with refused():
-        (chosen,) = engines([request.engine])
-        system = changed(paper, request.settings or [])
-        if missing := chosen.lacking([system]):
-            raise UnsupportedSystemError(missing)
-        state = checked_state(system, start)
-        times = np.linspace(0.0, request.until, request.samples)
-        write = write_csv if output is None else writer(output)
-        if output is not None:
-            _check_file(output)
-    try:
-        trajectory = chosen.simulate(system, state, times, tolerance=request.tolerance)
-    except Exception as error:  # whatever an engine raises
-        raise EngineFailedError(_reason(chosen.name, error)) from error
+    with Workers() as workers:
+        with refused():
+            (chosen,) = loaded([request.engine], workers)
+            system = changed(paper, request.settings or [])
+            if missing := chosen.lacking([system]):
+                raise UnsupportedSystemError(missing)
+            state = checked_state(system, start)
+            times = np.linspace(0.0, request.until, request.samples)
+            write = write_csv if output is None else writer(output)
+            if output is not None:
+                _check_file(output)
+        trajectory = workers.ask(
+            _told, chosen, system, state, times, request.tolerance, write is not write_csv
+        )
+    if isinstance(trajectory, Failure):
+        raise EngineFailedError(f"engine {chosen.name!r} failed: {trajectory}")
     if output is None:
         with printing():
             write(trajectory, chosen.name, sys.stdout)
@@ -150,14 +156,14 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
         raise BadInputError(_unwritable(output, error)) from None
 
 
-def _reason(engine: str, error: Exception) -> str:
-    """Return what an engine raised: a sentence of its own, or which exception and where in its code."""
-    from compare.run.workers import failure
+def _told(
+    engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
+) -> Trajectory:
+    """Return the motion as numbers, with its phases if they are asked for: the engine may be asked again for them."""
+    from reference_model.trajectory import Trajectory
 
-    if isinstance(error, RuntimeError | ValueError) and str(error):
-        return str(error)
-    failed = failure(error)
-    return f"engine {engine!r} failed: {failed}"
+    found = engine.simulate(system, state, times, tolerance=tolerance)
+    return Trajectory(system, found.times, found.states, found.phases if phases else (), found.solution)
 
 
 def _unwritable(path: Path, error: OSError) -> str:

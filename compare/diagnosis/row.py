@@ -98,6 +98,11 @@ class Row:
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
 
     @property
+    def empty(self) -> bool:
+        """Whether nothing was measured, and nothing failed."""
+        return not (self.law or self.creep or self.lag or self.motions or self.gaps)
+
+    @property
     def wrong(self) -> bool:
         """Whether something was found that no smaller step cures."""
         return (

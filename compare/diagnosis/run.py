@@ -9,7 +9,7 @@ from typing import Any
 
 from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.row import Row
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.run.workers import Failure, Workers
 
 IN_SHORT = 20.0
@@ -44,7 +44,7 @@ def diagnosed(
     with Workers(jobs, limit) as workers:
         for engine in engines:
             for part in parts[engine]:
-                workers.submit((engine.name, part), measured, engine, part)
+                workers.submit((engine.name, part), measured, engine, part, owner=owner_of(engine))
         for number, done in enumerate(workers.finished(), 1):
             key: Any = done.key
             name, part = key
@@ -63,7 +63,7 @@ def in_short(engine: Engine, workers: Workers) -> Row:
     row, parts = _empty(engine), parts_of(engine)
     for part in PROBES:
         if part in parts and not row.gaps:
-            workers.submit(part, measured, engine, part)
+            workers.submit(part, measured, engine, part, owner=owner_of(engine))
             (done,) = workers.finished()
             row = _with(row, part, done.value, done.seconds)
     return row

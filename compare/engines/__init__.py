@@ -35,11 +35,14 @@ from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import (
     engines,
     imported,
+    is_registered,
     known_name,
     on_request,
+    owner_of,
     register,
     repeated_by,
     shares_code,
+    told_apart,
 )
 from compare.engines.stick import StatesOnly
 from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
@@ -66,12 +69,15 @@ __all__ = [
     "exudyn_native",
     "imported",
     "installed_engine",
+    "is_registered",
     "known_name",
     "on_request",
     "one_of",
+    "owner_of",
     "plain",
     "reference",
     "register",
     "repeated_by",
     "shares_code",
+    "told_apart",
 ]

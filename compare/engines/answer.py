@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import System
-from reference_model.trajectory import Trajectory
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Phase, Trajectory
+
+PHASES = ("slip", "pivot", "stick")
+"""The kinds of phases."""
 
 TIME_ROUNDING = 1e-12
 """Relative: times of the same grid that were added up in another order agree to this."""
+
+
+REAL = "fiu"
+"""NumPy's kinds of real numbers: no texts and no truth values."""
 
 
 class BadTrajectoryError(RuntimeError):
@@ -24,6 +31,12 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"simulate() returned {reprlib.repr(trajectory)}: it must be a Trajectory")
     asked, got = np.asarray(times, dtype=float), np.asarray(trajectory.times)
+    states, shape = np.asarray(trajectory.states), (len(asked), system.state_size)
+    for name, array in (("times", got), ("states", states)):
+        if array.dtype.kind not in REAL:
+            raise BadTrajectoryError(
+                f"the trajectory's {name} are of the type {array.dtype}: they must be real numbers"
+            )
     if got.shape != asked.shape:
         raise BadTrajectoryError(
             f"the trajectory's times have shape {got.shape}: {asked.shape} were asked for"
@@ -34,14 +47,41 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
         raise BadTrajectoryError(
             f"the trajectory's times[{i}] = {float(got[i])!r} s: {float(asked[i])!r} s was asked for"
         )
-    states, shape = np.asarray(trajectory.states), (len(asked), system.state_size)
     if states.shape != shape:
         raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: they must have {shape}")
     broken = ~np.all(np.isfinite(states), axis=1)
     if np.any(broken):
         i = int(np.argmax(broken))
         raise BadTrajectoryError(f"the state at t = {asked[i]:g} s is not finite: {states[i].tolist()}")
+    _check_phases(trajectory.phases, asked, system.state_size)
     return trajectory
+
+
+def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:
+    """Raise ``BadTrajectoryError`` unless the phases begin one after the other, none before ``times``."""
+    slack = TIME_ROUNDING * np.max(np.abs(times))
+    earliest = times[0] - slack
+    for i, phase in enumerate(phases):
+        if not isinstance(phase, Phase) or phase.kind not in PHASES:
+            raise BadTrajectoryError(
+                f"phases[{i}] is of the kind {getattr(phase, 'kind', None)!r}: it must be a Phase of {PHASES}"
+            )
+        if not (_is_real(phase.initial_state, (components,)) and _is_real([phase.start, phase.end], (2,))):
+            raise BadTrajectoryError(
+                f"phases[{i}] must have finite times and {components} finite numbers as its initial_state"
+            )
+        if not earliest <= phase.start <= phase.end:
+            raise BadTrajectoryError(
+                f"phases[{i}] lasts from {phase.start:g} to {phase.end:g} s: phases must begin one after the other, "
+                f"the first not before {times[0]:g} s"
+            )
+        earliest = phase.start - slack
+
+
+def _is_real(value: object, shape: tuple[int, ...]) -> bool:
+    """Return whether ``value`` is made of finite real numbers in this shape."""
+    array = np.asarray(value)
+    return array.dtype.kind in REAL and array.shape == shape and bool(np.isfinite(array).all())
 
 
 def as_many_as(answers: object, asked: int) -> list[object]:

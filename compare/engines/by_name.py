@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -12,22 +13,30 @@ from reference_model.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class ByName:
-    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn."""
+    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn.
+
+    The module is looked for in ``folder``, if there is one, after all other places.
+    """
 
     module: str
     function: str
+    folder: str = ""
 
     def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
         """Call it."""
-        trajectory: Trajectory = self._function(*arguments, **options)
+        trajectory: Trajectory = self.imported(*arguments, **options)
         return trajectory
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
         """What the function has under this name, if anything, see ``compare.engines.engine.SimulateMany``."""
-        return getattr(self._function, "simulate_many", None)
+        return getattr(self.imported, "simulate_many", None)
 
     @property
-    def _function(self) -> Callable[..., Any]:
+    def imported(self) -> Callable[..., Any]:
+        """The function itself."""
+        if self.folder and self.folder not in sys.path:
+            # last, or a file of the user's would take the place of a library's module
+            sys.path.append(self.folder)
         function: Callable[..., Any] = getattr(importlib.import_module(self.module), self.function)
         return function

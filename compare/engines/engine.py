@@ -16,6 +16,7 @@ from compare.engines.names import one_of
 from compare.engines.precision import LEAST_PRECISE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.tolerances import USUAL_TOLERANCE
+from compare.output.outside_text import one_line
 from reference_model.support import Support
 from reference_model.systems import FloatArray, PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory
@@ -33,6 +34,9 @@ A block is a pin on a disc that does not turn: who simulates pins simulates bloc
 
 EVERY_KIND = tuple(KINDS)
 
+
+LEAST_STEP = 1e-9
+"""In s: with a shorter one the studies' motions of 10 s and more would take over 10¹⁰ steps."""
 
 COARSE_STEP = 30.0
 """How coarse a fixed step is, see ``StatesOnly``: contact that sticks along tangents creeps by ωh/2 of its speed."""
@@ -112,8 +116,8 @@ class Engine:
     Raises
     ------
     ValueError
-        For a kind that there is not, a step that is not > 0, or ``sticks``, ``nonlinear`` or ``phases`` that is not
-        True or False.
+        For a kind that there is not, a step below ``LEAST_STEP``, or ``sticks``, ``nonlinear`` or ``phases`` that is
+        not True or False.
 
     """
 
@@ -133,6 +137,8 @@ class Engine:
 
     def __post_init__(self) -> None:
         """Refuse a promise that no study could ask for."""
+        for name in ("name", "version", "about"):
+            object.__setattr__(self, name, one_line(getattr(self, name)))
         object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
             one_of("kind of system", kind, KINDS)
@@ -144,8 +150,8 @@ class Engine:
             raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {LEAST_PRECISE:g}")
         if self.step is not None:
             object.__setattr__(self, "step", finite_number("step", self.step))
-            if self.step <= 0.0:
-                raise ValueError(f"step = {self.step:g} s: it must be > 0")
+            if self.step < LEAST_STEP:
+                raise ValueError(f"step = {self.step:g} s: it must be at least {LEAST_STEP:g} s")
         object.__setattr__(self, "order", finite_number("order", self.order))
         if self.order <= 0.0:
             raise ValueError(f"order = {self.order:g}: it must be > 0")

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from compare.engines.engine import Engine
+from compare.output.outside_text import printable
 
 SHORTER = 4.0
 """By which steps become shorter from one time to the next."""
@@ -38,6 +39,9 @@ def decided(
         try:
             answer = ask(replace(engine, step=engine.step / share))
         except Exception as error:  # whatever the engine may raise: its own step was no failure
-            return answer, f"At a step {share:g} times as short as the engine's own it failed: {error}"
+            return (
+                answer,
+                f"At a step {share:g} times as short as the engine's own it failed: {printable(error)}",
+            )
         note = f"Asked at a step {share:g} times as short as the engine's own, which leaves it open."
     return answer, note

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
 import os
-import pickle
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -68,12 +65,22 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     Raises ``ValueError`` for a name that is unknown or can't be imported.
     """
     names = list(names)
-    return _told_apart(names, [_named(name) for name in names]) or tuple(
+    return told_apart(names, [_named(name) for name in names]) or tuple(
         engine for name, engine in _REGISTRY.items() if name not in _ON_REQUEST
     )
 
 
-def _told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
+def is_registered(name: str) -> bool:
+    """Return whether an engine of that name needs no import of anything else."""
+    return name in _REGISTRY
+
+
+def owner_of(engine: Engine | None) -> str:
+    """Return the name of a foreign engine, "" for those of this project: foreign code gets processes of its own."""
+    return "" if engine is None or is_registered(engine.name) else engine.name
+
+
+def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
     """Return the engines, called as they were asked for where a shorter name of theirs is another's too."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
     return tuple(
@@ -142,29 +149,19 @@ def imported(name: str, place: str) -> Engine:
         simulate.step = 1e-3
     """
     module_name, _, function_name = place.partition(":")
-    if os.getcwd() not in sys.path:  # a console script does not look into the current folder
-        # last, or a file of the user's would take the place of a library's module
-        sys.path.append(os.getcwd())
+    function = ByName(module_name, function_name, os.getcwd())  # where a console script does not look
     try:
-        simulate = getattr(importlib.import_module(module_name), function_name)
-    except Exception as error:  # whatever a module may do when it is imported
+        simulate = function.imported
+    except (Exception, SystemExit) as error:  # whatever a module may do when it is imported
         kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
         raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
     if not callable(simulate):
         raise ValueError(f"engine {name!r} is no function")
     declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
-    travels = simulate if _can_be_sent(simulate) else ByName(module_name, function_name)
+    if "version" in declared:
+        declared["version"] = str(declared["version"])
     try:
-        return Engine(name, travels, **{"phases": False, **declared})
+        return Engine(name, function, **{"phases": False, **declared})
     except (TypeError, ValueError) as error:
         attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
-
-
-def _can_be_sent(function: object) -> bool:
-    """Return whether another process gets ``function`` as it is; a closure has to be imported there by its name."""
-    try:
-        pickle.dumps(function)
-    except Exception:  # whatever an object's own pickling may raise
-        return False
-    return True

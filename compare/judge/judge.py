@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 STUDIES = ("trajectories", "sticking-domain")
 """A second each for an engine, and between them they catch the whole catalogue by two kinds of claims."""
 
-LIMIT: float | None = 120.0
+LIMIT = 120.0
 """Seconds after which a fault has stopped an engine, as far as a study is concerned."""
 
 

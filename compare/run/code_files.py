@@ -27,7 +27,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 
-class UnknownCodeError(Exception):
+class UnknownCodeError(RuntimeError):
     """What some code depends on can't be seen; the message says why."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import zlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile
@@ -70,8 +70,8 @@ class DrawingStore:
                 for name, content in files.items():
                     archive.writestr(f"{kind}/{name}", content)
 
-    def find(self, study: str, stamp: str) -> Drawing | None:
-        """Return the drawing if it is there, legible, and of this stamp."""
+    def find(self, study: str, stamp: str, names: Collection[str]) -> Drawing | None:
+        """Return the drawing if it is there, legible, of this stamp, and has no other figures than ``names``."""
         found: dict[str, dict[str, bytes]] = {"figures": {}, "animations": {}}
         try:
             with ZipFile(self._path(study)) as archive:
@@ -79,6 +79,8 @@ class DrawingStore:
                     return None
                 for path in archive.namelist():
                     kind, _, name = path.partition("/")
+                    if name not in names:  # it may lead out of the report's folder
+                        return None
                     found[kind][name] = archive.read(path)
         except (OSError, EOFError, BadZipFile, ValueError, KeyError, zlib.error):  # so it is drawn again
             return None

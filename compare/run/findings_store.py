@@ -5,9 +5,11 @@ Libraries that keep results of functions (joblib, diskcache) pickle them: that i
 
 from __future__ import annotations
 
+import hashlib
 import json
 import lzma
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from lzma import LZMAError
 from pathlib import Path
@@ -17,7 +19,11 @@ import numpy as np
 
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
+from compare.output.outside_text import all_printable
 from compare.output.text_files import replacing
+
+LONGEST = 100
+"""Letters of a file's name that say what is in it: the name of a program may be longer than a file's may be."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +56,22 @@ class Store:
         with replacing(self._json(study, engine), "wb") as stream:
             stream.write(lzma.compress(json.dumps(content).encode(), preset=1))
 
-    def find(self, study: str, engine: str, stamp: str | None) -> tuple[Findings, float] | None:
-        """Return findings and their seconds if they are there, legible, and of this stamp."""
+    def find(
+        self, study: str, engine: str, stamp: str | None, identities: Collection[str] = ()
+    ) -> tuple[Findings, float] | None:
+        """Return findings and their seconds if they are there, legible, and of this stamp.
+
+        A claim of theirs must have one of the ``identities`` or none, since files of the report have its name.
+        """
         path = self._path(study, engine)
         try:
-            content = json.loads(lzma.decompress(self._json(study, engine).read_bytes()))
+            raw = lzma.decompress(self._json(study, engine).read_bytes())
+            content = all_printable(json.loads(raw))
             if stamp is None or content["stamp"] != stamp:
                 return None
             claims = tuple(claim_from_json(claim) for claim in content["claims"])
+            if not {claim.identity for claim in claims} <= {"", *identities}:
+                return None
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
                 data = {name: arrays[name] for name in arrays.files}
             return Findings(claims, data, content["not_simulated"]), float(content["seconds"])
@@ -76,5 +90,7 @@ class Store:
         return self._path(study, engine).with_suffix(".json.xz")
 
     def _path(self, study: str, engine: str) -> Path:
-        # no dot: with_suffix would take it for a suffix
-        return self.folder / re.sub(r"[^\w-]", "_", f"{study}--{engine}")
+        # Names differ by the digest alone, also on file systems that ignore case; the words are for people.
+        words = re.sub(r"[^\w-]", "_", f"{study}--{engine}", flags=re.ASCII)[:LONGEST]
+        digest = hashlib.sha256(repr((study, engine)).encode()).hexdigest()[:16]
+        return self.folder / f"{words}--{digest}"

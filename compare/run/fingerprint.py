@@ -160,6 +160,10 @@ class _Contents:
             raise UnknownCodeError(thing.why)
         if isinstance(thing, ByName):
             self._code.add(thing.module)
+            self.written.append(("by name", thing.module, thing.function))
+            if not self._code.trusts(thing.module):
+                self.add(thing.imported)
+            return
         function = getattr(thing, "py_func", None)
         compiled = any(base.__module__.partition(".")[0] == "numba" for base in kind.__mro__)
         if compiled and isinstance(function, FunctionType):

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import ByName, Engine, UnsupportedSystemError, owner_of
+from compare.output.outside_text import printable
 from compare.run.code_files import UnknownCodeError
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
@@ -119,7 +120,7 @@ def run(
     folder : Path
         Findings and drawings are written there as they come in; what was drawn of equal data is taken from there.
     jobs : int
-        Number of processes; with 1, and no ``limit``, all happens in this one.
+        Number of processes.
     limit : float, optional
         Seconds after which a measurement is given up, as its engine's failure.
     resume : bool
@@ -172,15 +173,15 @@ class _Runner:
             for column in result.columns(study)
         }
         for key, (study, engine) in () if resume else work.items():
-            self._workers.submit(key, measured, study, engine)
+            self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
         self._workers.begin()  # while it is found out what the findings depend on
         for key, (study, engine) in work.items():
             self._stamps[key] = self._stamp(study, engine)
-            found = self._store.find(*key, self._stamps[key]) if resume else None
+            found = self._store.find(*key, self._stamps[key], _identities(study)) if resume else None
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             elif resume:
-                self._workers.submit(key, measured, study, engine)
+                self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
         for study in result.studies:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):
@@ -200,11 +201,10 @@ class _Runner:
     def _fingerprint(self, name: str, thing: object) -> str | None:
         """Return what ``thing`` depends on; file why that is not known."""
         if id(thing) not in self._prints:
-            try:
-                self._prints[id(thing)] = fingerprint(thing, PACKAGES)
-            except UnknownCodeError as error:
-                self._prints[id(thing)] = None
-                self._result.unknown[name] = str(error)
+            found = _printed(thing)
+            if isinstance(found, Failure):
+                self._result.unknown[name] = found.reason
+            self._prints[id(thing)] = None if isinstance(found, Failure) else found
         return self._prints[id(thing)]
 
     def _take(self, done: Done) -> str:
@@ -234,11 +234,24 @@ class _Runner:
         data, code, found = self._result.data(study), self._fingerprint(name, study), None
         if code is not None:
             self._drawn_from[name] = drawing_stamp(code, data)
-            found = self._drawings.find(name, self._drawn_from[name])
+            found = self._drawings.find(name, self._drawn_from[name], study.figures)
         if found is not None:
             self._result.drawings[name] = found
         else:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
+
+
+def _printed(thing: object) -> str | Failure:
+    """Return the fingerprint of a study or an engine; one that has to be imported for it is so in another process."""
+    function = getattr(thing, "function", None)
+    if isinstance(function, ByName) and function.module.partition(".")[0] not in PACKAGES:
+        with Workers() as workers:
+            found: str | Failure = workers.ask(fingerprint, thing, PACKAGES)
+            return found
+    try:
+        return fingerprint(thing, PACKAGES)
+    except UnknownCodeError as error:
+        return Failure(str(error))
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:
@@ -256,4 +269,9 @@ def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) ->
         findings = study.measure_theory(only=only)
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
-    return findings
+    return replace(findings, not_simulated=printable(findings.not_simulated))
+
+
+def _identities(study: Study) -> set[str]:
+    """Return the names of the claims that a study declares."""
+    return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}

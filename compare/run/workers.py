@@ -24,6 +24,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from compare.output.outside_text import printable
+
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
@@ -33,12 +35,21 @@ SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 """Until it has been told this process's path, a new one would look into the current folder first."""
 
 
-STANDARD_ERROR = 2
-"""Its file descriptor."""
+STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
+"""Their file descriptors."""
 
+
+MOST_ERRORS = 100_000
+"""Characters of a process's standard error that are handed on after a piece of work."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
 """How the loader of shared libraries says it."""
+
+FAREWELL = 1.0
+"""Time in s until a process whose connection has closed must have an exit status."""
+
+TICK = 0.005
+"""Interval in s at which its exit status is checked."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +58,11 @@ class Failure:
 
     reason: str
     where: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make its text printable: most of it is an engine's."""
+        object.__setattr__(self, "reason", printable(self.reason))
+        object.__setattr__(self, "where", tuple(map(printable, self.where)))
 
     def __str__(self) -> str:
         """Return the sentence with the innermost place in brackets."""
@@ -62,17 +78,25 @@ class Done:
     seconds: float
 
 
-class Workers:
-    """``jobs`` processes, or this very process for ``jobs=1``; use as a context manager.
+@dataclass(frozen=True, eq=False)
+class _Work:
+    key: Hashable
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    owner: str
 
-    With a ``limit`` in s a piece of work that takes longer has failed, and one job has a process of its own too,
-    since only a process can be ended. Leaving the context ends the processes at once, whatever they do.
+
+class Workers:
+    """Up to ``jobs`` processes; use as a context manager.
+
+    With a ``limit`` in s a piece of work that takes longer has failed. Leaving the context ends the processes,
+    whatever they do.
     """
 
-    def __init__(self, jobs: int, limit: float | None = None) -> None:
+    def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
         self._jobs = jobs
         self._limit = limit
-        self._queue: deque[tuple[Hashable, Callable[..., Any], tuple[Any, ...]]] = deque()
+        self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
         self._refused: list[Done] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
@@ -88,51 +112,64 @@ class Workers:
         self._temporary.cleanup()  # a process that was killed has left its files there
 
     def submit(
-        self, key: Hashable, function: Callable[..., Any], *arguments: Any, first: bool = False
+        self,
+        key: Hashable,
+        function: Callable[..., Any],
+        *arguments: Any,
+        first: bool = False,
+        owner: str = "",
     ) -> None:
-        """Put ``function(*arguments)`` into the queue, at its end unless ``first``."""
-        work = (key, function, arguments)
+        """Put ``function(*arguments)`` into the queue, at its end unless ``first``.
+
+        A process that has worked for an ``owner``, a foreign engine for example, works for no other one: foreign code
+        may have changed the modules in it.
+        """
+        work = _Work(key, function, arguments, owner)
         if first:
             self._queue.appendleft(work)
         else:
             self._queue.append(work)
 
     def begin(self) -> None:
-        """Let other processes begin with what is submitted; whoever calls this has something else to do first."""
-        if self._jobs > 1 or self._limit is not None:
-            self._refused += self._start()
+        """Let the processes begin with what is submitted; whoever calls this has something else to do first."""
+        self._refused += self._start()
 
     def finished(self) -> Iterator[Done]:
         """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
         yield from self._refused
         self._refused.clear()
         while self._queue or any(worker.key is not None for worker in self._processes):
-            if self._jobs == 1 and self._limit is None:
-                key, function, arguments = self._queue.popleft()
-                yield Done(key, *_timed(function, arguments))
-            else:
-                yield from self._start()
-                yield from self._collect()
+            yield from self._start()
+            yield from self._collect()
+
+    def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:
+        """Return the result of ``function(*arguments)`` or its ``Failure``, when no other work is submitted."""
+        self.submit("", function, *arguments, owner=owner)
+        (done,) = self.finished()
+        return done.value
 
     def _start(self) -> Iterator[Done]:
         """Give work to all that are idle; what can't be sent to another process has failed."""
         while self._queue:
             worker = next((worker for worker in self._processes if worker.key is None), None)
+            if worker is None and len(self._processes) == self._jobs:
+                return
+            work = next((one for one in self._queue if worker and one.owner == worker.owner), self._queue[0])
+            self._queue.remove(work)
+            try:
+                message = pickle.dumps((work.function, work.arguments))
+            except Exception as error:  # whatever an object's own pickling raises
+                reason = f"it cannot be sent to another process ({error}): use functions of a module"
+                yield Done(work.key, Failure(reason), 0.0)
+                continue
+            if worker and worker.owner not in ("", work.owner):
+                worker.end()
+                self._processes.remove(worker)
+                worker = None
             if worker is None:
-                if len(self._processes) == self._jobs:
-                    return
                 worker = _Worker(self._temporary.name)
                 self._processes.append(worker)
-            key, function, arguments = self._queue.popleft()
-            try:
-                message = pickle.dumps((function, arguments))
-            except (pickle.PicklingError, AttributeError, TypeError) as error:
-                reason = (
-                    f"it can't be sent to another process ({error}): use --jobs 1 or functions of a module"
-                )
-                yield Done(key, Failure(reason), 0.0)
-                continue
-            worker.start(key, message)
+            worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
         """Wait for the first result, or for the first limit to be reached, and yield what is there by then."""
@@ -166,6 +203,7 @@ class _Worker:
         context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
         self.connection, other_end = context.Pipe()
         self.key: Hashable | None = None
+        self.owner = ""
         self.started = 0.0
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
@@ -176,33 +214,51 @@ class _Worker:
             self._process.start()
         other_end.close()
 
-    def start(self, key: Hashable, message: bytes) -> None:
-        self.key, self.started = key, time.monotonic()
+    def start(self, key: Hashable, message: bytes, owner: str) -> None:
+        self.key, self.owner, self.started = key, owner, time.monotonic()
         with suppress(BrokenPipeError):  # its end shows in result()
             self.connection.send_bytes(message)
 
     def result(self) -> Done:
         key, self.key = self.key, None
         try:
-            value, seconds = pickle.loads(self.connection.recv_bytes())
+            value = pickle.loads(self.connection.recv_bytes())
             self._errors.hand_on()
-        except (EOFError, OSError):
-            self.dead = True
-            self._process.join()
-            code = self._process.exitcode or 0
-            cause = signal.Signals(-code).name if code < 0 else f"exit status {code}"
+        except Exception:  # the engine has ended the process, or used its connection
+            cause = _cause_of_end(self._exit_code())
             said = self._errors.hand_on().strip().splitlines()
-            self._errors.close()
+            self.end()
             reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
-            value, seconds = Failure(reason), 0.0
-        return Done(key, value, seconds)
+            value = Failure(reason)
+        return Done(key, value, time.monotonic() - self.started)
 
     def end(self) -> None:
         self.dead = True
+        with suppress(AttributeError, ProcessLookupError, PermissionError):  # no groups, or not a leader yet
+            os.killpg(self._process.pid or 0, signal.SIGKILL)  # with the processes that an engine has started
         self._process.kill()  # compiled code may not listen to less
         self._process.join()
         self._errors.close()
         self.connection.close()
+
+    def _exit_code(self) -> int | None:
+        """Return the exit code of the process, None if it has none after ``FAREWELL``.
+
+        ``join`` would wait for ever: a process that closes all its descriptors looks as if it had ended.
+        """
+        deadline = time.monotonic() + FAREWELL
+        while self._process.exitcode is None and time.monotonic() < deadline:
+            time.sleep(TICK)
+        return self._process.exitcode
+
+
+def _cause_of_end(code: int | None) -> str:
+    """Return how a process with an exit code ended; None is that of one that still runs."""
+    if code is None:
+        return "it closed its connection"
+    if code >= 0:
+        return f"exit status {code}"
+    return next((one.name for one in signal.Signals if one == -code), f"signal {-code}")
 
 
 class _Errors:
@@ -242,7 +298,7 @@ class _Errors:
         # Both processes share one place in the file, where the other one writes.
         new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
         self._handed_on += len(new)
-        text = new.decode(errors="replace")
+        text = printable(new.decode(errors="replace"), MOST_ERRORS)
         if text and sys.stderr is not None:
             sys.stderr.write(text)
             sys.stderr.flush()
@@ -252,16 +308,28 @@ class _Errors:
 def _serve(connection: Connection) -> None:
     """Work until the other end of the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
+    if hasattr(os, "setsid"):
+        os.setsid()  # signals to the group of an engine's process stay there
+    here = os.getpid()
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    with suppress(EOFError):
+    sys.stdout = sys.stderr  # what an engine prints is handed on as its errors are
+    with suppress(OSError):  # closed by the caller
+        os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
+    try:
         while True:
             message = connection.recv_bytes()
-            value, seconds = _timed(_unpickled_call, (message,))
+            value = attempted(_unpickled_call, message)
+            if os.getpid() != here:  # a copy that an engine has forked must not answer too
+                os._exit(1)
             try:
-                answer = pickle.dumps((value, seconds))
+                answer = pickle.dumps(value)
             except Exception as error:
-                answer = pickle.dumps((Failure(f"its result can't be sent back: {error}"), seconds))
+                answer = pickle.dumps(Failure(f"its result cannot be sent back: {error}"))
             connection.send_bytes(answer)
+    except EOFError:
+        pass
+    except OSError:  # an engine has closed the connection, and standard streams perhaps
+        os._exit(1)
 
 
 def _end_with_parent() -> None:
@@ -277,19 +345,17 @@ def _unpickled_call(message: bytes) -> Any:
     return function(*arguments)
 
 
-def _timed(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
-    """Return the result of the call, or its failure, and the seconds that it took."""
-    start = time.perf_counter()
+def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the result of the call, or its failure."""
     try:
-        value = function(*arguments)
-    except Exception as error:  # whatever an engine raises: the others go on
-        value = failure(error)
-    return value, time.perf_counter() - start
+        return function(*arguments)
+    except BaseException as error:  # whatever an engine raises, SystemExit too: the others go on
+        return failure(error)
 
 
-def failure(error: Exception) -> Failure:
+def failure(error: BaseException) -> Failure:
     """Return what an exception says as a sentence, and the lines of code on its way, innermost last."""
-    lines = str(error).strip().splitlines()
+    lines = printable(error).strip().splitlines()
     # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
@@ -306,7 +372,7 @@ def lacks_memory(error: BaseException | None) -> bool:
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
-        if any(words in str(error) for words in NO_MEMORY):
+        if any(words in printable(error) for words in NO_MEMORY):
             return True
         error = error.__cause__ or error.__context__
     return False

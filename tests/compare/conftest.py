@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import math
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from types import SimpleNamespace
 
 import fake_studies
 import pytest
@@ -14,8 +16,34 @@ from processes import PATIENCE, REAL, environment
 
 from compare.cli import app as cli
 from compare.engines import registry
+from compare.run import workers
 
 Process = subprocess.CompletedProcess[str]
+
+
+class WorkerHere:
+    """Does the work of a process in this one, in no time to start."""
+
+    def __init__(self, temporary: str) -> None:
+        self.key, self.owner, self.started, self.dead, self.connection = None, "", math.inf, False, self
+
+    def start(self, key: Hashable, message: bytes, owner: str) -> None:
+        self.key, self.message = key, message
+
+    def result(self) -> workers.Done:
+        key, self.key = self.key, None
+        return workers.Done(key, workers.attempted(workers._unpickled_call, self.message), 0.0)
+
+    def end(self) -> None:
+        pass
+
+
+@pytest.fixture
+def in_this_process(monkeypatch) -> None:
+    """Let all workers work in this process, where what a test has changed is changed for them too."""
+    monkeypatch.setattr(workers, "_Worker", WorkerHere)
+    monkeypatch.setattr(workers, "wait", lambda connections, left: connections)
+    monkeypatch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
 
 
 @pytest.fixture(scope="session")

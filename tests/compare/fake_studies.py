@@ -244,6 +244,12 @@ def draw_wrongly(data):
 
 
 UNDRAWABLE = Study("undrawable", "A figure that fails", "None.", measure_agreement, draw_wrongly)
-NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", lambda engine: None, draw_nothing)
+
+
+def measure_nothing(engine):
+    return None
+
+
+NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", measure_nothing, draw_nothing)
 
 ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE, PARTLY, RING_ONLY)

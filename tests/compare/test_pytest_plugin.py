@@ -14,7 +14,7 @@ import pytest
 from processes import PATIENCE, ROOT
 
 from compare.claims.claim import THEORY
-from compare.pytest_plugin import NOTHING_SHOWN
+from compare.pytest_plugin import NOTHING_MEASURED, NOTHING_SHOWN
 from compare.studies import STUDIES
 
 ENGINES = """
@@ -115,9 +115,32 @@ def test_every_study_of_engines_lists_its_claims():
         assert len(set(listed)) == len(listed), name
 
 
+def test_every_claim_is_collected_once(tmp_path):
+    _, output, _ = run(tmp_path, "--pyargs", "compare", "--engine", "nobody:simulate", "--collect-only", "-q")
+    collected = [line.partition("::")[2] for line in output.splitlines() if "::" in line]
+    of_any = [study for study in STUDIES if not study.only]
+    assert sorted(collected) == sorted(claim for study in of_any for claim in study.sentences())
+
+
+@pytest.mark.parametrize(
+    ("names", "options", "expected"),
+    [
+        (("reference",), (), 0),
+        (("reference",), ("--min-conclusive", "1000"), NOTHING_SHOWN),
+        (("reference", "mine:sliding"), (), NOTHING_MEASURED),
+        (("exiting:simulate",), (), 1),
+    ],
+)
+def test_the_status_says_what_was_not_measured_also_without_a_terminal(names, options, expected, tmp_path):
+    (tmp_path / "exiting.py").write_text("raise SystemExit(0)")
+    status, *_ = judge(tmp_path, "sticking-domain", *names, options=(*options, "-p", "no:terminal"))
+    assert status == expected
+
+
 FAILING = {
     "mine:not_a_number": "s is not finite: [nan, ",
     "mine:raising": "ZeroDivisionError: float division by zero",
+    "exiting:simulate": "engine 'exiting:simulate' can't be imported: SystemExit: 0",
     "mine:dying": "its process came to a sudden end (exit status 3)",
     "mine:missing": "engine 'mine:missing' can't be imported: module 'mine' has no attribute 'missing'",
     "no_such_module:simulate": "can't be imported: No module named 'no_such_module'",
@@ -127,7 +150,8 @@ FAILING = {
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory):
     names = ("reference", "mine:resting", *FAILING)
-    return judge(tmp_path_factory.mktemp("judged"), "sticking-domain", *names)
+    (folder := tmp_path_factory.mktemp("judged")).joinpath("exiting.py").write_text("raise SystemExit(0)")
+    return judge(folder, "sticking-domain", *names)
 
 
 def test_every_claim_is_a_test_of_every_engine(judged):
@@ -186,7 +210,7 @@ def test_on_several_cores_every_claim_is_told_once(tmp_path):
     status, output, cases = judge(
         tmp_path, "sticking-domain", "mine:sliding", options=("-n", "2"), run=run_by_itself
     )
-    assert status == NOTHING_SHOWN
+    assert status == NOTHING_MEASURED
     assert set(cases) == set(CLAIMS["sticking-domain"])
     assert {tag for tag, _ in cases.values()} == {"skipped"}
     assert "not attempted: mine:sliding does not simulate stick (" in output

@@ -10,7 +10,9 @@ from typing import Any
 
 from typer.core import TyperCommand
 
-FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
+from compare.output.outside_text import printable
+
+FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 class BadInputError(Exception):
@@ -74,5 +76,5 @@ def refused() -> Iterator[None]:
 
 def say(sentence: str, result: int) -> int:
     """Print a sentence on the error stream and return the exit status ``result``."""
-    print(sentence, file=sys.stderr)
+    print(printable(sentence), file=sys.stderr)
     return result

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from compare.cli.door.command import FINE, SOMETHING_DIFFERS, printing, refused
+from compare.cli.door.command import FINE, NOTHING_MEASURED, SOMETHING_DIFFERS, printing, refused, say
 
 Old = Annotated[Path, typer.Argument(metavar="OLD", help="Folder or results.json of a report.")]
 New = Annotated[Path, typer.Argument(metavar="NEW", help="Folder or results.json of a later one.")]
@@ -36,7 +36,7 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
     """Tell what parts two reports: what moved by more than its error bars, what is new, what is gone.
 
     The exit status is 0 when no claim moved, got worse or is gone, but for those of the baseline, 1 when one did,
-    and 2 on bad input.
+    2 on bad input, and 4 when an engine of NEW has no verdict, so nothing was compared.
 
     \b
     Examples:
@@ -46,7 +46,7 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
     """
     from compare.report.machines.baseline import read_baseline
     from compare.report.machines.baseline import write_baseline as write
-    from compare.report.machines.comparison import Kind, changes, failures
+    from compare.report.machines.comparison import Kind, changes, failures, without_verdict
     from compare.report.machines.results_json import read_results
 
     with refused():
@@ -63,4 +63,8 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
         print(", ".join(f"{counts[kind]} {kind.value}" for kind in Kind))
     if write_baseline is not None:
         write(write_baseline, failing)
-    return SOMETHING_DIFFERS if any(change.counts for change in found) else FINE
+    if any(change.counts for change in found):
+        return SOMETHING_DIFFERS
+    if empty := without_verdict(after):
+        return say(f"{new} has no verdict on {', '.join(empty)}: nothing was compared", NOTHING_MEASURED)
+    return FINE

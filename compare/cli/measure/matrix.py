@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.door.command import FINE, INTERRUPTED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.door.command import (
+    FINE,
+    INTERRUPTED,
+    NOTHING_MEASURED,
+    SOMETHING_DIFFERS,
+    printing,
+    refused,
+    say,
+)
 from compare.cli.door.options import Folder, Jobs, check_folder, cores, positive
 from compare.cli.door.progress import measurements
 from compare.cli.measure.report import Engines
@@ -45,17 +53,19 @@ def matrix(
     Blocks that slide, that are pulled and whose slip turns tell the law in seconds; then come the motions by which
     the recorded engines are measured, each at four steps or tolerances. Prints a few sentences for each engine and a
     table, and writes matrix.json, as rows come in, and matrix.svg and matrix.png. The exit status is 0 when no engine
-    has anything that a smaller step does not cure, 1 otherwise, 2 on bad input, and 130 after Ctrl-C.
+    has anything that a smaller step does not cure, 1 otherwise, 2 on bad input, 4 when an engine simulates none of
+    this, and 130 after Ctrl-C.
 
     \b
     Examples:
       friction-discs matrix --engine reference
       friction-discs matrix --engine reference --engine exudyn --recorded
     """
-    from compare.engines import engines
+    from compare.run.loading import loaded
+    from compare.run.workers import Workers
 
-    with refused():
-        chosen = engines(dict.fromkeys(engine or []))
+    with refused(), Workers() as workers:
+        chosen = loaded(engine or [], workers)
         check_folder(output)
 
     from compare.diagnosis.files import write_picture, write_rows
@@ -78,8 +88,14 @@ def matrix(
     with printing():
         _print_table(rows)
         print(output / "matrix.png")
-    bad = any(row.wrong or row.gaps for row in rows[others:])
-    return SOMETHING_DIFFERS if bad else FINE
+    if any(row.wrong or row.gaps for row in rows[others:]):
+        return SOMETHING_DIFFERS
+    empty = [row.engine for row in rows[others:] if row.empty]
+    if empty:
+        return say(
+            f"nothing was measured: {', '.join(empty)} simulates none of these motions", NOTHING_MEASURED
+        )
+    return FINE
 
 
 def _print_row(row: Row) -> None:

@@ -56,7 +56,10 @@ def plan(
     from compare.run.plan import Planned, planned, write_plan
     from compare.run.workers import Failure, Workers
 
-    studies = tuple(study for study in studies if not study.only)  # those are of engines of this project
+    for study in studies:
+        if names and study.only:
+            say(f"{study.name} is about {' and '.join(study.only)} only: nothing is planned", FINE)
+    studies = tuple(study for study in studies if not study.only)
     found: dict[str, Planned | Failure] = {}
     with Workers(jobs or cores()) as workers, measurements() as progress:
         for study in sorted(studies, key=lambda study: -study.seconds):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +11,7 @@ import typer
 from compare.cli.door.command import (
     FINE,
     INTERRUPTED,
+    NOTHING_MEASURED,
     NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     printing,
@@ -80,7 +81,7 @@ LeastConclusive = Annotated[
     typer.Option(
         "--min-conclusive",
         metavar="N",
-        help="How many verdicts there have to be that are neither inconclusive nor missing.",
+        help="How many claims have to agree; the theory's own algebra does not count.",
         parser=whole("min-conclusive", 0, 1_000_000),
     ),
 ]
@@ -90,8 +91,7 @@ OneClaim = Annotated[
     str | None,
     typer.Option(
         metavar="ID",
-        help="Measure this one claim, as the report calls it, and print its numbers; --output is then the folder "
-        "claim, if nothing else is said.",
+        help="Measure this one claim, as the report calls it, and print its numbers.",
         show_default=False,
     ),
 ]
@@ -112,8 +112,12 @@ def report(
     """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
 
     The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
-    little was conclusive, and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
+    few claims agree, 4 when an engine that --engine names has no verdict or gives no reason for one that is missing,
+    and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
     Files of data that an engine of your own reads are not looked at by that: when they change, measure anew.
+
+    The whole report goes into the folder report. A part of it (some studies or engines, one claim, the quick level)
+    goes into the folder report-part and leaves the whole report as it is. --output names another folder.
 
     \b
     Examples:
@@ -122,12 +126,13 @@ def report(
       friction-discs report fig03 fig05 --engine exudyn --output fig
       friction-discs report --claim fig06/rests --engine exudyn
     """
-    from compare.engines import engines
+    from compare.run.loading import loaded
+    from compare.run.workers import Workers
 
     studies = _asked(context, names or [], claim, level, resume)
-    output = output if claim is None else _folder_of_claim(context, output)
-    with refused():
-        chosen = engines(dict.fromkeys(engine or []))
+    output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
+    with refused(), Workers() as workers:
+        chosen = loaded(engine or [], workers)
         check_folder(output)
         check_folder(store := store_of(output))
 
@@ -155,7 +160,7 @@ def report(
         _print_summary(result, matrix, output / "index.html")
     if not result.interrupted:
         _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
-    return _status(result, matrix, min_conclusive)
+    return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
 
 
 def store_of(output: Path) -> Path:
@@ -180,10 +185,10 @@ def _asked(
         return (with_claim(studies, claim),)
 
 
-def _folder_of_claim(context: typer.Context, output: Path) -> Path:
-    """Return the folder that was asked for, else one of its own, so that a whole report stays as it is."""
+def _folder(context: typer.Context, output: Path, part: bool) -> Path:
+    """Return the folder that was asked for, else for a part one of its own, so that a whole report stays as it is."""
     source = context.get_parameter_source("output")
-    return Path("claim") if source is not None and source.name == "DEFAULT" else output
+    return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
 
 def _write(result: Run, output: Path) -> Matrix:
@@ -224,8 +229,8 @@ def _print_diagnoses(suspects: Iterable[Engine]) -> None:
                 print(f"{row.engine}: {' '.join(row.sentences)}")
 
 
-def _status(result: Run, matrix: Matrix, least_conclusive: int) -> int:
-    """Return the exit status of a report; say what is missing of one that was interrupted."""
+def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
+    """Return the exit status of a report; say what is missing, if anything, also of engines that were ``named``."""
     from compare.report.matrix import State
 
     if result.interrupted:
@@ -236,10 +241,29 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int) -> int:
     wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
     if wrong:
         return SOMETHING_DIFFERS
-    conclusive = matrix.totals[State.AGREES]
+    if unexplained := "; ".join(_unexplained(result, matrix, named)):
+        return say(unexplained, NOTHING_MEASURED)
+    conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
     if conclusive < least_conclusive:
         return say(f"{conclusive} verdicts are conclusive: {least_conclusive} are asked for", NOTHING_SHOWN)
     return FINE
+
+
+def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterator[str]:
+    """Yield what engines were asked for and have not measured, where they have no verdict or give no reason."""
+    from compare.claims.study import Findings
+    from compare.report.matrix import VERDICTS
+
+    for name in named:
+        if not any(matrix.count(name)[state] for state in VERDICTS):
+            yield f"nothing was measured with {name}"
+    for study in result.studies:
+        for name in named:
+            found = result.outcomes.get((study.name, name))
+            if not isinstance(found, Findings) or found.not_simulated or study.only:
+                continue
+            if missing := study.sentences().keys() - {claim.sentence for claim in found.claims}:
+                yield f"{study.name} {name}: no ground to measure: {_listed(sorted(missing))}"
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:

@@ -58,7 +58,9 @@ def sweep_command() -> None:
 
     What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
     store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
-    with --resume does the rest.
+    with --resume does the rest. The exit status is 0 when the plain reference finds the same ends in a sample, 1 when
+    it does not or the work was lost, 2 on bad input, 3 when more than half of the trajectories are undecided, and 130
+    after Ctrl-C.
 
     \b
     Examples:
@@ -211,14 +213,14 @@ def sweep_continuation(
 @sweep.command("figures", cls=Command)
 def sweep_figures(
     folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
-) -> None:
+) -> int:
     """Draw the figures of a finished sweep once more and print its results.
 
     \b
     Example:
       friction-discs sweep figures basin
     """
-    redraw(folder)
+    return redraw(folder)
 
 
 def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:

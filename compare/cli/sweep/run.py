@@ -11,6 +11,7 @@ from compare.cli.door.command import (
     BAD_INPUT,
     FINE,
     INTERRUPTED,
+    NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     BadInputError,
     printing,
@@ -32,6 +33,9 @@ STORE = "sweep.zarr"
 CHUNK = 32768
 """Trajectories in a chunk, unless another number is asked for."""
 
+MOST_UNDECIDED = 0.5
+"""Share of all trajectories: beyond it a sweep says less about where they end than it leaves open."""
+
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
     """Run a sweep, or the rest of it; print and draw its results."""
@@ -42,18 +46,23 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     from compare.sweep.store.files import Files, StoreError
     from compare.sweep.store.store import SweepStore
 
-    with _looking():
-        folder = _checked(place)
-        files = Files.at(folder.below(STORE))
-        store = _there(files, plan, chunk, resume)
+    folder, store = Files.at(place), None
+    files = Files.at(folder.below(STORE))
     try:
-        with _executor(scheduler) as executor, trajectories() as progress:
-            if store is None:
-                store = SweepStore.create(files.url, plan, chunk or CHUNK)
-            run(store, executor, progress)
+        with _executor(scheduler) as executor:
+            with _looking():
+                _check_writable(folder)
+                store = _there(files, plan, chunk, resume)
+            with trajectories() as progress:
+                if store is None:
+                    store = SweepStore.create(files.url, plan, chunk or CHUNK)
+                run(store, executor, progress)
         return finish(store, folder)
     except FileExistsError:
-        return say(_already(files), BAD_INPUT)
+        return say(
+            f"another command has just begun {files.url!r}: wait until it ends, or take another --output",
+            BAD_INPUT,
+        )
     except (ClusterError, OtherCodeError) as error:
         return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
     except (OSError, MemoryError, StoreError) as error:
@@ -83,21 +92,15 @@ def _looking() -> Iterator[None]:
             raise BadInputError(str(error)) from None
 
 
-def _checked(place: str) -> Files:
-    """Return the files at a folder or URL; raise ``ValueError`` or ``StoreError`` where none can be written."""
-    from compare.sweep.store.files import Files, is_remote
+def _check_writable(folder: Files) -> None:
+    """Raise ``ValueError`` or ``StoreError`` for a folder or URL in which no file can be written."""
+    from compare.sweep.store.files import is_remote
 
-    files = Files.at(place)
-    if is_remote(place):
-        files.write({f"{STORE}.try": b""})
-        files.remove(f"{STORE}.try")
+    if is_remote(folder.url):
+        folder.write({f"{STORE}.try": b""})
+        folder.remove(f"{STORE}.try")
     else:
-        check_folder(Path(place))
-    return files
-
-
-def _already(files: Files) -> str:
-    return f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+        check_folder(Path(folder.url))
 
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
@@ -111,7 +114,9 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
     if store.plan != plan:
         raise ValueError(f"{files.url!r} belongs to another sweep: take another --output")
     if not resume:
-        raise ValueError(_already(files))
+        raise ValueError(
+            f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+        )
     if store.stamp != sweep_stamp():
         raise ValueError(
             f"{files.url!r} was computed by other code or libraries ({store.stamp}): take another --output"
@@ -140,20 +145,27 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
 
 
 def finish(store: SweepStore, folder: Files) -> int:
-    """Print and draw the results; return whether the plain reference finds the same."""
+    """Print and draw the results; return the exit status, by what the plain reference finds and what is undecided."""
     from compare.sweep.show.figures import write_figures
-    from compare.sweep.show.summary import same_ends, summary
+    from compare.sweep.show.summary import same_ends, summary, undecided
 
     written = write_figures(store, folder)
     with printing():
         for line in summary(store):
             print(line)
         print(f"Results: {store.path}; figures: {', '.join(written)}")
-    return FINE if same_ends(store) else SOMETHING_DIFFERS
+    if not same_ends(store):
+        return SOMETHING_DIFFERS
+    if undecided(store) > MOST_UNDECIDED:
+        return say(
+            f"{100.0 * undecided(store):.0f} % are undecided: raise --until to follow them longer",
+            NOTHING_SHOWN,
+        )
+    return FINE
 
 
-def redraw(place: str) -> None:
-    """Draw and print a finished sweep once more; raise ``BadInputError`` for one that is not finished."""
+def redraw(place: str) -> int:
+    """Do as ``finish`` for a finished sweep; raise ``BadInputError`` for one that is not finished."""
     from compare.sweep.store.files import Files
     from compare.sweep.store.store import SweepStore
 
@@ -162,7 +174,7 @@ def redraw(place: str) -> None:
         store = SweepStore.open(folder.below(STORE))
         _check_finished(store)
     with _looking():
-        finish(store, folder)
+        return finish(store, folder)
 
 
 def _check_finished(store: SweepStore) -> None:

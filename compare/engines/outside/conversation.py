@@ -32,6 +32,7 @@ from compare.engines.outside.json_lines import (
     question,
 )
 from compare.engines.outside.program import own_name
+from compare.output.outside_text import printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
@@ -345,7 +346,7 @@ class _LastWords:
         if ended:
             self._reader.join(FAREWELL)  # no longer: others may hold it open
         lines = self._kept.decode(errors="replace").split("\n")
-        return " / ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:])
+        return printable(" / ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]))
 
     def _run(self) -> None:
         with self._stream:

@@ -7,6 +7,7 @@ come back to the last bit.
 from __future__ import annotations
 
 import functools
+import itertools
 import json
 import reprlib
 from dataclasses import asdict, dataclass, field
@@ -15,9 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from compare.engines.answer import PHASES
 from compare.engines.engine import UnsupportedSystemError
 from compare.engines.names import one_of
 from compare.engines.registry import DECLARED
+from compare.output.outside_text import one_line, printable
 from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
@@ -25,8 +28,6 @@ PROTOCOL = 1
 
 ANSWER_LIMIT = 60.0
 """In s, for one motion, unless the program asks for another."""
-
-PHASES = ("slip", "pivot", "stick")
 
 _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
@@ -81,7 +82,7 @@ def greeting(line: bytes) -> Greeting:
     if limit <= 0.0:
         raise ValueError(f'greets with "limit": {limit:g}: it must be > 0 s')
     promises = {key: content[key] for key in DECLARED if key in content}
-    return Greeting(promises, str(content.get("name", "")), str(content.get("version", "")), limit)
+    return Greeting(promises, one_line(content.get("name", "")), one_line(content.get("version", "")), limit)
 
 
 def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
@@ -124,9 +125,9 @@ def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
     """
     content = _object(line)
     if "unsupported" in content:
-        raise UnsupportedSystemError(str(content["unsupported"]))
+        raise UnsupportedSystemError(printable(content["unsupported"]))
     if "error" in content:
-        raise RefusedError(str(content["error"]))
+        raise RefusedError(printable(content["error"]))
     if "states" not in content:
         raise BadLineError(f'answered without "states": {_short(line)}')
     states = _array("states", content["states"])
@@ -146,8 +147,17 @@ def _object(line: bytes) -> dict[str, Any]:
 
 def _array(name: str, rows: object) -> Any:
     try:
+        parts = (
+            row if isinstance(row, list) else [row] for row in (rows if isinstance(rows, list) else [rows])
+        )
+        if not set(map(type, itertools.chain.from_iterable(parts))) <= {
+            int,
+            float,
+            type(None),
+        }:  # NumPy converts "1" and true
+            raise TypeError
         return np.array(rows, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise BadLineError(
             f'answered with "{name}" that are no rows of numbers, all as long: {reprlib.repr(rows)}'
         ) from None

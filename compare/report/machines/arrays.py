@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import lzma
+import sys
 from collections.abc import Iterator, Mapping
 from itertools import count, cycle, repeat
 from pathlib import Path
@@ -18,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from compare.claims.claim import Claim
+from compare.output.outside_text import printable
 from compare.report.matrix import Matrix, Row
 from reference_model.systems import FloatArray
 
@@ -81,6 +83,8 @@ def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         tables: dict[str, dict[tuple[str, str], list[dict[str, str]]]] = {}
         claims = []
         for claim in study["claims"]:
+            if not (folder / claim["arrays"]).resolve().is_relative_to(folder.resolve()):
+                raise ValueError(f"the table {claim['arrays']!r} is not in the folder of the report")
             if claim["arrays"] not in tables:
                 tables[claim["arrays"]] = _read(folder / claim["arrays"])
             rows = tables[claim["arrays"]].get((claim["engine"], str(claim["measurement"])), [])
@@ -101,7 +105,7 @@ def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
     raw = path.read_bytes()
     text = (lzma.decompress(raw) if path.suffix == ".xz" else raw).decode()
     found: dict[tuple[str, str], list[dict[str, str]]] = {}
-    for row in csv.DictReader(io.StringIO(text)):
+    for row in csv.DictReader(io.StringIO(printable(text, sys.maxsize))):
         found.setdefault((row["engine"], row["measurement"]), []).append(row)
     return found
 

@@ -12,6 +12,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from compare.output.outside_text import all_printable
 from compare.output.text_files import write_text
 from compare.report.machines.comparison import Key
 
@@ -24,7 +25,7 @@ def read_baseline(path: Path) -> frozenset[Key]:
     Raises ``ValueError`` for a file that is not there or is none.
     """
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = all_printable(json.loads(path.read_text(encoding="utf-8")))
         if (content["format"], content["version"]) == (FORMAT, VERSION):
             return frozenset((str(one["claim"]), str(one["engine"])) for one in content["known"])
     except OSError as error:

@@ -80,6 +80,12 @@ def failures(results: Results) -> dict[Key, str]:
     }
 
 
+def without_verdict(results: Results) -> tuple[str, ...]:
+    """Return the engines that were measured and of which nothing is known."""
+    known = {claim["engine"] for claim in _claims(results)}
+    return tuple(dict.fromkeys(engine for _, engine in _units(results) if engine not in known))
+
+
 def _claims(results: Results) -> Iterator[dict[str, Any]]:
     return (claim for study in results["studies"] for claim in study["claims"])
 

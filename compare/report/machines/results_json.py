@@ -16,6 +16,7 @@ from compare.claims.as_json import as_json, claim_as_json
 from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.prose import slug
+from compare.output.outside_text import all_printable
 from compare.report.machines.arrays import with_arrays
 from compare.report.matrix import VERDICTS, Cell, Group, Matrix, RecordedMatrix, State
 from compare.report.quotes import filled
@@ -48,7 +49,7 @@ def read_results(path: Path) -> dict[str, Any]:
     """
     file = path / FILE if path.is_dir() else path
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = all_printable(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
         raise ValueError(f"can't read {str(file)!r}: {error.strerror}") from None
     except ValueError:

@@ -52,6 +52,12 @@ def same_ends(store: SweepStore) -> bool:
     return not np.any(_differing(_group(store, CHECK)))
 
 
+def undecided(store: SweepStore) -> float:
+    """Return the share of the trajectories that are undecided."""
+    count = _group(store, RESULT)["count"].values
+    return float(count[EndState.UNDECIDED] / np.sum(count))
+
+
 def _uncertainty(result: xr.Dataset) -> Iterator[str]:
     radii = result["largest_radius"][:MOST_DRAWS].values
     radii = radii[np.isfinite(radii)]

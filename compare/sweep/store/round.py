@@ -60,9 +60,8 @@ def _opened(arrays: Arrays, name: str) -> Any:
                 f"a worker does not find the sweep in {files.url!r}: --output must be a folder that all share, "
                 "or an object store"
             )
-        return zarr.open_array(
-            files.below(f"{arrays.group}/{name}"), mode="r+", storage_options=files.options
-        )
+        place = files.below(f"{arrays.group}/{name}")
+        return zarr.open_array(place, mode="r+", zarr_format=2, storage_options=files.options)
 
 
 def description_of(files: Files) -> str:

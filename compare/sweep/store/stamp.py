@@ -7,6 +7,7 @@ from compare.run.stamp import stamp
 CODE = (
     "reference_model",
     "compare.claims.as_json",
+    "compare.output.outside_text",
     "compare.sweep.define.axes",
     "compare.sweep.compute.branches",
     "compare.sweep.compute.curves",

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import secrets
 import tempfile
 from collections.abc import Iterable, Mapping
@@ -26,6 +27,7 @@ import xarray as xr
 import zarr
 from numpy.typing import NDArray
 
+from compare.output.outside_text import all_printable
 from compare.run.stamp import version_of
 from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
@@ -44,6 +46,12 @@ ROUND = "round-{}"
 MISSING = {"f8": np.nan, "u1": 255, "i8": -1}
 """What an array has where nothing is written, by its type: no result is like this."""
 
+ARRAY = ".zarray"
+"""Name of the file that describes an array."""
+
+TYPES, FILTERS, COMPRESSOR = re.compile(r"[<|](f8|[iu]8|u1|b1|U\d+)"), (None, [{"id": "vlen-utf8"}]), "blosc"
+"""What the versions of Zarr write for our arrays."""
+
 GROUP, GROUP_CONTENT = ".zgroup", json.dumps({"zarr_format": FORMAT["zarr_format"]}).encode()
 
 FILES_OF_GROUP = (".z*", "*/.z*", "*/[0-9]*")
@@ -52,7 +60,7 @@ FILES_OF_GROUP = (".z*", "*/.z*", "*/[0-9]*")
 FILES_OF_ROUND = (
     GROUP,
     "component/0",
-    *(f"{name}/{file}" for name in (*RESULTS, CHECKSUM, "component") for file in (".zarray", ".zattrs")),
+    *(f"{name}/{file}" for name in (*RESULTS, CHECKSUM, "component") for file in (ARRAY, ".zattrs")),
 )
 """Those of a round that are there before its chunks."""
 
@@ -126,7 +134,7 @@ class SweepStore:
             group, attributes = (json.loads(files.read(name) or b"") for name in (GROUP, DESCRIPTION))
             whole = group["zarr_format"] == FORMAT["zarr_format"]
             whole = attributes.pop(CHECKSUM) == _checksum(attributes) and whole
-            plan = plan_from_json(json.loads(attributes["plan"]))
+            plan = plan_from_json(all_printable(json.loads(attributes["plan"])))
             chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
         except (OSError, AttributeError, KeyError, TypeError, ValueError):
             whole = False
@@ -150,12 +158,7 @@ class SweepStore:
         name = ROUND.format(i)
         if self.files.read(f"{name}/{GROUP}") is None:
             return False
-        if name not in self._whole:
-            if self._checksum_in(name) != _checksum(self._digests(name, FILES_OF_ROUND)):
-                self.broken.append(f"the description of {name}")
-                return False
-            self._whole.add(name)
-        return True
+        return self._is_whole(name, FILES_OF_ROUND, f"the description of {name}")
 
     def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
         """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
@@ -185,13 +188,10 @@ class SweepStore:
         """Return a group, of which nothing is read yet, or None if it is not there or broken."""
         if self.files.read(f"{name}/{GROUP}") is None:
             return None
-        if name not in self._whole:
-            if self._checksum_in(name) != _checksum(self._digests(name, self._names(name))):
-                self.broken.append(name)
-                return None
-            self._whole.add(name)
+        if not self._is_whole(name, self._names(name), name):
+            return None
         group: xr.Dataset = xr.open_zarr(
-            self.files.below(name), consolidated=False, chunks=None, storage_options=self.files.options
+            self.files.below(name), chunks=None, storage_options=self.files.options, **FORMAT
         )
         return group
 
@@ -237,14 +237,25 @@ class SweepStore:
         self.files.write({f"{name}/{GROUP}": GROUP_CONTENT})
         self._whole.add(name)
 
+    def _is_whole(self, group: str, names: Iterable[str], called: str) -> bool:
+        """Return whether a group is as it was written, with arrays of ours alone; note it as broken otherwise."""
+        if group in self._whole:
+            return True
+        ours, digests = True, {}
+        for name in names:
+            content = self.files.read(f"{group}/{name}")
+            if content is not None and name != DESCRIPTION:  # which holds what the others come to
+                digests[name] = digest_of(content)
+                ours = ours and (not name.endswith(ARRAY) or is_ours(content))
+        if not ours or self._checksum_in(group) != _checksum(digests):
+            self.broken.append(called)
+            return False
+        self._whole.add(group)
+        return True
+
     def _names(self, group: str) -> Iterable[str]:
         names = (name[len(group) + 1 :] for name in self.files.names(group))
         return (name for name in names if any(fnmatch(name, pattern) for pattern in FILES_OF_GROUP))
-
-    def _digests(self, group: str, names: Iterable[str]) -> dict[str, str]:
-        """Return the digests of files of a group, but for its attributes, which hold what they come to."""
-        contents = ((name, self.files.read(f"{group}/{name}")) for name in names if name != DESCRIPTION)
-        return {name: digest_of(content) for name, content in contents if content is not None}
 
     def _checksum_in(self, group: str) -> str | None:
         """Return the checksum that a group was written with, None if there is none that can be read."""
@@ -257,6 +268,19 @@ class SweepStore:
 def is_free(files: Files) -> bool:
     """Return whether nothing is there, but what one leaves who is killed before a store has its description."""
     return set(files.inside()) <= {GROUP}
+
+
+def is_ours(description: bytes) -> bool:
+    """Return whether an array has a data type, filters and a compressor that sweeps write.
+
+    Others, such as the filter "pickle", may run code of whoever wrote the array.
+    """
+    try:
+        found = json.loads(description)
+        known = found["filters"] in FILTERS and found["compressor"]["id"] == COMPRESSOR
+        return known and TYPES.fullmatch(found["dtype"]) is not None
+    except (ValueError, KeyError, TypeError):
+        return False
 
 
 def write_piece(

@@ -216,6 +216,7 @@ def test_programs_see_the_kind_of_each_verdict(reported):
     assert sum(matrix.of_evidence("independent").values()) == 4
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_matrix_and_table_show_one_number(tmp_path):
     """Of a claim whose smallest budget is far from its largest."""
 

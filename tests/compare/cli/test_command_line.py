@@ -18,6 +18,8 @@ from compare.claims.paper_parameters import FIG5, FIG11
 from compare.cli import app as cli
 from compare.engines import EVERY_KIND
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 
 def test_help_of_every_command_has_an_example(capsys):
     for name in ("list", "report", "judge", "simulate", "simulate pin", "simulate disc", "errata", "compile"):
@@ -277,7 +279,8 @@ def test_a_reader_that_stops_early_is_no_error(tmp_path):
 
 def test_an_engine_that_gives_up_ends_in_its_sentence(capsys):
     assert cli.status(["simulate", "pin", "--engine", "fake_studies:failing"]) == 1
-    assert capsys.readouterr().err == "the step size became too small at t = 3.2 s: try a larger tolerance\n"
+    sentence = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
+    assert capsys.readouterr().err.startswith(f"engine 'fake_studies:failing' failed: {sentence}")
 
 
 PIN, DISC = ("simulate", "pin"), ("simulate", "disc")

@@ -76,7 +76,7 @@ def without_reader(monkeypatch):
         yield
 
 
-@pytest.mark.usefixtures("without_reader")
+@pytest.mark.usefixtures("in_this_process", "without_reader")
 @pytest.mark.parametrize(
     ("study", "engine", "status"), [("partly", "straight", 0), ("verdicts", "failing", 1)]
 )
@@ -91,13 +91,6 @@ def test_a_reader_that_stops_early_changes_no_status(study, engine, status, tmp_
 def test_a_reader_that_stops_early_is_no_error(arguments, capsys):
     assert cli.status(arguments) == 0
     assert capsys.readouterr().err == ""
-
-
-def test_an_engine_that_ends_the_process_is_not_taken_for_a_reader_that_stops(tmp_path, monkeypatch):
-    (tmp_path / "leaving.py").write_text("import sys\ndef simulate(*a, **k):\n    sys.exit(3)\n")
-    monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(SystemExit, match="3"):
-        cli.status([*PIN, "--engine", "leaving:simulate"])
 
 
 def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypatch, capsys):

@@ -31,7 +31,7 @@ def of_size(engine, size):
 
 
 @pytest.fixture
-def reporting(monkeypatch, tmp_path):
+def reporting(monkeypatch, tmp_path, in_this_process):
     """Return the status of a report with the study; what is asked of it is listed anew."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "_REGISTRY", {GOOD.name: GOOD})
@@ -45,7 +45,7 @@ def test_one_claim_is_measured_and_its_numbers_printed(reporting, tmp_path, caps
     assert "good agrees: predicted 1.0 m, measured 1.001 m, difference 0.0010, allowed 0.010 " in (
         capsys.readouterr().out
     )
-    (study,) = json.loads((tmp_path / "claim" / "results.json").read_text(encoding="utf-8"))["studies"]
+    (study,) = json.loads((tmp_path / "report-part" / "results.json").read_text(encoding="utf-8"))["studies"]
     assert [claim["id"] for claim in study["claims"]] == ["declared/one"]
     assert not (tmp_path / "report").exists()  # a whole report would not be written over
 

@@ -40,6 +40,16 @@ def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path,
     assert row["wrong"] == bool(status)
 
 
+def test_an_engine_that_simulates_nothing_has_a_status_of_its_own(tmp_path, monkeypatch, capsys):
+    (tmp_path / "refusing.py").write_text(
+        "from compare.engines import UnsupportedSystemError\n"
+        "def simulate(*arguments, **accuracy):\n    raise UnsupportedSystemError('nothing')\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    assert cli.status(["matrix", "--engine", "refusing:simulate", "--output", "found"]) == 4
+    assert "refusing:simulate simulates none of these motions" in capsys.readouterr().err
+
+
 def test_the_names_of_probes_are_those_of_parts():
     from compare.engines import reference
 

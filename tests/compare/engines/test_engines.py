@@ -19,7 +19,7 @@ from compare.engines import (
     register,
 )
 from compare.studies import studies
-from reference_model.trajectory import Solution, Trajectory
+from reference_model.trajectory import Phase, Solution, Trajectory
 
 
 def test_the_two_engines_of_the_project_are_registered():
@@ -179,7 +179,8 @@ def test_a_promise_of_what_there_is_not_is_refused(kinds, hint, tmp_path, monkey
     [
         ("sticks = 'no'", "sticks = 'no': it must be True or False"),
         ("nonlinear = 1", "nonlinear = 1: it must be True or False"),
-        ("step = 0.0", "step = 0 s: it must be > 0"),
+        ("step = 0.0", "step = 0 s: it must be at least 1e-09 s"),
+        ("step = 1e-300", "step = 1e-300 s: it must be at least 1e-09 s"),
         ("step = 'small'", "step = 'small': it must be a number"),
     ],
 )
@@ -222,6 +223,13 @@ def changed(**changes):
     return Engine("mine", lambda *motion, **accuracy: replace(resting(*motion), **changes))
 
 
+def phases(*spans):
+    return tuple(Phase("slip", start, end, REST) for start, end in spans)
+
+
+REST = np.zeros(4)
+NO_NUMBERS = "must have finite times and 4 finite numbers as its initial_state"
+IN_ORDER = "phases must begin one after the other, the first not before 0 s"
 BROKEN_STATES = np.zeros((5, 4))
 BROKEN_STATES[3, 2] = np.inf
 
@@ -237,6 +245,31 @@ BROKEN_STATES[3, 2] = np.inf
             "the trajectory's states have shape (5, 6): they must have (5, 4)",
         ),
         (changed(states=BROKEN_STATES), "the state at t = 0.75 s is not finite: [0.0, 0.0, inf, 0.0]"),
+        (
+            changed(states=np.full((5, 4), "1")),
+            "the trajectory's states are of the type <U1: they must be real numbers",
+        ),
+        (
+            changed(states=np.full((5, 4), True)),
+            "the trajectory's states are of the type bool: they must be real numbers",
+        ),
+        (
+            changed(times=TIMES + 0j),
+            "the trajectory's times are of the type complex128: they must be real numbers",
+        ),
+        (
+            changed(phases=(Phase("glide", 0.0, 1.0, REST),)),
+            "phases[0] is of the kind 'glide': it must be a Phase of ('slip', 'pivot', 'stick')",
+        ),
+        (
+            changed(phases=("slip",)),
+            "phases[0] is of the kind None: it must be a Phase of ('slip', 'pivot', 'stick')",
+        ),
+        (changed(phases=(Phase("slip", True, 1.0, np.zeros(3)),)), f"phases[0] {NO_NUMBERS}"),
+        (changed(phases=(Phase("slip", 0.0, np.nan, REST),)), f"phases[0] {NO_NUMBERS}"),
+        (changed(phases=phases((-1.0, 1.0))), f"phases[0] lasts from -1 to 1 s: {IN_ORDER}"),
+        (changed(phases=phases((0.5, 1.0), (0.0, 0.5))), f"phases[1] lasts from 0 to 0.5 s: {IN_ORDER}"),
+        (changed(phases=phases((0.5, 0.0))), f"phases[0] lasts from 0.5 to 0 s: {IN_ORDER}"),
     ],
 )
 def test_what_is_no_answer_is_refused_before_a_study_sees_it(engine, sentence):

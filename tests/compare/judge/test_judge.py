@@ -25,10 +25,7 @@ from reference_model import PinOnDisc
 START = (0.5, 0.25, 0.0, 0.0)
 
 
-@pytest.fixture(autouse=True)
-def in_this_process(monkeypatch):
-    """Without a limit and with one job nothing has to be sent to another process."""
-    monkeypatch.setattr(judge, "LIMIT", None)
+pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 def moved(x=0.0, y=0.0):

@@ -13,6 +13,8 @@ from compare.report.machines.results_json import read_results
 from compare.report.write import write_report
 from compare.run.runner import run
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 PLACES = "the pin comes to rest at the point of eq. (3)"
 
 
@@ -118,6 +120,12 @@ def test_a_study_that_fails_is_told_once(old, tmp_path, capsys):
     assert [line.partition(": the")[0] for line in lines[:-1]] == [
         "worse: verdicts good: was finished, failed",
     ]
+
+
+def test_reports_in_which_an_engine_has_no_verdict_are_not_alike(old, tmp_path, capsys):
+    failed = written(tmp_path, engine=FAILING)
+    assert told(capsys, failed, failed)[0] == 4
+    assert told(capsys, failed, old)[0] == 1
 
 
 def test_known_failures_do_not_count(old, tmp_path, capsys):

@@ -70,6 +70,8 @@ def quoted(engine):
     return Findings((claim("The radius", engine.name, 0.05, 0.05 + 1e-8, 1e-7, **NAMED),))
 
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 STUDY = replace(
     VERDICTS,
     by_hand=quoted,

@@ -11,7 +11,10 @@ import pytest
 from compare.run import drawings, runner, stamp
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 DRAWING = Drawing({"radius": b"<svg/>", "spin": b""}, {"motion": bytes(range(256))})
+NAMES = ("radius", "spin", "motion")
 
 
 @pytest.fixture
@@ -104,9 +107,17 @@ def test_a_drawing_that_failed_is_drawn_anew(run):
 def test_drawings_come_back_to_the_last_bit(tmp_path):
     store = DrawingStore(tmp_path / "data")
     store.keep("fig03", "now", DRAWING)
-    assert store.find("fig03", "now") == DRAWING
-    assert store.find("fig03", "then") is None
-    assert store.find("fig04", "now") is None
+    assert store.find("fig03", "now", NAMES) == DRAWING
+    assert store.find("fig03", "then", NAMES) is None
+    assert store.find("fig04", "now", NAMES) is None
+
+
+@pytest.mark.parametrize("resume", [False, True])
+def test_only_figures_that_a_study_declares_are_taken(resume, run, tmp_path):
+    first, _ = run(fake.VERDICTS, fake.GOOD)
+    with ZipFile(tmp_path / "verdicts.zip", "a") as archive:
+        archive.writestr("figures/../../escaped", "<svg/>")
+    assert run(fake.VERDICTS, fake.GOOD, resume=resume) == (first, True)
 
 
 @pytest.mark.parametrize("broken", [b"", b"PK\x03\x04", None])
@@ -122,4 +133,4 @@ def test_broken_files_are_drawn_again(broken, tmp_path):
         path.write_bytes(content)
     else:
         path.write_bytes(broken)
-    assert store.find("fig03", "now") is None
+    assert store.find("fig03", "now", NAMES) is None

@@ -50,17 +50,39 @@ def test_findings_of_other_code_are_not_taken(tmp_path):
 def test_broken_files_are_computed_again(tmp_path):
     store = Store(tmp_path)
     store.keep("fig03", "good", NOW, Findings(), 0.0)
-    (tmp_path / "fig03--good.npz").write_bytes(b"")
+    (arrays,), (claims,) = tmp_path.glob("*.npz"), tmp_path.glob("*.json.xz")
+    arrays.write_bytes(b"")
     assert store.find("fig03", "good", NOW) is None
-    (tmp_path / "fig03--good.json.xz").write_text("{")
+    claims.write_text("{")
     assert store.find("fig03", "good", NOW) is None
 
 
-def test_engines_of_ones_own_have_files_of_their_own(tmp_path):
+def test_only_claims_that_a_study_declares_are_taken(tmp_path):
     store = Store(tmp_path)
-    store.keep("fig03", "mine.py:simulate", NOW, Findings(), 0.0)
-    assert store.find("fig03", "mine.py:simulate", NOW) is not None
-    assert store.find("fig03", "mine", NOW) is None
+    for identity, taken in {"": True, "fig03/rests": True, "fig03/../../escaped": False}.items():
+        findings = Findings((claim("c", "good", 0.0, 0.0, 0.0, identity=identity),))
+        store.keep("fig03", "good", NOW, findings, 0.0)
+        assert (store.find("fig03", "good", NOW, {"fig03/rests"}) is not None) is taken
+
+
+SIMILAR = [
+    ("fig03", "exec:./a.b"),
+    ("fig03", "exec:./a_b"),
+    ("fig03", "exec:./A_b"),
+    ("fig03", "exec:./ä_b"),
+    ("fig03", "exec:./\udce4_b"),
+    ("fig03--exec", "./a_b"),
+    ("fig03", 100 * "exec:a"),
+    ("fig03", 101 * "exec:a"),
+]
+
+
+def test_no_two_engines_share_a_file_of_the_store_however_similar_or_long_their_names_are(tmp_path):
+    store = Store(tmp_path)
+    for seconds, names in enumerate(SIMILAR):
+        store.keep(*names, NOW, Findings(), float(seconds))
+    assert [store.find(*names, NOW)[1] for names in SIMILAR] == list(range(len(SIMILAR)))
+    assert len({path.name.lower() for path in tmp_path.glob("*.npz")}) == len(SIMILAR)
 
 
 def test_the_stamp_knows_the_code_of_the_engine_and_of_the_packages():

@@ -130,6 +130,12 @@ def test_a_plan_that_there_is_none_of_is_refused_in_one_sentence(arguments, reas
     assert not (tmp_path / "plan.json").exists()
 
 
+def test_a_study_that_is_about_engines_of_this_project_is_not_left_out_in_silence(tmp_path, capsys):
+    ours = Study("ours", "A study of one engine", "", only=("exudyn",))
+    assert cli.status(["plan", "ours", "planned", "--output", str(tmp_path)], (ours, STUDY)) == 0
+    assert capsys.readouterr().err == "ours is about exudyn only: nothing is planned\n"
+
+
 def test_a_study_that_fails_with_the_answers_of_the_reference_is_told_and_the_others_are_planned(
     tmp_path, capsys
 ):

@@ -26,6 +26,8 @@ from compare.run.runner import run
 from compare.run.stamp import PACKAGES
 from compare.studies import STUDIES
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 HEAD = """
 from dataclasses import replace
 from reference_model import simulate as right
@@ -197,7 +199,8 @@ MADE = {
 def test_an_engine_is_measured_anew_when_what_it_holds_changes(make, module, found):
     mine = module(mine=OBJECTS)
     for factor, anew in SAME_AND_CHANGED:
-        assert found(Engine("mine", make(mine, factor))) == (factor, anew, "")
+        mine.made = make(mine, factor)
+        assert found(Engine("mine", ByName("mine", "made"))) == (factor, anew, "")
 
 
 def test_an_engine_is_measured_anew_when_it_promises_something_else(module, found):
@@ -289,13 +292,18 @@ def test_an_engine_of_an_interactive_session_is_always_measured_anew_and_that_is
         del sys.modules["session"]
 
 
-def test_an_engine_of_a_class_that_is_made_in_a_function_is_always_measured_anew(found):
+def test_an_engine_of_a_class_that_is_made_in_a_function_is_always_measured_anew(module, found):
     class Local:
         def __call__(self, *arguments, tolerance=1e-9):
             return reference.simulate(*arguments, tolerance=tolerance)
 
+    module(mine="").made = Local()
     for _ in range(2):
-        assert found(Engine("mine", Local())) == (1.0, True, "the class Local is made when the program runs")
+        assert found(Engine("mine", ByName("mine", "made"))) == (
+            1.0,
+            True,
+            "the class Local is made when the program runs",
+        )
 
 
 COMPILED = """

@@ -17,9 +17,7 @@ from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait
 
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
-from compare.cli import app as cli
 from compare.cli.measure.report import store_of
-from compare.engines import registry
 from compare.run import stamp, workers
 from compare.run.drawings import Drawing
 from compare.run.runner import run
@@ -72,6 +70,7 @@ def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_g
     clock = SimpleNamespace(
         monotonic=lambda: time.monotonic() + (2.0 * limit if running.exists() else 0.0),
         perf_counter=time.perf_counter,
+        sleep=time.sleep,
     )
     monkeypatch.setattr(workers, "time", clock)
     monkeypatch.setattr(workers, "wait", lambda connections, left: wait(connections, min(left, 0.05)))
@@ -100,18 +99,16 @@ def test_a_figure_that_fails_leaves_the_claims(tmp_path):
     assert result.drawings["agreement"] == Drawing()
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_what_is_no_result_is_said(jobs, tmp_path):
-    reason = (
-        run((fake.NO_FINDINGS,), (fake.GOOD,), folder=tmp_path, jobs=jobs)
-        .outcomes["no-findings", "good"]
-        .reason
+def test_what_is_no_result_is_said(tmp_path):
+    unsendable = replace(fake.NO_FINDINGS, name="unsendable", by_hand=lambda engine: None)
+    found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
+    assert (
+        found["no-findings", "good"].reason == "TypeError: the study returned NoneType: it must be Findings"
     )
-    if jobs == 1:
-        assert reason == "TypeError: the study returned NoneType: it must be Findings"
-    else:  # its measure is a lambda
-        assert reason.startswith("it can't be sent to another process")
-        assert reason.endswith("use --jobs 1 or functions of a module")
+    assert found["unsendable", "good"].reason.startswith(
+        "it cannot be sent to another process (Can't pickle "
+    )
+    assert found["unsendable", "good"].reason.endswith("use functions of a module")
 
 
 def evidence():
@@ -130,7 +127,7 @@ def test_evidence_is_computed_and_its_failure_kept(tmp_path):
 
 
 @pytest.fixture
-def count(tmp_path, monkeypatch):
+def count(tmp_path, monkeypatch, in_this_process):
     path = tmp_path / "count"
     path.touch()
     monkeypatch.setenv("COUNT", str(path))
@@ -150,7 +147,7 @@ def test_resume_computes_only_what_is_not_there(tmp_path, count):
 
 def test_resume_does_not_take_what_another_version_found(tmp_path, count):
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
-    path = tmp_path / "counted--good.json.xz"
+    (path,) = tmp_path.glob("counted--good--*.json.xz")
     content = json.loads(lzma.decompress(path.read_bytes()))
     other = content | {"stamp": content["stamp"].replace("numpy", "numpi")}
     path.write_bytes(lzma.compress(json.dumps(other).encode()))
@@ -193,26 +190,12 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
         start_new_session=True,
         preexec_fn=interruptible,
     )
-    wait_for(process, running, store_of(output) / "unending--good.json.xz")
+    wait_for(process, running)
+    wait_until(lambda: list(store_of(output).glob("unending--good--*.json.xz")))
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
     out, err = process.communicate(timeout=PATIENCE)
     assert_that_the_rest_is_missing(process.returncode, out, err, output)
     wait_until(lambda: ended(process.pid))
-
-
-def test_ctrl_c_in_a_single_process_does_the_same(tmp_path, monkeypatch, capsys):
-    registered = {engine.name: engine for engine in (fake.GOOD, fake.ALSO_GOOD, fake.FAILING)}
-    monkeypatch.setattr(registry, "_REGISTRY", registered)
-    monkeypatch.setenv("RUNNING", str(tmp_path / "running"))
-    monkeypatch.setattr(fake.time, "sleep", interrupt)
-    chosen = [argument for name in registered for argument in ("--engine", name)]
-    arguments = ["report", "unending", *chosen, "--jobs", "1", "--output", str(tmp_path)]
-    status = cli.status(arguments, fake.ALL)
-    assert_that_the_rest_is_missing(status, *capsys.readouterr(), tmp_path)
-
-
-def interrupt(*arguments):
-    raise KeyboardInterrupt
 
 
 def assert_that_the_rest_is_missing(status, out, err, output):

@@ -1,9 +1,13 @@
 """Processes that work for others: what they import, and what is known of their end."""
 
 import os
+import signal
+import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
+from pathlib import Path
 
 import pytest
 from processes import wait_until
@@ -16,6 +20,49 @@ def last_words(status):
     """End this process suddenly, with two lines on its standard error."""
     os.write(2, "what comes before\nthe last word: 1 µm\n".encode())
     os._exit(status)
+
+
+def speak(text):
+    os.write(1, f"raw {text}\n".encode())
+    print(text, flush=True)
+    print(text, file=sys.stderr, flush=True)
+
+
+def kill(number):
+    os.kill(os.getpid(), number)
+
+
+def raise_it(error):
+    raise error
+
+
+def close_all_descriptors(then, *arguments):
+    os.closerange(0, 200)
+    then(*arguments)
+
+
+SUDDEN = "its process came to a sudden end"
+
+ENDS = [
+    (sys.exit, 0, "SystemExit: 0"),
+    (raise_it, KeyboardInterrupt(), "KeyboardInterrupt"),
+    (os._exit, 0, f"{SUDDEN} (exit status 0)"),
+]
+
+POSIX_ENDS = [
+    (kill, signal.SIGSEGV, f"{SUDDEN} (SIGSEGV)"),
+    (kill, 37, f"{SUDDEN} (signal 37)"),  # of real time, without a name
+    (partial(close_all_descriptors, time.sleep), 0.0, f"{SUDDEN} (exit status 1)"),
+    (partial(close_all_descriptors, time.sleep), 3600.0, f"{SUDDEN} (it closed its connection)"),
+] * (os.name == "posix")
+
+
+@pytest.mark.parametrize(("function", "argument", "reason"), [*ENDS, *POSIX_ENDS])
+def test_however_work_ends_its_process_that_is_a_sentence_and_no_traceback(function, argument, reason, capfd):
+    with Workers() as workers:
+        assert workers.ask(function, argument).reason == reason
+        assert workers.ask(len, "next") == 4
+    assert capfd.readouterr().err == ""
 
 
 def warn(text):
@@ -39,7 +86,7 @@ def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_i
         wait_until(place.exists)
         found = {one.key: one.value for one in workers.finished()}
     assert found["begun"] is None
-    assert "it can't be sent to another process" in found["refused"].reason
+    assert "it cannot be sent to another process" in found["refused"].reason
 
 
 def leave_a_folder_and(end, *arguments):
@@ -85,6 +132,49 @@ def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(capfd):
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
 
 
+def test_nothing_that_a_worker_writes_reaches_the_terminal_as_it_is(capfd):
+    assert done(speak, "\x1b[31m \x9b") is None
+    assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
+
+
 def test_what_a_worker_writes_to_its_standard_error_is_not_lost(capfd):
     assert done(warn, "once") == 4
     assert capfd.readouterr().err == "once\n"
+
+
+def spoil(module):
+    sys.modules[module] = None
+    return os.getpid()
+
+
+def test_a_process_that_worked_for_one_engine_works_for_no_other():
+    with Workers() as workers:
+        spoilt = workers.ask(spoil, "json", owner="mine")
+        assert workers.ask(os.getpid, owner="mine") == spoilt
+        assert workers.ask(os.getpid) != spoilt
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_the_copy_of_a_process_does_not_answer_in_its_place():
+    with Workers() as workers:
+        assert isinstance(workers.ask(os.fork), int)
+        assert workers.ask(len, "four") == 4
+
+
+@pytest.mark.skipif(os.name != "posix", reason="this system has no process groups")
+def test_processes_that_work_has_started_end_with_it():
+    with Workers() as workers:
+        child = workers.ask(start_a_child)
+    wait_until(lambda: not is_alive(child))
+
+
+def start_a_child():
+    return subprocess.Popen(["sleep", "60"]).pid
+
+
+def is_alive(number):
+    """Whether a process runs; one that has ended may wait for its new parent."""
+    try:
+        return "Z" not in Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False

@@ -10,12 +10,14 @@ from processes import REAL, ROOT, environment
 
 from compare.claims.paper_parameters import FIG5
 from compare.cli import app as cli
+from compare.cli.door.command import NOTHING_SHOWN
 from compare.cli.sweep.commands import MAPS, PLANES
 from compare.cli.sweep.run import STORE
 from compare.sweep.define.distributions import KINDS
+from compare.sweep.store.files import Files
 from compare.sweep.store.store import SweepStore
 
-SMALL = ["--until", "20"]
+SMALL = ["--until", "20"]  # most are undecided then
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
 
 
@@ -90,6 +92,8 @@ def test_help_of_sweeps_starts_without_the_heavy_libraries():
         (["continuation", "pin", "--vary", "mass=uniform(1, 2)"], "unknown component 'mass'"),
         (["continuation", "pin", "--set", "disc_speed=2"], "it has its values from --x"),
         (["continuation", "pin", "--x", "mass=-1:1:3"], "mass = -1 kg: it must be > 0"),
+        (["continuation", "pin", "--scheduler", "1e-400"], "1e-400"),
+        (["basin", "pin", "--scheduler", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1"),
         (["figures", "nowhere"], "is no store of a sweep"),
     ],
 )
@@ -101,14 +105,24 @@ def test_bad_input_is_refused_in_one_sentence_and_nothing_is_written(arguments, 
     assert out == ""
     assert words in err
     assert err.count("\n") == 1
-    assert not (folder / STORE).exists()
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("more", [[], ["--resume"]])
+def test_of_two_commands_that_begin_at_once_the_later_one_is_told(more, tmp_path, monkeypatch, capsys):
+    there = [set(), {".zattrs"}]  # it is there when the store is made, and not when the command looks
+    monkeypatch.setattr(Files, "inside", lambda self, folder="": there.pop(0))
+    assert cli.status([*BASIN, "--output", str(tmp_path), *more]) == 2
+    place = str(tmp_path / STORE)
+    sentence = f"another command has just begun {place!r}: wait until it ends, or take another --output\n"
+    assert capsys.readouterr() == ("", sentence)
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("finished")
     arguments = [*BASIN, "--output", str(folder)]
-    assert cli.status(arguments) == 0
+    assert cli.status(arguments) == NOTHING_SHOWN
     return folder, arguments
 
 
@@ -193,10 +207,10 @@ def test_a_folder_that_cannot_be_written_is_refused(capsys, tmp_path):
 
 def test_resuming_a_finished_sweep_prints_its_results_again(finished, capsys):
     folder, arguments = finished
-    assert cli.status([*arguments, "--resume"]) == 0
+    assert cli.status([*arguments, "--resume"]) == NOTHING_SHOWN
     out = capsys.readouterr().out
     assert out.startswith("6 of 6 starts simulated\n")
-    assert cli.status(["sweep", "figures", str(folder)]) == 0
+    assert cli.status(["sweep", "figures", str(folder)]) == NOTHING_SHOWN
     assert capsys.readouterr().out == out
 
 
@@ -214,12 +228,19 @@ def test_figures_are_drawn_again_on_demand(finished):
     before = {name: (folder / name).read_bytes() for name in ("basin.svg", "basin.png")}
     for name in before:
         (folder / name).unlink()
-    assert cli.status(["sweep", "figures", str(folder)]) == 0
+    assert cli.status(["sweep", "figures", str(folder)]) == NOTHING_SHOWN
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
+def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys):
+    output = str(tmp_path / "short")
+    assert cli.status([*BASIN[:-2], "--until", "0.1", "--output", output]) == NOTHING_SHOWN
+    assert "100 % are undecided: raise --until" in capsys.readouterr().err
+    assert cli.status(["sweep", "figures", output]) == NOTHING_SHOWN
+
+
 def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys):
-    assert cli.status([*BASIN, "--output", str(tmp_path)]) == 0
+    assert cli.status([*BASIN, "--output", str(tmp_path)]) == NOTHING_SHOWN
     (tmp_path / STORE / "result").rename(tmp_path / "gone")
     capsys.readouterr()
     assert cli.status(["sweep", "figures", str(tmp_path)]) == 2
@@ -255,7 +276,10 @@ def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys):
     ids=lambda value: value if isinstance(value, str) else " ".join(value[:2]),
 )
 def test_every_sweep_prints_and_draws_its_results(arguments, name, tmp_path, capsys):
-    assert cli.status(["sweep", *arguments[:2], *SMALL, *arguments[2:], "--output", str(tmp_path)]) in (0, 1)
+    assert cli.status(["sweep", *arguments[:2], *SMALL, *arguments[2:], "--output", str(tmp_path)]) in (
+        NOTHING_SHOWN,
+        1,
+    )
     out = capsys.readouterr().out
     assert "of them by the plain reference" in out
     for suffix in ("svg", "png"):

@@ -20,6 +20,11 @@ def answer(question):
     return {"states": [question["state"]] * len(question["times"])}
 
 
+def phases(*begun):
+    told = [{"kind": kind, "start": start, "state": question["state"]} for kind, start in begun]
+    return json.dumps({"states": states, "phases": told})
+
+
 say(greeting)
 for number, line in enumerate(sys.stdin):
     question = json.loads(line)
@@ -58,6 +63,14 @@ for number, line in enumerate(sys.stdin):
                 "two lines": '{"states": []}\n{"states": []}',
                 "no states": '{"state": [1.0]}',
                 "ragged": '{"states": [[1.0], [1.0, 2.0]]}',
+                "texts": json.dumps({"states": [list(map(str, state)) for state in states]}),
+                "true": json.dumps({"states": [*states[:-1], [1.0, True, 1.0, 1.0]]}),
+                "huge": json.dumps({"states": [*states[:-1], [10**400, 1, 1, 1]]}),
+                "escapes": '{"error": "\\ud800 \\u001b[31m"}',
+                "escapes unsupported": '{"unsupported": "\\ud800 \\u001b[31m"}',
+                "unordered": phases(("slip", 0.5), ("stick", 0.2)),
+                "too early": phases(("slip", -1.0)),
+                "true start": phases(("slip", True)),
                 "words": '{"states": [["a", "b", "c", "d"]]}',
                 "short": json.dumps({"states": states[:-1]}),
                 "narrow": json.dumps({"states": [state[:3] for state in states]}),
@@ -69,14 +82,6 @@ for number, line in enumerate(sys.stdin):
                 "phase without state": json.dumps(
                     {"states": states, "phases": [{"kind": "slip", "start": 0.0, "state": [1.0]}]}
                 ),
-                "phases": json.dumps(
-                    {
-                        "states": states,
-                        "phases": [
-                            {"kind": "slip", "start": 0.0, "state": question["state"]},
-                            {"kind": "stick", "start": 0.5, "state": question["state"]},
-                        ],
-                    }
-                ),
+                "phases": phases(("slip", 0.0), ("stick", 0.5)),
             }[fault]
         )

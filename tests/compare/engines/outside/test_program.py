@@ -186,6 +186,14 @@ def test_a_command_that_can_not_be_started_is_refused(command, reason, tmp_path,
         ("no states", conversation.ProgramError, "answered without \"states\": '{\"state\": [1.0]}'"),
         ("ragged", conversation.ProgramError, "no rows of numbers, all as long: [[1.0], [1.0, 2.0]]"),
         ("words", conversation.ProgramError, "no rows of numbers, all as long"),
+        ("texts", conversation.ProgramError, "no rows of numbers, all as long: [['0.1', "),
+        ("true", conversation.ProgramError, "no rows of numbers, all as long"),
+        ("huge", conversation.ProgramError, "no rows of numbers, all as long"),
+        ("true start", conversation.ProgramError, 'answered with "start" that are no rows of numbers'),
+        ("unordered", BadTrajectoryError, "phases[0] lasts from 0.5 to 0.2 s: phases must begin one after the other"),
+        ("too early", BadTrajectoryError, "phases[0] lasts from -1 to 1 s: phases must begin one after the other"),
+        ("escapes", conversation.ProgramError, r"says: \ud800 \x1b[31m"),
+        ("escapes unsupported", UnsupportedSystemError, r"\ud800 \x1b[31m"),
         ("phase", conversation.ProgramError, "a phase {'kind': 'glide'}: its \"kind\" must be one of"),
         ("phase without state", conversation.ProgramError, 'and "state" 4 numbers'),
         ("error", conversation.ProgramError, "says: the step fell to nothing"),
@@ -205,8 +213,9 @@ def test_whatever_a_program_does_is_told_in_one_sentence_and_the_next_question_i
         asked(engine)
     assert reason in str(error.value)
     assert "\n" not in str(error.value)
-    if (
-        kind is conversation.ProgramError and fault != "error"
+    if kind is conversation.ProgramError and fault not in (
+        "error",
+        "escapes",
     ):  # a new process, which is asked for the first time
         np.testing.assert_array_equal(asked(engine).states, [START] * 3)
 

@@ -1,5 +1,6 @@
 """Stores of which files are missing, cut, or have other contents: mended or refused, always in words."""
 
+import json
 import shutil
 
 import numpy as np
@@ -8,9 +9,19 @@ import zarr
 from long_sweeps import assert_same, content
 
 from compare.cli import app as cli
+from compare.cli.sweep import run
 from compare.cli.sweep.run import STORE
+from compare.sweep.store.round import CHECKSUM, DESCRIPTION
+from compare.sweep.store.store import FILES_OF_ROUND, SweepStore, _checksum, digest_of
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def most_may_be_undecided():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "MOST_UNDECIDED", 1.0)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +71,28 @@ def another_seed(path):
     path.write_text(path.read_text().replace('\\"seed\\": 1', '\\"seed\\": 2'))
 
 
+def foreign(**changes):
+    """Return what makes an array another one, of which every checksum is right."""
+
+    def described(path):
+        path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+        store, group = SweepStore.open(path.parents[2]), path.parents[1].name
+        names = FILES_OF_ROUND if group.startswith("round") else list(store._names(group))
+        contents = {name: store.files.read(f"{group}/{name}") for name in names if name != DESCRIPTION}
+        digests = {name: digest_of(content) for name, content in contents.items() if content is not None}
+        (path.parents[1] / DESCRIPTION).write_text(json.dumps({CHECKSUM: _checksum(digests)}))
+
+    described.__name__ = "foreign " + " ".join(changes)
+    return described
+
+
+PICKLE = {"id": "pickle"}  # runs code of whoever wrote the array
+
 MENDED = [
+    (foreign(filters=[PICKLE]), "result/time/.zarray", "result"),
+    (foreign(compressor=PICKLE), "check/time/.zarray", "check"),
+    (foreign(filters=[PICKLE], compressor=None, dtype="|O"), "curves/curve/.zarray", "curves"),
+    (foreign(filters=[PICKLE]), "round-0/end/.zarray", "the description of round-0"),
     (remove, "round-0/end/1", "of 3 chunks of round-0 these: 1"),
     (empty, "round-0/end/1", "of 3 chunks of round-0 these: 1"),
     (garble, "round-0/time/2", "of 3 chunks of round-0 these: 2"),
@@ -99,6 +131,14 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
     assert_same(content(path), whole[1])
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
+    for folder in ("", "result", "result/time", "round-0/end"):
+        (copied / STORE / folder / "zarr.json").write_text(
+            '{"zarr_format": 3, "codecs": [{"name": "pickle"}]}'
+        )
+    assert cli.status(["sweep", "figures", str(copied)]) == 0
 
 
 REFUSED = [*((how, file) for file in (".zattrs", ".zgroup") for how in (empty, cut, garble, remove))]

@@ -1,0 +1,56 @@
+"""Text that comes from outside: from engines, their programs and models, exceptions, files and the command line."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+MOST = 2000
+"""Characters of a text; a longer one loses its middle."""
+
+LEFT_OUT = " [...] "
+
+NOT_ASCII = re.compile(r"[^\n\t -~]")
+"""Characters that need a look."""
+
+FORMULA = tuple("=+-@＝＋－＠")
+"""Characters with which a spreadsheet takes a cell for a formula."""
+
+
+def printable(text: object, most: int = MOST) -> str:
+    r"""Return ``text`` so that a file can encode it, a terminal can show it and XML can contain it.
+
+    Characters that do not print, such as control characters and lone surrogates, are escaped as ``repr`` does:
+    "\x1b". Line breaks and tabs stay. A second call changes nothing.
+    """
+    try:
+        text = str(text)
+    except Exception as error:  # an engine may raise exceptions of its own classes
+        text = f"{type(text).__name__}, whose text raises {type(error).__name__}"
+    return _shortened(NOT_ASCII.sub(_escaped, _shortened(text, most)), most)
+
+
+def one_line(text: object) -> str:
+    """Return ``printable`` text on one line, which a spreadsheet does not take for a formula: a name, a version."""
+    line = " ".join(printable(text).split())
+    return f"'{line}" if line.startswith(FORMULA) else line
+
+
+def all_printable(content: Any) -> Any:
+    """Return JSON values of which each text and each name is ``printable``."""
+    if isinstance(content, dict):
+        return {printable(name): all_printable(value) for name, value in content.items()}
+    if isinstance(content, list):
+        return [all_printable(value) for value in content]
+    return printable(content) if isinstance(content, str) else content
+
+
+def _escaped(found: re.Match[str]) -> str:
+    return found[0] if found[0].isprintable() else ascii(found[0])[1:-1]
+
+
+def _shortened(text: str, most: int) -> str:
+    if len(text) <= most:
+        return text
+    kept = (most - len(LEFT_OUT)) // 2
+    return f"{text[:kept]}{LEFT_OUT}{text[-kept:]}"
