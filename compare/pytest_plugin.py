@@ -37,7 +37,7 @@ NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
-"""Exit statuses beyond those of pytest: nothing differs, but too few claims pass, or an engine has no verdict."""
+"""Exit statuses in addition to those of pytest: too few claims pass; an engine has no verdict."""
 
 
 # Options of these names may well be another's: they are there only for a run that asks for this package.
@@ -242,7 +242,7 @@ class ClaimTest(pytest.Item):
 class Bench:
     """Measures each study with each engine once, as far as it is asked for, when its first claim is.
 
-    As a plugin of its own it counts the results of each engine, those from other processes too.
+    It is also a plugin that counts the results of each engine, including those from other processes.
     """
 
     def __init__(self, limit: float) -> None:
@@ -343,7 +343,7 @@ def _why_none(report: pytest.TestReport) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """End with a status of its own where an engine has no verdict, or where too little was shown."""
+    """End with status 7 if an engine has no verdict, or 6 if too few claims pass."""
     config, names = session.config, _engines(session.config)
     if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return

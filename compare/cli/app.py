@@ -6,6 +6,7 @@ Exudyn, matplotlib) happen inside of the commands that need them.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -67,7 +68,8 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
     """
     if sys.stdout is None:  # closed by the caller
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # of names of files
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may not be text
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 

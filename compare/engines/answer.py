@@ -17,9 +17,8 @@ PHASES = ("slip", "pivot", "stick")
 TIME_ROUNDING = 1e-12
 """Relative: times of the same grid that were added up in another order agree to this."""
 
-
 REAL = "fiu"
-"""NumPy's kinds of real numbers: no texts and no truth values."""
+"""NumPy's kinds of real numbers, without texts and truth values."""
 
 
 class BadTrajectoryError(RuntimeError):
@@ -58,24 +57,23 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
 
 
 def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:
-    """Raise ``BadTrajectoryError`` unless the phases begin one after the other, none before ``times``."""
+    """Raise ``BadTrajectoryError`` unless the phases follow each other within ``times``."""
     slack = TIME_ROUNDING * np.max(np.abs(times))
-    earliest = times[0] - slack
+    earliest, latest = times[0] - slack, times[-1] + slack
     for i, phase in enumerate(phases):
         if not isinstance(phase, Phase) or phase.kind not in PHASES:
-            raise BadTrajectoryError(
-                f"phases[{i}] is of the kind {getattr(phase, 'kind', None)!r}: it must be a Phase of {PHASES}"
-            )
+            shown = reprlib.repr(getattr(phase, "kind", phase))
+            raise BadTrajectoryError(f"phases[{i}] is {shown}: it must be a Phase of a kind in {PHASES}")
         if not (_is_real(phase.initial_state, (components,)) and _is_real([phase.start, phase.end], (2,))):
             raise BadTrajectoryError(
                 f"phases[{i}] must have finite times and {components} finite numbers as its initial_state"
             )
-        if not earliest <= phase.start <= phase.end:
+        if not earliest <= phase.start <= phase.end <= latest:
             raise BadTrajectoryError(
-                f"phases[{i}] lasts from {phase.start:g} to {phase.end:g} s: phases must begin one after the other, "
-                f"the first not before {times[0]:g} s"
+                f"phases[{i}] lasts from {phase.start:g} to {phase.end:g} s: phases must follow each other between "
+                f"{times[0]:g} and {times[-1]:g} s"
             )
-        earliest = phase.start - slack
+        earliest = phase.end - slack
 
 
 def _is_real(value: object, shape: tuple[int, ...]) -> bool:

@@ -76,7 +76,7 @@ def is_registered(name: str) -> bool:
 
 
 def owner_of(engine: Engine | None) -> str:
-    """Return the name of a foreign engine, "" for those of this project: foreign code gets processes of its own."""
+    """Return the name of a foreign engine, or "" for the engines of this project, which may share a process."""
     return "" if engine is None or is_registered(engine.name) else engine.name
 
 

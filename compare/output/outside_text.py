@@ -6,15 +6,15 @@ import re
 from typing import Any
 
 MOST = 2000
-"""Characters of a text; a longer one loses its middle."""
+"""Largest number of characters; a longer text loses its middle."""
 
 LEFT_OUT = " [...] "
 
 NOT_ASCII = re.compile(r"[^\n\t -~]")
-"""Characters that need a look."""
+"""Characters that may not be printable."""
 
 FORMULA = tuple("=+-@＝＋－＠")
-"""Characters with which a spreadsheet takes a cell for a formula."""
+"""First characters of a formula in a spreadsheet."""
 
 
 def printable(text: object, most: int = MOST) -> str:
@@ -25,7 +25,7 @@ def printable(text: object, most: int = MOST) -> str:
     """
     try:
         text = str(text)
-    except Exception as error:  # an engine may raise exceptions of its own classes
+    except Exception as error:  # the class of an exception may be the engine's
         text = f"{type(text).__name__}, whose text raises {type(error).__name__}"
     return _shortened(NOT_ASCII.sub(_escaped, _shortened(text, most)), most)
 
@@ -37,7 +37,7 @@ def one_line(text: object) -> str:
 
 
 def all_printable(content: Any) -> Any:
-    """Return JSON values of which each text and each name is ``printable``."""
+    """Return JSON values with every text and every name made ``printable``."""
     if isinstance(content, dict):
         return {printable(name): all_printable(value) for name, value in content.items()}
     if isinstance(content, list):

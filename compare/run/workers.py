@@ -24,6 +24,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from compare.output.exit_codes import cause_of_end
 from compare.output.outside_text import printable
 
 ONE_THREAD = dict.fromkeys(
@@ -34,10 +35,8 @@ ONE_THREAD = dict.fromkeys(
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 """Until it has been told this process's path, a new one would look into the current folder first."""
 
-
 STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
 """Their file descriptors."""
-
 
 MOST_ERRORS = 100_000
 """Characters of a process's standard error that are handed on after a piece of work."""
@@ -225,7 +224,8 @@ class _Worker:
             value = pickle.loads(self.connection.recv_bytes())
             self._errors.hand_on()
         except Exception:  # the engine has ended the process, or used its connection
-            cause = _cause_of_end(self._exit_code())
+            code = self._exit_code()
+            cause = "it closed its connection" if code is None else cause_of_end(code)
             said = self._errors.hand_on().strip().splitlines()
             self.end()
             reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
@@ -234,8 +234,9 @@ class _Worker:
 
     def end(self) -> None:
         self.dead = True
-        with suppress(AttributeError, ProcessLookupError, PermissionError):  # no groups, or not a leader yet
-            os.killpg(self._process.pid or 0, signal.SIGKILL)  # with the processes that an engine has started
+        if self._process.pid is not None and hasattr(os, "killpg"):
+            with suppress(ProcessLookupError, PermissionError):  # it leads no group yet, or no longer
+                os.killpg(self._process.pid, signal.SIGKILL)  # with the processes that an engine has started
         self._process.kill()  # compiled code may not listen to less
         self._process.join()
         self._errors.close()
@@ -250,15 +251,6 @@ class _Worker:
         while self._process.exitcode is None and time.monotonic() < deadline:
             time.sleep(TICK)
         return self._process.exitcode
-
-
-def _cause_of_end(code: int | None) -> str:
-    """Return how a process with an exit code ended; None is that of one that still runs."""
-    if code is None:
-        return "it closed its connection"
-    if code >= 0:
-        return f"exit status {code}"
-    return next((one.name for one in signal.Signals if one == -code), f"signal {-code}")
 
 
 class _Errors:

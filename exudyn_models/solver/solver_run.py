@@ -257,9 +257,8 @@ def _evaluations(solver: Any, explicit: bool) -> int:
     """Return how often a solver has evaluated the equations of motion."""
     if not explicit:
         found = solver.it.discontinuousIterationsCount
-        failed = (
-            found - solver.it.currentStepIndex
-        )  # each leads to one repetition, see restored_accelerations
+        # Each failed iteration leads to one repetition, see restored_accelerations.
+        failed = found - solver.it.currentStepIndex
         return int(solver.it.newtonStepsCount + found + failed)
     steps = solver.it.currentStepIndex - 1 + solver.it.rejectedAutomaticStepSizeSteps
     return int(steps * (solver.GetNumberOfStages() + 1))

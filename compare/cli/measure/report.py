@@ -186,7 +186,7 @@ def _asked(
 
 
 def _folder(context: typer.Context, output: Path, part: bool) -> Path:
-    """Return the folder that was asked for, else for a part one of its own, so that a whole report stays as it is."""
+    """Return the folder that the user named, or by default "report-part" for a part, which keeps the whole report."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
@@ -230,7 +230,7 @@ def _print_diagnoses(suspects: Iterable[Engine]) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status of a report; say what is missing, if anything, also of engines that were ``named``."""
+    """Return the exit status of a report; print what is missing, also for the engines that --engine ``named``."""
     from compare.report.matrix import State
 
     if result.interrupted:
@@ -250,7 +250,7 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
 
 
 def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterator[str]:
-    """Yield what engines were asked for and have not measured, where they have no verdict or give no reason."""
+    """Yield a sentence for each named engine without a verdict, and for claims left out without a reason."""
     from compare.claims.study import Findings
     from compare.report.matrix import VERDICTS
 
@@ -263,7 +263,7 @@ def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterato
             if not isinstance(found, Findings) or found.not_simulated or study.only:
                 continue
             if missing := study.sentences().keys() - {claim.sentence for claim in found.claims}:
-                yield f"{study.name} {name}: no ground to measure: {_listed(sorted(missing))}"
+                yield f"{study.name} {name}: not measured, and no reason given: {_listed(sorted(missing))}"
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:

@@ -34,7 +34,7 @@ CHUNK = 32768
 """Trajectories in a chunk, unless another number is asked for."""
 
 MOST_UNDECIDED = 0.5
-"""Share of all trajectories: beyond it a sweep says less about where they end than it leaves open."""
+"""Largest share of undecided trajectories of a sweep that ends with status 0."""
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
@@ -93,7 +93,7 @@ def _looking() -> Iterator[None]:
 
 
 def _check_writable(folder: Files) -> None:
-    """Raise ``ValueError`` or ``StoreError`` for a folder or URL in which no file can be written."""
+    """Raise ``ValueError`` or ``StoreError`` if no file can be written to the folder or URL."""
     from compare.sweep.store.files import is_remote
 
     if is_remote(folder.url):
@@ -145,7 +145,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
 
 
 def finish(store: SweepStore, folder: Files) -> int:
-    """Print and draw the results; return the exit status, by what the plain reference finds and what is undecided."""
+    """Print and draw the results; return 1 if the plain reference differs, 3 if most is undecided, else 0."""
     from compare.sweep.show.figures import write_figures
     from compare.sweep.show.summary import same_ends, summary, undecided
 

@@ -32,6 +32,7 @@ from compare.engines.outside.json_lines import (
     question,
 )
 from compare.engines.outside.program import own_name
+from compare.output.exit_codes import cause_of_end
 from compare.output.outside_text import printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
@@ -257,7 +258,7 @@ class Conversation:
             code = self._process.wait(FAREWELL)
         except subprocess.TimeoutExpired:
             return "it closed its output"
-        return signal.Signals(-code).name if code < 0 else f"exit status {code}"
+        return cause_of_end(code)
 
 
 def _environment() -> dict[str, str]:

@@ -47,7 +47,7 @@ LEAST_CREEP = 1e-12
 """In m/s: of a motion without any speed."""
 
 MOST_BYTES = 2**30
-"""Of an unpacked archive: a model of a pin or a disc is far smaller, and a disk may be full before."""
+"""Largest size of an unpacked archive; models of pins and discs are far smaller."""
 
 
 class FmuError(RuntimeError):
@@ -160,7 +160,7 @@ def _model(file: str) -> _Model:
 
 
 def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
-    """Return what an error says in one line, with paths inside the archive that is unpacked in ``folder``."""
+    """Return the message of an error in one line, with paths relative to ``folder``."""
     return " ".join(str(error).replace(f"{folder.name}{os.sep}", "").split()) or type(error).__name__
 
 

@@ -7,7 +7,6 @@ come back to the last bit.
 from __future__ import annotations
 
 import functools
-import itertools
 import json
 import reprlib
 from dataclasses import asdict, dataclass, field
@@ -147,16 +146,10 @@ def _object(line: bytes) -> dict[str, Any]:
 
 def _array(name: str, rows: object) -> Any:
     try:
-        parts = (
-            row if isinstance(row, list) else [row] for row in (rows if isinstance(rows, list) else [rows])
-        )
-        if not set(map(type, itertools.chain.from_iterable(parts))) <= {
-            int,
-            float,
-            type(None),
-        }:  # NumPy converts "1" and true
-            raise TypeError
-        return np.array(rows, dtype=float)
+        array = np.array(rows, dtype=float)
+        if not set(map(type, np.array(rows, dtype=object).flat)) <= {int, float, type(None)}:
+            raise TypeError  # NumPy takes "1" and true for numbers
+        return array
     except (TypeError, ValueError, OverflowError):
         raise BadLineError(
             f'answered with "{name}" that are no rows of numbers, all as long: {reprlib.repr(rows)}'

@@ -70,7 +70,7 @@ def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_p
     study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--engine", "fake_studies:straight"], (study,)) == 4
-    sentence = "silent fake_studies:straight: no ground to measure: One is itself\n"
+    sentence = "silent fake_studies:straight: not measured, and no reason given: One is itself\n"
     assert capsys.readouterr().err.endswith(sentence)
 
 

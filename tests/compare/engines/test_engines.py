@@ -229,7 +229,7 @@ def phases(*spans):
 
 REST = np.zeros(4)
 NO_NUMBERS = "must have finite times and 4 finite numbers as its initial_state"
-IN_ORDER = "phases must begin one after the other, the first not before 0 s"
+IN_ORDER = "phases must follow each other between 0 and 1 s"
 BROKEN_STATES = np.zeros((5, 4))
 BROKEN_STATES[3, 2] = np.inf
 
@@ -259,16 +259,17 @@ BROKEN_STATES[3, 2] = np.inf
         ),
         (
             changed(phases=(Phase("glide", 0.0, 1.0, REST),)),
-            "phases[0] is of the kind 'glide': it must be a Phase of ('slip', 'pivot', 'stick')",
+            "phases[0] is 'glide': it must be a Phase of a kind in ('slip', 'pivot', 'stick')",
         ),
         (
             changed(phases=("slip",)),
-            "phases[0] is of the kind None: it must be a Phase of ('slip', 'pivot', 'stick')",
+            "phases[0] is 'slip': it must be a Phase of a kind in ('slip', 'pivot', 'stick')",
         ),
         (changed(phases=(Phase("slip", True, 1.0, np.zeros(3)),)), f"phases[0] {NO_NUMBERS}"),
         (changed(phases=(Phase("slip", 0.0, np.nan, REST),)), f"phases[0] {NO_NUMBERS}"),
         (changed(phases=phases((-1.0, 1.0))), f"phases[0] lasts from -1 to 1 s: {IN_ORDER}"),
         (changed(phases=phases((0.5, 1.0), (0.0, 0.5))), f"phases[1] lasts from 0 to 0.5 s: {IN_ORDER}"),
+        (changed(phases=phases((0.0, 0.5), (0.5, 2.0))), f"phases[1] lasts from 0.5 to 2 s: {IN_ORDER}"),
         (changed(phases=phases((0.5, 0.0))), f"phases[0] lasts from 0.5 to 0 s: {IN_ORDER}"),
     ],
 )

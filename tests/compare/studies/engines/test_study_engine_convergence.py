@@ -31,7 +31,8 @@ def staying_at_1e_7(name):
     def offset(*arguments, **options):
         trajectory = engine_named(name).simulate(*arguments, **options)
         phases = tuple(
-            replace(phase, start=phase.start + 1e-4, end=phase.end + 1e-4) for phase in trajectory.phases
+            replace(phase, start=phase.start + 1e-4, end=min(phase.end + 1e-4, trajectory.times[-1]))
+            for phase in trajectory.phases
         )
         return replace(trajectory, states=trajectory.states + 1e-7, phases=phases)
 

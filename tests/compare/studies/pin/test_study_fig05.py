@@ -94,7 +94,9 @@ def test_one_stick_phase_too_few_or_too_many_at_the_end_is_seen(count):
         trajectory = simulate(system, initial_state, times, tolerance=tolerance)
         *phases, last_stick, last = trajectory.phases
         if count > 0:
-            return replace(trajectory, phases=(*phases, last_stick, last, replace(last, kind="stick")))
+            middle = (last.start + last.end) / 2.0
+            last, more = replace(last, end=middle), replace(last, kind="stick", start=middle)
+            return replace(trajectory, phases=(*phases, last_stick, last, more))
         return replace(trajectory, phases=(*phases, last))
 
     found = STUDY.measure(Engine("miscounting", simulated), only=("all_sticks",)).claims
