@@ -116,18 +116,19 @@ class Row:
 def _of_law(law: Friction) -> str:
     if law.misfit > max(DISTINCT * law.error, FITS):
         return (
-            f"Friction is no law that is known here: {error_text(law.misfit)} μN is left by the one that fits best, "
-            f"the {law.shape}."
+            f"No known law fits the friction: the best one, the {law.shape}, "
+            f"misses it by {error_text(law.misfit)} times μN."
         )
     if not law.sure:
         return (
-            f"Which law of friction it is stays open: forces are known to ±{error_text(law.error)} μN only."
+            "Which law of friction it is stays open: "
+            f"forces are known only to within {error_text(law.error)} times μN."
         )
     deviations = _deviations(law)
     name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
     if deviations:
         return f"{name}, but {' and '.join(deviations)}."
-    return f"{name}, its force right to ±{error_text(law.error)} μN."
+    return f"{name}, its force right to within {error_text(law.error)} times μN."
 
 
 def _is_other(law: Friction) -> bool:

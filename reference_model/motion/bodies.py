@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from operator import mul
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from reference_model.contact.contact_law import NONE, IsotropicContact
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.slip.breakaway import begin_slip
-from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, never, stop_surfaces
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, stop_surfaces
 from reference_model.motion.slip.slide import slide, slide_slowly
 from reference_model.motion.stepper import Run, SwitchingSurface
 from reference_model.motion.stick import can_hold, release_delay, slip_direction, slip_from_rest, stuck_centre
@@ -99,7 +100,7 @@ class Body(ABC):
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """Follow the motion through one description of it; return when and where that ends."""
         if not self.sticky or self.coordinates.speed(y) > 0.0:
-            creep = self.creeping(y)
+            creep = self.creeping(self.coordinates, y)
             return self.slip(t, y) if creep is None else self.creep(t, y, creep)
         held = self.holds_for(y)
         if held > 0.0:
@@ -114,44 +115,46 @@ class Body(ABC):
 
     def leave(self, y: list[float]) -> bool:
         """Tell whether slip is to be described in another way from ``y`` on."""
-        return self.creeping(y) is not None
+        return self.creeping(self.coordinates, y) is not None
 
-    def creeping(self, y: list[float]) -> Creep | None:
-        """Return how slip decays if it does so for ever and little way is left, else None.
+    def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
+        """Return how slip, written in ``motion``, decays if it does so for ever and little way is left, else None.
 
         The excess e of the pull over friction falls by c times the way, and slip grows like e − b·s. If nothing but
         the body turns, b and c are constant but for terms of second order in the way: s'' + b·s' + c·s = 0.
         """
-        d, s = self.coordinates.slip, self.coordinates.speed(y)
+        d, s = motion.slip, motion.speed(y)
         if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
             return None
-        rates = self.coordinates.rates(y)
-        growth = sum(a * b for a, b in zip(y[-d:], rates[-d:], strict=True)) / s
-        excess = self._excess(y)
+        n = [part / s for part in y[-d:]]
+        resting, moving = (motion.rates([*y[:-d], *[v * part for part in n]]) for v in (LEAST_SLIP, 1.0))
+        directions = [b - c for b, c in zip(moving[:-d], resting[:-d], strict=True)]
+
+        def next_to_rest(way: float) -> list[float]:
+            """Return the unknowns after a way along n, with next to no slip."""
+            there = [a + way * b for a, b in zip(y[:-d], directions, strict=True)]
+            return [*there, *[LEAST_SLIP * part for part in n]]
+
+        def growth_at(unknowns: list[float]) -> float:
+            return float(sum(map(mul, n, motion.rates(unknowns)[-d:])))
+
+        growth, excess = growth_at(y), growth_at(next_to_rest(0.0))
         if not growth < 0.0 < excess:
             return None
-        fall = (excess - self._excess(self._moved(y, CREEP / s))) / CREEP
+        fall = (excess - growth_at(next_to_rest(CREEP))) / CREEP
         creep = Creep.of(s, excess, damping=(excess - growth) / s, fall=fall)
         if creep is None or not creep.way_left < CREEP:
             return None
+        end = next_to_rest(creep.way_left)
+        if motion.grip is not None and motion.grip(end) <= 0.0:
+            return None
         # Friction has to hold the body where slip ends: no more of the excess may be left.
-        left = abs(self._excess(self._moved(y, creep.way_left / s)) / excess)
+        left = abs(growth_at(end) / excess)
         return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
-
-    def _moved(self, y: list[float], time: float) -> list[float]:
-        """Return the unknowns after moving with a slip that stays the same, on a master disc that rests."""
-        return list(self.crept(y, np.zeros(1), np.ones(1), np.array([time]))[:, 0].tolist())
-
-    def _excess(self, y: Sequence[float]) -> float:
-        """Return the rate at which next to no slip would grow along that of ``y``."""
-        d, s = self.coordinates.slip, self.coordinates.speed(y)
-        n = [part / s for part in y[-d:]]
-        rates = self.coordinates.rates([*y[:-d], *[LEAST_SLIP * part for part in n]])
-        return sum(a * b for a, b in zip(n, rates[-d:], strict=True))
 
     def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
         """Follow slip that decays for ever to the end; it is slip all the time."""
-        run, s = self.run, self.coordinates.speed(y)
+        run, s = self.run, float(creep.slip(np.zeros(1))[0])
 
         def sample(times: FloatArray) -> FloatArray:
             delays = times - t
@@ -301,9 +304,12 @@ class DiscBody(Body):
         direction: FloatArray,
     ) -> tuple[float, list[float]]:
         """Follow slip as it begins from rest in some coordinates; return time and unknowns of the disc."""
-        leave = self.leave if coordinates is self.coordinates else never
-        end = begin_slip(self.run, coordinates, t, own, drift, direction, leave)
+        end = begin_slip(self.run, coordinates, t, own, drift, direction, self.leaving(coordinates))
         return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
+
+    def leaving(self, motion: Coordinates) -> Leave:
+        """Return what tells, of unknowns in ``motion``, whether slip is to be described in another way."""
+        return self.leave
 
     def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
         """Return the rates of x, y and φ of a disc that turns with the master disc."""

@@ -23,7 +23,7 @@ from reference_model.contact.limit_surface import ComplexArray, PointsLimit
 from reference_model.motion.bodies import DiscBody
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pivot import OnePoint
-from reference_model.motion.slip.coordinates import LEAST_SLIP, come_to_rest, never
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, come_to_rest, never
 from reference_model.motion.slip.slide import slide, slide_slowly
 from reference_model.motion.stepper import Run
 from reference_model.motion.stick import GRAZING, ROUNDING
@@ -45,9 +45,7 @@ class PointsBody(DiscBody):
         self.slipping = [point.slipping(run.thresholds) for point in self.points]
         self.pivoting = [point.pivoting(run.thresholds) for point in self.points]
         self.pivot: int | None = None
-        # Seen from a point, the centre has the errors of r with leverage.
-        leverage = max(1.0, abs(self.points[0].arm(0.0)) / motion.gyration)
-        self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * leverage)
+        self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * self.points[0].leverage)
 
     # ------------------------------------------------------------ slip, and points that come to rest
 
@@ -64,13 +62,13 @@ class PointsBody(DiscBody):
         if self.pivot is not None:
             return self._turn_about(self.pivot, t, y)
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
-        if slow is None or self.creeping(y) is not None:
+        if slow is None or self.creeping(self.coordinates, y) is not None:
             return super().advance(t, y)
         if self.coordinates.speed(y) < self._least_speed:
             return self._rest(t, y)
         own = self._own(slow, y)
         if not self._at_rest(slow, y):
-            end = slide_slowly(self.run, self.slipping[slow], t, own, never)
+            end = slide_slowly(self.run, self.slipping[slow], t, own, self.leaving(self.slipping[slow]))
             t, own = end.t, end.y
             y = self.slipping[slow].standard(np.array([own]).T)[:, 0].tolist()
             if self.slipping[slow].speed(own) > 0.0 or t >= self.run.end:
@@ -91,6 +89,15 @@ class PointsBody(DiscBody):
     def leave(self, y: list[float]) -> bool:
         """As :meth:`Body.leave`: when a single point becomes slow."""
         return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
+
+    def leaving(self, motion: Coordinates) -> Leave:
+        """As :meth:`DiscBody.leaving`: for a point that slips or rests, when the disc creeps."""
+        if motion is self.coordinates:
+            return self.leave
+        if motion.slip == 1:
+            return lambda own: self.creeping(motion, own) is not None
+        whole = super().leave
+        return lambda own: whole(motion.standard(np.array([own]).T)[:, 0].tolist())
 
     def _slow_point(self, y: Sequence[float]) -> int | None:
         """Return the point that slips slowly and ever more so, or rests."""
@@ -127,8 +134,11 @@ class PointsBody(DiscBody):
     def _turn_about(self, i: int, t: float, y: list[float]) -> tuple[float, list[float]]:
         """Turn about point ``i`` until its friction is not enough, the disc rests, or to the end."""
         motion, own = self.pivoting[i], [*y[:3], y[5]]
+        creep = self.creeping(motion, own)
+        if creep is not None:
+            return self.creep(t, y, creep)
         slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
-        end = (slide_slowly if slowly else slide)(self.run, motion, t, own, never)
+        end = (slide_slowly if slowly else slide)(self.run, motion, t, own, self.leaving(motion))
         y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
         if end.let_go:
             self.pivot = None

@@ -60,6 +60,11 @@ class OnePoint:
         """Return the arm of the point."""
         return self.contact.arm(self.point, angle) / self.motion.length
 
+    @property
+    def leverage(self) -> float:
+        """The arm over the radius of gyration, but at least one: the errors of r matter so much."""
+        return max(1.0, abs(self.arm(0.0)) / self.motion.gyration)
+
     def velocity(self, unknowns: Sequence[float]) -> complex:
         """Return the slip velocity of the point for the standard unknowns of the disc."""
         _, _, angle, ux, uy, r = unknowns
@@ -157,6 +162,7 @@ class OnePoint:
             self._pace,
             self._standard,
             angle=2,
+            leverage=self.leverage,
             grip=self.grip,
             surfaces=surfaces,
         )

@@ -12,16 +12,13 @@ from scipy.integrate import DenseOutput, OdeSolution
 from scipy.optimize import brentq, minimize_scalar
 
 from reference_model.numerics.collocation import Radau, RatesAt, Scales
-from reference_model.numerics.explicit import Explicit, Rates
+from reference_model.numerics.explicit import TIGHTEST, Explicit, Rates, Tolerated
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 Kind = Literal["slip", "pivot", "stick"]
 Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
-
-TIGHTEST = 3e-14
-"""The smallest relative tolerance that SciPy's integrators take."""
 
 MOST_STEPS = 5_000_000
 """Some minutes' work; a motion that takes more is hardly meant."""
@@ -36,6 +33,9 @@ STABLE = 3.0
 STIFF, APART = 0.25, 5.0
 """The same from which a step may be stiff that accuracy limits, and that over the change of slip from which it is."""
 
+SHORT = 0.02
+"""Change of slip and time, as shares of themselves and of T, below which a step is short."""
+
 PATIENCE = 15
 """Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay."""
 
@@ -49,6 +49,9 @@ AS_GOOD = 20.0
 """Error of the interpolant, in local tolerances, up to which it is within the tolerance that was asked for."""
 
 INTERPOLANT_ORDER = 7
+
+MOST_PARTS = 8
+"""Shorter steps to begin with in place of one; stability allows no more, unless slip ends within the step."""
 
 SPOILT = 1.5
 """Stiffness of a step from which what decays fast may spoil the interpolant, whatever its last term is."""
@@ -220,8 +223,8 @@ class Stepper:
         Where to begin.
     span : (float, float)
         When to begin and to end.
-    relative_tolerance : array of shape (unknowns,)
-        Of each unknown; the absolute tolerance is that of the run.
+    tolerated : callable
+        Takes the unknowns and returns the errors that a step may have.
     surfaces : sequence of SwitchingSurface
         The surfaces.
     implicit : (Scales, float) or None
@@ -235,7 +238,7 @@ class Stepper:
         rates: Rates | RatesAt,
         y: Sequence[float],
         span: tuple[float, float],
-        relative_tolerance: FloatArray,
+        tolerated: Tolerated,
         surfaces: Sequence[SwitchingSurface] = (),
         implicit: tuple[Scales, float] | None = None,
     ) -> None:
@@ -246,10 +249,11 @@ class Stepper:
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
         self._stiff_steps = 0  # less others
-        self._relative_tolerance = relative_tolerance
+        self._tolerated = tolerated
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond
         self._usual_step = math.inf
+        self._since = 0.0  # time before the last step
         self._start(span[0], np.array(y), self._end, first_step)
 
     @property
@@ -278,7 +282,7 @@ class Stepper:
         Stability limits such steps, or accuracy because of what decays much faster than slip changes.
         """
         stiffness = self.stiffness
-        stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change)
+        stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change) or change < SHORT
         self._stiff_steps = max(0, self._stiff_steps + (1 if stiff else -1))
         return self._stiff_steps >= self._run.patience
 
@@ -298,13 +302,14 @@ class Stepper:
         evaluations = solver.nfev
         dense = solver.dense_output()
         self._run.evaluations += solver.nfev - evaluations
-        tolerated = self._run.local_tolerance + self._relative_tolerance * abs(solver.y)
-        error, stiffness = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated)), self.stiffness
+        tolerated = self._tolerated(solver.y)
+        error, stiffness = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated)), solver.stiffness
         if error > AS_GOOD or stiffness > SPOILT:
             error = self._defect(dense, tolerated)
         if error <= AS_GOOD:
             return dense
-        return self._finer(solver, 1 + math.ceil(max(error ** (1.0 / INTERPOLANT_ORDER), stiffness)))
+        parts = 1 + math.ceil(min(max(error ** (1.0 / INTERPOLANT_ORDER), stiffness), MOST_PARTS))
+        return self._finer(solver, parts)
 
     def _defect(self, dense: DenseOutput, tolerated: FloatArray) -> float:
         """Return what the interpolant would miss in half a step by its defect in the middle, in tolerances."""
@@ -316,22 +321,21 @@ class Stepper:
         return float(0.5 * (last - first) * np.max(abs(lacks) / tolerated))
 
     def _finer(self, done: Explicit, parts: int) -> OdeSolution:
-        """Return the motion in the last step from as many shorter ones."""
+        """Return the motion in the last step from as many shorter ones, each with an interpolant as accurate."""
         first, last = done.t_old, done.t
         solver = self._explicit(first, done.y_old, last, (last - first) / parts, (last - first) / parts)
         times, pieces = [first], []
         while solver.status == "running":
-            solver.step()
+            self._run.step(solver, self._since)
             times.append(solver.t)
-            pieces.append(solver.dense_output())
-        self._run.evaluations += solver.nfev
+            pieces.append(self._interpolant(solver))
         return OdeSolution(times, pieces)
 
     def step(self, since: float) -> None:
         """Take one step; ``since`` is the time to tell if that fails."""
         if self._solver.status == "finished" and self.t < self._end:
             self._start(self.t, self.y, self._end, self._usual_step)
-        self._dense = None
+        self._dense, self._since = None, since
         solver = self._solver
         t, y, rates = solver.t, solver.y, solver.f
         self._run.step(solver, since)
@@ -388,13 +392,13 @@ class Stepper:
         first_step = None if first_step is None else min(first_step, end - t)
         self._dense = None
         if self._scales is not None:
-            self._solver = Radau(self._rates, t, y, end, first_step or end - t, self._scales)
+            self._solver = Radau(self._rates, t, y, end, first_step or end - t, self._tolerated, self._scales)
             return
         self._solver = self._explicit(t, y, end, first_step)
-        self._run.evaluations += self._solver.nfev
 
     def _explicit(
         self, t: float, y: FloatArray, end: float, first_step: float | None, most: float = math.inf
     ) -> Explicit:
-        tolerances = self._relative_tolerance, self._run.local_tolerance
-        return Explicit(self._rates, t, y, end, first_step, *tolerances, most)
+        solver = Explicit(self._rates, t, y, end, first_step, self._tolerated, most)
+        self._run.evaluations += solver.nfev
+        return solver

@@ -20,6 +20,7 @@ from numpy.polynomial import legendre
 from scipy.integrate import DenseOutput
 from scipy.special import roots_jacobi
 
+from reference_model.numerics.explicit import Tolerated
 from reference_model.systems import FloatArray
 
 NODES = 8
@@ -93,8 +94,6 @@ class Scales(NamedTuple):
 
     Parameters
     ----------
-    tolerated : callable
-        Takes the unknowns and returns the errors that a step may have.
     differences : callable
         Takes unknowns (k, n) and returns their changes by which derivatives are found, of the same shape.
     most : array of shape (n,)
@@ -102,7 +101,6 @@ class Scales(NamedTuple):
 
     """
 
-    tolerated: Callable[[FloatArray], FloatArray]
     differences: Callable[[FloatArray], FloatArray]
     most: FloatArray
 
@@ -149,8 +147,10 @@ class Radau:
         When to end.
     first_step : float
         The step to try first.
+    tolerated : callable
+        Takes the unknowns and returns the errors that a step may have.
     scales : Scales
-        Of errors and differences.
+        Of differences and changes.
 
     """
 
@@ -161,13 +161,14 @@ class Radau:
         y: FloatArray,
         end: float,
         first_step: float,
+        tolerated: Tolerated,
         scales: Scales,
     ) -> None:
-        self._fun, self.t_bound, self._scales = rates, end, scales
+        self._fun, self.t_bound, self._tolerance_at, self._scales = rates, end, tolerated, scales
         self.t, self.y = t, np.asarray(y)
         self.status, self.nfev = "running", 0
         self.f = self._rates(self.y[:, np.newaxis])[:, 0]
-        self._tolerated = scales.tolerated(self.y)
+        self._tolerated = tolerated(self.y)
         self._next = first_step
         self._least = LEAST_SHARE * first_step
         self._polynomial: Polynomial | None = None
@@ -213,7 +214,7 @@ class Radau:
         self.t = self.t_bound if h == self.t_bound - self.t else self.t + h
         self.y = polynomial(self.t)
         self.f = self._rates(self.y[:, np.newaxis])[:, 0]
-        self._tolerated = self._scales.tolerated(self.y)
+        self._tolerated = self._tolerance_at(self.y)
         self._unchanged = self._unchanged + 1 if h < 1.5 * before else 0
         self._next = h * min(most, change)
         self._polynomial = polynomial

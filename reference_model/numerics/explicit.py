@@ -19,6 +19,12 @@ from reference_model.systems import FloatArray
 Rates = Callable[[list[float]], Sequence[float]]
 """Takes the unknowns and returns their rates; nothing depends on the time."""
 
+Tolerated = Callable[[FloatArray], FloatArray]
+"""Takes the unknowns and returns the errors that a step may have, of the same shape."""
+
+TIGHTEST = 3e-14
+"""The smallest relative tolerance that SciPy's integrators take."""
+
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 """Of a step over the one before."""
 
@@ -43,10 +49,8 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
         When to end, after t.
     first_step : float or None
         The step to try first; None to have it chosen.
-    relative_tolerance : array of shape (n,)
-        Of each unknown.
-    tolerance : float
-        Absolute, of all.
+    tolerated : callable
+        Takes the unknowns and returns the errors that a step may have, shape (n,).
     most : float
         The longest step.
 
@@ -65,11 +69,10 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
         y: FloatArray,
         end: float,
         first_step: float | None,
-        relative_tolerance: FloatArray,
-        tolerance: float,
+        tolerated: Tolerated,
         most: float = math.inf,
     ) -> None:
-        self._rates = rates
+        self._rates, self._tolerated, self._scale = rates, tolerated, tolerated(y)
         super().__init__(
             lambda _, y: rates(y.tolist()),
             t,
@@ -77,8 +80,8 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
             end,
             first_step=first_step,
             max_step=most,
-            rtol=relative_tolerance,
-            atol=tolerance,
+            rtol=TIGHTEST,
+            atol=self._scale,
         )
         known = np.zeros((len(self.K_extended) + 1, self.n))  # y, then the rates at all stages
         self._known, self.K_extended, self.K = known, known[1:], known[1 : STAGES + 2]
@@ -110,13 +113,13 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
             end = min(t + h, self.t_bound)
             h = end - t
             new = self._take(h)
-            scale = self.atol + np.maximum(abs(y), abs(new)) * self.rtol
-            error = self._size_of_error(h, scale)
+            scale = self._tolerated(new)
+            error = self._size_of_error(h, np.maximum(self._scale, scale))
             if error < 1.0:
                 break
             h *= max(LEAST_FACTOR, SAFETY * error**self.error_exponent)  # by the former if it is not a number
             most = 1.0
-        self.h_previous, self.y_old = h, y
+        self.h_previous, self.y_old, self._scale = h, y, scale
         self.t, self.y, self.f = end, new, known[STAGES + 1].copy()
         self.h_abs = h * (min(most, SAFETY * error**self.error_exponent) if error > 0.0 else most)
         return True, None

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.motion.stepper import TIGHTEST, Run, Stepper, SwitchingSurface
+from reference_model.motion.stepper import Run, Stepper, SwitchingSurface
+from reference_model.numerics.explicit import TIGHTEST, Tolerated
 from reference_model.support import Support
 from reference_model.systems import FloatArray
 
@@ -22,6 +23,12 @@ LEAST_SLIP = 1e-100
 
 DIFFERENCE = 1e-7
 """Change of unknowns of order one by which derivatives are found."""
+
+TIGHTEST_IMPLICIT = 3e-13
+"""Error of a step, on unknowns of order one, below which rounding is felt in the solution of implicit equations."""
+
+LOOSEST_IMPLICIT = 0.03
+"""The largest error of an implicit step in ln s."""
 
 SHARE = 1e-5
 """Change of a relative velocity, as a share of it, by which derivatives are found if that is less."""
@@ -53,6 +60,8 @@ class Coordinates:
     turning : int or None
         Which unknown besides the slip is a relative velocity, if one is: friction may change with it at its own size,
         however small that is.
+    leverage : float
+        By how much the velocity of the centre changes with the slip.
     grip : callable or None
         How much more could be held of what friction holds in this motion, which ends when that falls to zero.
     surfaces : tuple of SwitchingSurface
@@ -68,6 +77,7 @@ class Coordinates:
     standard: Callable[[FloatArray], FloatArray] = lambda y: y
     angle: int | None = None
     turning: int | None = None
+    leverage: float = 1.0
     grip: Callable[[Sequence[float]], float] | None = None
     surfaces: tuple[SwitchingSurface, ...] = ()
 
@@ -87,12 +97,31 @@ class Coordinates:
             changes[:, self.turning] = np.minimum(DIFFERENCE, own)
         return changes
 
-    def tolerances(self, run: Run, unknowns: int) -> FloatArray:
-        """Return the relative tolerances of the first ``unknowns``."""
-        result = np.full(unknowns, run.local_tolerance)
+    def tolerated(self, run: Run, unknowns: int, polar: int = 0, implicit: bool = False) -> Tolerated:
+        """Return a function for the error that a step may have in each of the first ``unknowns``.
+
+        ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on. They count by
+        their absolute error. In an implicit step the error of s counts instead of that of ln s, because slip that
+        decays for a long time would need many steps otherwise. Explicit steps keep the tighter bound: at each
+        reversal they would add the tolerance once more to the error of the run.
+        """
+        relative = np.full(unknowns + polar, TIGHTEST)
+        relative[:unknowns] = run.local_tolerance
         if self.angle is not None:
-            result[self.angle] = TIGHTEST
-        return result
+            relative[self.angle] = TIGHTEST
+        tolerance, logarithm = run.local_tolerance, unknowns + self.slip
+        loosest = tolerance
+        if implicit:
+            tolerance, loosest = max(tolerance, TIGHTEST_IMPLICIT), LOOSEST_IMPLICIT
+
+        def errors(y: FloatArray) -> FloatArray:
+            result = np.asarray(tolerance + relative * abs(y))
+            if polar:
+                over_slip = math.exp(min(-float(y[logarithm]), 500.0))
+                result[logarithm] = min(tolerance / self.leverage * over_slip, loosest)
+            return result
+
+        return errors
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:

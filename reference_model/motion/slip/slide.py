@@ -28,13 +28,13 @@ from reference_model.motion.slip.coordinates import (
 )
 from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
-from reference_model.motion.stepper import TIGHTEST, Run, Stepper
+from reference_model.motion.stepper import Run, Stepper
 from reference_model.systems import FloatArray
 
 
 def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
     """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
-    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerances(run, len(y)), motion.surfaces)
+    solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerated(run, len(y)), motion.surfaces)
     lost = None
     while t < run.end:
         before, slip = t, y[-motion.slip :]
@@ -100,11 +100,10 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         ]
 
     speed = motion.speed(y)
-    # n, ln s and t count by their absolute error: that of t must not grow with the length of the run.
-    relative = np.concatenate((motion.tolerances(run, others), np.full(d + 2, TIGHTEST)))
+    tolerated = motion.tolerated(run, others, polar=d + 2)
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
     surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
-    solver = Stepper(run, rates, initial, (0.0, math.inf), relative, surfaces)
+    solver = Stepper(run, rates, initial, (0.0, math.inf), tolerated, surfaces)
     landings = Landings(run, motion, leave)
     t = start
     while True:

@@ -28,12 +28,6 @@ from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
-TIGHTEST_IMPLICIT = 3e-13
-"""Error of a step, on unknowns of order one, below which rounding is felt in the solution of its equations."""
-
-LOOSEST = 0.03
-"""The largest error of a step in ln s."""
-
 WORTH = 6.0
 """Length of a step times the largest rate, from which stability forbids it to an explicit method."""
 
@@ -51,7 +45,8 @@ def slide_stiffly(
     others = len(y) - motion.slip
     solver = _stepper(run, motion, start, y, 2.0 * step)
     landings = Landings(run, motion, leave)
-    t, taken, slowly = start, run.steps, motion.speed(y) < motion.slow(y)
+    t, taken, first = start, run.steps, motion.speed(y)
+    slowly = first < motion.slow(y)
     while t < run.end:
         before = t
         try:
@@ -74,7 +69,9 @@ def slide_stiffly(
         ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
         if ended is not None:
             return ended
-        if solver.settled and (t - before < COST * step or solver.stiffness < WORTH):
+        # Explicit steps in stretched time are in proportion to slow slip, and limited by that rather than stability.
+        explicit = step * motion.speed(y) / first if slowly else step
+        if solver.settled and (t - before < COST * explicit or (solver.stiffness < WORTH and not slowly)):
             run.patience *= 2
             break
     return Outcome(t, y)
@@ -96,15 +93,6 @@ def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_
         result[-1] = along / s
         return result
 
-    tolerance = max(run.local_tolerance, TIGHTEST_IMPLICIT)
-    relative = np.zeros(others + d + 1)
-    relative[:others] = motion.tolerances(run, others)
-
-    def tolerated(polar: FloatArray) -> FloatArray:
-        result = tolerance + relative * abs(polar)
-        result[-1] = min(tolerance / math.exp(polar[-1]), LOOSEST)  # the error of s itself counts
-        return np.asarray(result)
-
     most = np.full(others + d + 1, math.inf)
     most[-1] = 1.0
     speed = motion.speed(y)
@@ -115,9 +103,9 @@ def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_
         rates,
         initial,
         (start, run.end),
-        relative,
+        motion.tolerated(run, others, d + 1, implicit=True),
         surfaces,
-        (Scales(tolerated, motion.differences, most), first_step),
+        (Scales(motion.differences, most), first_step),
     )
 
 

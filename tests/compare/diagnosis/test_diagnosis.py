@@ -13,6 +13,7 @@ from compare.diagnosis import run
 from compare.diagnosis.files import write_picture, write_rows
 from compare.diagnosis.findings import MOTIONS, Motion, creep, friction, lag, motion
 from compare.diagnosis.ladder import RUNGS, tolerances
+from compare.diagnosis.laws import CONE, Friction
 from compare.diagnosis.recorded import recorded_rows
 from compare.diagnosis.row import Row
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
@@ -59,7 +60,7 @@ def test_a_wrong_law_is_named(wrong):
 @pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
 def test_coulombs_law_is_named_and_nothing_besides(made):
     row, found = sentences(made)
-    assert found.startswith("Friction is Coulomb's cone, its force right to ±")
+    assert found.startswith("Friction is Coulomb's cone, its force right to within ")
     assert found.endswith("A block that friction can hold rests.")
     assert not row.wrong
 
@@ -74,8 +75,16 @@ def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
         return replace(found, states=np.vstack((start, found.states[1:])))
 
     assert sentences(replace(reference, function=simulate))[1].startswith(
-        "Friction is Coulomb's cone, its force right to ±"
+        "Friction is Coulomb's cone, its force right to within "
     )
+
+
+@pytest.mark.parametrize(
+    ("error", "misfit", "sure"), [(11.0, 0.0, False), (1e-7, 0.5, False), (1e-7, 0.0, True)]
+)
+def test_no_force_reads_as_micronewtons(error, misfit, sure):
+    (said,) = Row("any", law=Friction(CONE, 1.0, 0.0, error, misfit, sure)).sentences
+    assert " times μN" in said
 
 
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():

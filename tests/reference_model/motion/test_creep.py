@@ -90,6 +90,19 @@ def test_disc_on_points_without_shaft_damping_that_turns_with_the_master_disc_cr
 
 
 @pytest.mark.usefixtures("few_steps")
+@pytest.mark.parametrize("x", [1.0, 10.0])
+def test_disc_that_creeps_while_it_turns_about_a_point_or_a_point_hardly_slips_takes_few_steps(x):
+    disc = DiscOnDisc(
+        mass=3.3518, stiffness=1.35678, damping=13.5159, friction_force=2.59677, disc_speed=-0.33557,
+        polar_inertia=51.87, contact_radius=27.074, shaft_damping=163.887, shaft_speed=0.0, contact_points=4,
+    )  # fmt: skip
+    start, times = [x, 0.0, 0.0, 0.0, 0.0, 0.0], np.linspace(0.0, 383.6, 101)
+    found, tight = (simulate(disc, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
+    assert np.abs(found.states - tight.states).max() < 1e-9 * x
+    assert found.solution.steps < 1_000
+
+
+@pytest.mark.usefixtures("few_steps")
 def test_slow_slip_whose_direction_settles_much_faster_than_it_changes_is_followed_in_long_steps(monkeypatch):
     # Friction turns the slip to its direction at ten times the natural frequency: too slowly for stability to limit
     # an explicit method, and yet accuracy keeps it to steps of a twentieth of an implicit one's.

@@ -217,9 +217,9 @@ def test_motion_is_the_same_in_any_units(law, mass, length, time):
     plain = sticky_motion(law, 1, 12.0, 61)
     scaled = simulate(other, scale * np.array(STARTS[1]), time * plain.times, contact=other_contact)
     assert kinds(plain) == kinds(scaled)
-    # The same steps but for rounding. It grows at a release, but stays below the tolerance. It may tip over where
-    # one description of slip ends, and so the few steps of the next.
-    assert scaled.solution.steps == pytest.approx(plain.solution.steps, rel=0.03)
+    # The steps are the same except for rounding, which grows at a release but stays below the tolerance. Rounding can
+    # decide where one description of slip ends, and into how many parts the output refines a step.
+    assert scaled.solution.steps == pytest.approx(plain.solution.steps, rel=0.05)
     assert np.abs(plain.states - scaled.states / scale).max() < 1e-9
 
 
@@ -492,7 +492,8 @@ def test_point_far_out_on_a_light_disc_begins_to_slip_where_its_own_inertia_turn
     start = simulate(disc, turning, [0.0, 0.1])
     assert kinds(start) == ["pivot", "slip"]
     release = start.phases[1].start
-    assert release == pytest.approx(0.04195287800, abs=1e-10)
+    # Between tolerances of 1e-8 and 1e-13 it varies by 5e-9: the leverage of the arm magnifies rounding of the start.
+    assert release == pytest.approx(0.041952875, abs=5e-9)
     delays = np.array([0.01, 0.02, 0.04])
     later = simulate(disc, turning, [0.0, *(release + delays)], tolerance=1e-11).states[1:]
     usual = simulate(disc, turning, [0.0, *(release + delays)]).states[1:]

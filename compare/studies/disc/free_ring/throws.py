@@ -18,6 +18,7 @@ from compare.studies.disc.free_ring.parameters import (
     RINGS,
     SPEED,
     TABLE,
+    TOLERANCE,
     Throw,
 )
 from compare.studies.disc.free_ring.theory import expected_approach
@@ -27,9 +28,13 @@ from reference_model.systems import FloatArray
 
 @functools.cache
 def roughly_rest(engine: Engine, throw: Throw) -> float:
-    """Return about when the ring of ``engine`` rests, in s: it decides at which times it is looked at."""
+    """Return when the ring of ``engine`` rests, in s, which sets the times that the claims sample.
+
+    It is of the claims' own tolerance. A smaller one then moves the rest against these times by about their error,
+    so that the change of what a claim measures covers that error.
+    """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
-    found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=1e-6))
+    found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
     return found if math.isfinite(found) else longest
 
 

@@ -16,7 +16,7 @@ from numba.extending import overload
 from scipy.integrate import DOP853
 
 from reference_model.ensemble.core.jit import INLINED, inlined
-from reference_model.motion.stepper import TIGHTEST
+from reference_model.numerics.explicit import TIGHTEST
 
 intrinsic: Any = numba.extending.intrinsic  # not typed throughout
 types: Any = numba.types

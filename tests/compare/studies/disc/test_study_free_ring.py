@@ -11,6 +11,7 @@ from study_harness import LEFT_OUT, SEES, StudyTests
 from compare.engines import EVERY_KIND, Engine
 from compare.judge.faults.reference import simulate
 from compare.studies.disc.free_ring.claims import STUDY
+from compare.studies.disc.free_ring.claims.ratios import other_ratios, powers
 from compare.studies.disc.free_ring.parameters import LOPSIDED, OTHERS, RINGS
 from compare.studies.disc.free_ring.theory import approach_constant, deviation
 from compare.studies.toolkit.free_bodies import Slowing
@@ -107,6 +108,17 @@ class TestFreeRing(StudyTests):
 
     def test_nothing_is_drawn_of_nothing(self):
         assert STUDY.draw({}) == {}
+
+
+@pytest.mark.parametrize(("claim", "throws"), [(other_ratios, OTHERS[::3]), (powers, LOPSIDED[1:3])])
+def test_error_of_the_time_to_rest_is_within_the_estimates_of_claims_that_sample_by_it(claim, throws):
+    def simulated(system, state, times, *, tolerance=1e-9):
+        later = replace(system, friction_force=(1.0 - 1e5 * tolerance) * system.friction_force)
+        return simulate(later, state, times, tolerance=tolerance)
+
+    measured = claim(Engine("late", simulated, EVERY_KIND), throws)
+    off = np.abs(np.subtract(measured.value, measured.predicted))
+    assert np.all(off <= np.add(measured.error, measured.model))
 
 
 @pytest.mark.parametrize(("inertia", "sliding", "rim"), [(1.0, 1.0, 0.3), (0.7, 0.2, 1.0), (1.4, 1.0, 0.2)])
