@@ -8,14 +8,14 @@ INSTALL = PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --no-compil
 # Where it is set, as in many images, each of the many processes would compile all of these modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: report readme test lint docs paper dist benchmarks clean
+.PHONY: report findings test lint docs paper dist benchmarks clean
 
 report: $(VENV)/kernels
 	$(BIN)/friction-discs report
 
-# Takes the numbers of README and docs over from the last report; .ci/run fails where the two part.
-readme: $(VENV)/installed
-	$(BIN)/python -m compare.cli.readme write report/results.json
+# Writes docs/findings.md and its numbers from the last report; .ci/run fails where a report deviates from them.
+findings: $(VENV)/installed
+	$(BIN)/python builders/findings.py write report/results.json
 
 test: $(VENV)/for-tests $(VENV)/kernels
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal

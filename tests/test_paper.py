@@ -4,10 +4,10 @@ import re
 import runpy
 from pathlib import Path
 
-from compare.cli.readme import kept, quoted
 from compare.studies import STUDIES
 
 ROOT = Path(__file__).parents[1]
+FINDINGS = runpy.run_path(str(ROOT / "builders" / "findings.py"))
 PAPER = ROOT / "docs" / "paper"
 TEXT = (PAPER / "paper.typ").read_text(encoding="utf-8")
 
@@ -33,9 +33,9 @@ def test_every_figure_of_the_paper_is_one_of_the_report():
 
 
 def test_every_number_of_the_paper_was_measured():
-    words = list(quoted())
+    words = FINDINGS["QUOTED"].findall(TEXT)
     assert len(words) > 20
-    assert set(words) <= kept().keys()
+    assert set(words) <= FINDINGS["kept"]().keys()
 
 
 def test_the_paper_without_a_report_says_what_it_lacks(monkeypatch, capsys, tmp_path):

@@ -20,7 +20,6 @@ from compare.report.at_a_glance import cases, glances
 from compare.report.machines.results_json import erratum_id
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
-from compare.report.symbols import symbols_of
 from compare.report.worst import Worst, answers_text, in_short, worst
 from compare.run.drawings import Drawing
 from compare.run.runner import Run
@@ -48,13 +47,12 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure or an animation by its path in the report's folder, and the symbols in it with their meanings."""
+    """A figure or an animation, by its path in the report's folder."""
 
     name: str
     path: str
     caption: str
     moves: bool = False
-    symbols: tuple[tuple[str, str], ...] = ()
 
     @property
     def still(self) -> str:
@@ -288,12 +286,7 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
-    figures = [
-        Picture(
-            name, f"figures/{name}.svg", study.figures.get(name, ""), symbols=tuple(symbols_of(svg.decode()))
-        )
-        for name, svg in drawing.figures.items()
-    ]
+    figures = [Picture(name, f"figures/{name}.svg", study.figures.get(name, "")) for name in drawing.figures]
     animations = [
         Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
         for name in drawing.animations

@@ -1,6 +1,6 @@
 """Build the paper: ``python docs/paper/build.py``, from the report in ``report/``, whose figures it has.
 
-Its numbers are those of ``docs/numbers.json``, which ``make readme`` takes over from a report.
+Its numbers are those of ``docs/numbers.json``, which ``make findings`` takes from a report.
 """
 
 from __future__ import annotations

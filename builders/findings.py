@@ -1,0 +1,205 @@
+"""The numbers in README, in docs/findings.md and in the paper, taken from a report.
+
+``builders/findings.md`` and the paper's source name each number by ``#n("fig05: dividing velocity, reference")``: a
+study and a quote of one of its claims (see ``compare.report.quotes``). "claims" and "verdicts: independent" are
+counts of a whole report. README contains the numbers of ``IN_README`` as they are printed::
+
+    python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md
+    python builders/findings.py check report/results.json   # fails if the report deviates from them
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from compare.claims.as_json import claim_from_json
+from compare.output.text_files import write_text
+from compare.report.machines.results_json import read_results
+from compare.report.matrix import WORST_FIRST, State
+from compare.report.quotes import Nature, parts, quote
+
+ROOT = Path(__file__).parents[1]
+
+QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+
+IN_README = (
+    "claims",
+    "verdicts: independent",
+    "fig05: dividing velocity, reference",
+    "stability-map: lower friction_force, 3 digits",
+    "stability-map: upper friction_force, 3 digits",
+    "drivetrain-frozen: onset at 80 N m and 12 rad/s, exudyn, rpm, 4 digits",
+)
+
+FACTOR_BETWEEN_MACHINES = 10.0
+"""Factor by which an error may differ between machines, because rounding and the steps that depend on it differ."""
+
+Results = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A printed number with its value, its error, and what kind of number it is."""
+
+    text: str
+    value: float
+    error: float
+    nature: Nature
+
+    def deviates_from(self, other: Number) -> bool:
+        """Tell whether two reports contradict each other: in a count at all, in others beyond their errors."""
+        if self.nature != other.nature:
+            return True
+        if self.nature == "count":
+            return self.value != other.value
+        if self.nature == "error":
+            low, high = sorted((self.value, other.value))
+            return high > FACTOR_BETWEEN_MACHINES * low
+        return not abs(self.value - other.value) <= self.error + other.error
+
+
+def wanted(root: Path = ROOT) -> tuple[str, ...]:
+    """Return the names of all numbers, each once."""
+    sources = (root / "builders" / "findings.md", *sorted((root / "docs" / "paper").glob("*.typ")))
+    quoted = (name for path in sources for name in QUOTED.findall(path.read_text(encoding="utf-8")))
+    return tuple(sorted({*IN_README, *quoted}))
+
+
+def kept(root: Path = ROOT) -> dict[str, Number]:
+    """Return the numbers in ``docs/numbers.json`` by name."""
+    content = json.loads((root / "docs" / "numbers.json").read_text(encoding="utf-8"))
+    return {name: Number(**number) for name, number in content.items()}
+
+
+def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
+    """Return the text of docs/findings.md."""
+    template = (root / "builders" / "findings.md").read_text(encoding="utf-8")
+    return QUOTED.sub(lambda found: numbers[found[1]].text, template)
+
+
+def number_in(results: Results, name: str) -> Number | None:
+    """Return a number of a report, or None if the report did not measure it.
+
+    Raises ``ValueError`` if the report contains the study but none of its claims has that name.
+    """
+    kind, _, rest = name.partition(": ")
+    if kind in ("claims", "verdicts"):
+        if not _is_whole(results):
+            return None
+        counts = _agreeing_by_evidence(results) if kind == "verdicts" else {"": _count_of_claims(results)}
+        return Number(str(counts[rest]), counts[rest], 0.0, "count")
+    study = next((study for study in results["studies"] if study["name"] == kind), None)
+    if study is None:
+        return None
+    found = quote([claim_from_json(claim) for claim in study["claims"]], rest)
+    if found is None:
+        if not _is_whole(results):
+            return None
+        raise ValueError(f"{name!r}: no claim of the study {kind!r} has that name")
+    return Number(found.text, found.value, found.error, found.nature)
+
+
+def _is_whole(results: Results) -> bool:
+    from compare.engines import engines
+    from compare.studies import STUDIES
+
+    return (
+        [study["name"] for study in results["studies"]] == [study.name for study in STUDIES]
+        and {engine.name for engine in engines()} <= set(results["engines"])
+        and not any(results["totals"][state.value] for state in (State.FAILED, State.MISSING))
+    )
+
+
+def _agreeing_by_evidence(results: Results) -> Counter[str]:
+    """Count the cells of the matrix that agree, by evidence; the worst of several claims in a cell counts."""
+    cells: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for study in results["studies"]:
+        for claim in study["claims"]:
+            key = (study["name"], claim["sentence"], claim["equation"], claim["engine"])
+            cells.setdefault(key, []).append(claim)
+    worst = (
+        min(claims, key=lambda claim: WORST_FIRST.index(State(claim["verdict"]))) for claims in cells.values()
+    )
+    return Counter(claim["evidence"] for claim in worst if claim["verdict"] == "agrees")
+
+
+def _count_of_claims(results: Results) -> int:
+    return len(
+        {
+            (study["name"], claim["sentence"], claim["equation"])
+            for study in results["studies"]
+            for claim in study["claims"]
+        }
+    )
+
+
+def write(results: Results, root: Path = ROOT) -> None:
+    """Write the numbers of a report; numbers that it did not measure stay."""
+    old = kept(root)
+    numbers = {name: number_in(results, name) or old[name] for name in wanted(root)}
+    content = {name: asdict(number) for name, number in numbers.items()}
+    write_text(root / "docs" / "numbers.json", json.dumps(content, ensure_ascii=False, indent=1) + "\n")
+    write_text(root / "docs" / "findings.md", findings(numbers, root))
+
+
+def deviations(results: Results, root: Path = ROOT) -> Iterator[str]:
+    """Yield a sentence for each kept number from which the report deviates."""
+    for name, number in kept(root).items():
+        measured = number_in(results, name)
+        if measured is not None and number.deviates_from(measured):
+            yield (
+                f"{name}: docs/numbers.json has {number.value:.12g} ± {number.error:.2g}, "
+                f"the report {measured.value:.12g} ± {measured.error:.2g}"
+            )
+
+
+def unmeasured(results: Results) -> Iterator[str]:
+    """Yield a sentence for each quote in a study's text that no claim of a whole report measures."""
+    from compare.studies import studies
+
+    found = {study["name"]: study["claims"] for study in results["studies"]} if _is_whole(results) else {}
+    for study in studies(found) if found else ():
+        claims = [claim_from_json(claim) for claim in found[study.name]]
+        for text in (study.finding, study.paper, *study.figures.values()):
+            for _, words in parts(text):
+                if words is not None and quote(claims, words) is None:
+                    yield f"{study.name}: no claim has {words!r}"
+
+
+def outdated(root: Path = ROOT) -> Iterator[str]:
+    """Yield a sentence for each text that does not contain the kept numbers."""
+    numbers = kept(root)
+    if set(numbers) != set(wanted(root)):
+        yield f"docs/numbers.json lacks or does not need {sorted(set(numbers) ^ set(wanted(root)))}"
+        return
+    if (root / "docs" / "findings.md").read_text(encoding="utf-8") != findings(numbers, root):
+        yield "docs/findings.md is not what builders/findings.md gives"
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    for name in IN_README:
+        if not re.search(rf"(?<![\d.]){re.escape(numbers[name].text)}(?![\d.]*\d)", readme):
+            yield f"README.md does not contain {numbers[name].text}, {name}"
+
+
+def main(arguments: list[str], root: Path = ROOT) -> int:
+    """Run ``write`` or ``check`` with a ``results.json``; return the exit status."""
+    if len(arguments) != 2 or arguments[0] not in ("write", "check"):
+        print("usage: python builders/findings.py write|check RESULTS.json", file=sys.stderr)
+        return 2
+    results = read_results(Path(arguments[1]))
+    if arguments[0] == "write":
+        write(results, root)
+    sentences = [*outdated(root), *deviations(results, root), *unmeasured(results)]
+    for sentence in sentences:
+        print(sentence)
+    return 1 if sentences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
