@@ -111,9 +111,10 @@ class Cell:
 class Row:
     """One claim of a study, with a cell for each column that has something to say about it.
 
-    ``identity`` is what it is called for good, and the address of its place in the page: "fig06/rests".
+    ``identity`` is the permanent name of the claim and its anchor in the page: "fig06/rests".
     """
 
+    study: Study
     identity: str
     sentence: str
     equation: str
@@ -128,50 +129,6 @@ class Row:
     def kind(self) -> str:
         """What the prediction is taken from, "" where nobody made the claim."""
         return self.claims[0].kind if self.claims else ""
-
-
-@dataclass(frozen=True)
-class Group:
-    """The rows of one study."""
-
-    study: Study
-    rows: tuple[Row, ...]
-
-    @property
-    def claims(self) -> tuple[Claim, ...]:
-        """All claims, row by row."""
-        return tuple(claim for row in self.rows for claim in row.claims)
-
-    def count(self, column: str) -> Counter[State]:
-        """Return how many cells of the column are in each state."""
-        return Counter(row.cells[column].state for row in self.rows if column in row.cells)
-
-    def reasons(self, state: State) -> Counter[str]:
-        """Return the reasons of all cells in ``state``, and how many cells give each."""
-        return Counter(cell.reason for row in self.rows for cell in row.cells.values() if cell.state is state)
-
-    @property
-    def worst(self) -> tuple[State, ...]:
-        """The worst state of all cells, () where they agree or were not asked for."""
-        states = {cell.state for row in self.rows for cell in row.cells.values()}
-        found = next((state for state in WORST_FIRST if state in states), State.AGREES)
-        return () if found in (State.AGREES, State.NOT_SIMULATED) else (found,)
-
-    def row_of(self, sentence: str) -> Row | None:
-        """Return the row of a claim; None for what is none."""
-        return next((row for row in self.rows if row.sentence == sentence), None)
-
-    @property
-    def agrees(self) -> bool:
-        """Whether there are claims, and all that could be simulated agree."""
-        states = {cell.state for row in self.rows for cell in row.cells.values()}
-        return State.AGREES in states and states <= {State.AGREES, State.NOT_SIMULATED}
-
-    def first_with(self, column: str, reason: str) -> Row | None:
-        """Return the first row whose cell gives ``reason``: once is enough for the reader."""
-        return next(
-            (row for row in self.rows if column in row.cells and row.cells[column].reason == reason), None
-        )
 
 
 @dataclass(frozen=True)
@@ -207,58 +164,87 @@ class RecordedMatrix:
 
 @dataclass(frozen=True)
 class Matrix:
-    """All groups; ``columns`` are "theory", where any study has claims of it, and the engines.
+    """The rows of some studies; ``columns`` are "theory", where any study has claims of it, and the engines.
 
-    What was ``recorded`` is apart: it is found about the engines of others, and no verdict on this run.
+    ``recorded`` stands apart: it was found about the engines of others and is not a verdict on this run.
     """
 
     columns: tuple[str, ...]
-    groups: tuple[Group, ...]
+    studies: tuple[Study, ...]
+    rows: tuple[Row, ...]
     recorded: tuple[RecordedMatrix, ...] = ()
+
+    def of(self, study: Study) -> Matrix:
+        """Return the rows of one study."""
+        return Matrix(self.columns, (study,), tuple(row for row in self.rows if row.study is study))
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """All claims, row by row."""
+        return tuple(claim for row in self.rows for claim in row.claims)
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """All cells, row by row."""
+        return tuple(cell for row in self.rows for cell in row.cells.values())
+
+    def column(self, column: str) -> tuple[Cell, ...]:
+        """Return the cells of one column."""
+        return tuple(row.cells[column] for row in self.rows if column in row.cells)
 
     def count(self, column: str) -> Counter[State]:
         """Return how many cells of the column are in each state."""
-        return sum((group.count(column) for group in self.groups), Counter())
-
-    def grades(self, column: str) -> Counter[Grade]:
-        """Return how many cells of the column agree to each grade, from the finest on."""
-        cells = [row.cells[column] for group in self.groups for row in group.rows if column in row.cells]
-        found = Counter(cell.grade for cell in cells)
-        return Counter({grade: found[grade] for grade in GRADES if found[grade]})
-
-    def reasons(self, state: State) -> Counter[str]:
-        """Return the reasons of all cells in ``state``, and how many cells give each."""
-        return sum((group.reasons(state) for group in self.groups), Counter())
+        return Counter(cell.state for cell in self.column(column))
 
     @property
     def totals(self) -> Counter[State]:
         """How many cells are in each state."""
-        return sum((self.count(column) for column in self.columns), Counter())
+        return Counter(cell.state for cell in self.cells)
+
+    def grades(self, column: str) -> Counter[Grade]:
+        """Return how many cells of the column agree to each grade, from the finest on."""
+        found = Counter(cell.grade for cell in self.column(column))
+        return Counter({grade: found[grade] for grade in GRADES if found[grade]})
+
+    def reasons(self, state: State) -> Counter[str]:
+        """Return the reasons of all cells in ``state``, and how many cells give each."""
+        return Counter(cell.reason for cell in self.cells if cell.state is state)
 
     def of_evidence(self, evidence: Evidence, column: str = "") -> Counter[State]:
         """Return how many verdicts of a kind of evidence, in one column or in all, are in each state."""
-        return Counter(
-            cell.state
-            for group in self.groups
-            for row in group.rows
-            for name, cell in row.cells.items()
-            if cell.evidence == evidence and column in ("", name)
-        )
+        cells = self.column(column) if column else self.cells
+        return Counter(cell.state for cell in cells if cell.evidence == evidence)
+
+    def row_of(self, sentence: str) -> Row | None:
+        """Return the row of a claim; None if there is none."""
+        return next((row for row in self.rows if row.sentence == sentence), None)
+
+    @property
+    def worst(self) -> tuple[State, ...]:
+        """The worst state of all cells, () where they agree or were not asked for."""
+        found = next((state for state in WORST_FIRST if self.totals[state]), State.AGREES)
+        return () if found in (State.AGREES, State.NOT_SIMULATED) else (found,)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether there are claims, and all that could be simulated agree."""
+        return self.totals[State.AGREES] > 0 and not self.worst
 
 
 def matrix(run: Run) -> Matrix:
     """Return the matrix of a run, also of an incomplete one."""
-    groups = tuple(_group(run, study) for study in run.studies)
-    used = {column for group in groups for row in group.rows for column in row.cells}
+    rows = tuple(row for study in run.studies for row in _rows(run, study))
+    used = {column for row in rows for column in row.cells}
     recorded = tuple(
         RecordedMatrix(study, settings)
         for study in run.studies
         if study.recorded is not None and (settings := study.recorded())
     )
-    return Matrix(tuple(column for column in (THEORY, *run.engines) if column in used), groups, recorded)
+    columns = tuple(column for column in (THEORY, *run.engines) if column in used)
+    return Matrix(columns, run.studies, rows, recorded)
 
 
-def _group(run: Run, study: Study) -> Group:
+def _rows(run: Run, study: Study) -> list[Row]:
     columns = run.columns(study)
     claims: dict[tuple[str, str], dict[str, list[Claim]]] = {}  # in the order in which they are first met
     for column in columns:
@@ -277,15 +263,15 @@ def _group(run: Run, study: Study) -> Group:
             elif column in gaps and column != THEORY and not theory_only:
                 cells[column] = gaps[column]
         identity = _identity(study, next(iter(found.values()))[0], rows)
-        rows.append(Row(identity, sentence, equation, cells))
+        rows.append(Row(study, identity, sentence, equation, cells))
     rows = [_weighed(row, rows, study) for row in rows]
     # a gap that no row shows, because nobody made a claim there, still has to be seen
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
     }
     if unseen:
-        rows.append(Row(f"{study.name}/unknown", "(claims not known)", "", unseen))
-    return Group(study, tuple(rows))
+        rows.append(Row(study, f"{study.name}/unknown", "(claims not known)", "", unseen))
+    return rows
 
 
 def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:

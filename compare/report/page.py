@@ -18,31 +18,13 @@ from compare.claims.study import Study
 from compare.report import quotes
 from compare.report.at_a_glance import cases, glances
 from compare.report.machines.results_json import erratum_id
-from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Group, Matrix, Row, State, state_of
+from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Matrix, Row, State, state_of
 from compare.report.numbers import error_text, trimmed, value_text
-from compare.report.worst import Worst, answers_text, in_short, worst
+from compare.report.worst import answers_text, in_short, worst
 from compare.run.drawings import Drawing
 from compare.run.runner import Run
 from compare.run.workers import Failure
 from reference_model.systems import UNITS
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """One line of a study's table: a claim of one engine, or why there is none."""
-
-    engine: str
-    state: State
-    claim: Claim | None = None
-    element: Worst | None = None
-    particular: str = ""
-    reason: str = ""
-    cell: Cell | None = None
-
-    @property
-    def number(self) -> str:
-        """What stands beside the verdict."""
-        return in_short(self.claim) if self.claim is not None else ""
 
 
 @dataclass(frozen=True)
@@ -75,7 +57,7 @@ HERO = "drivetrain-picture"
 
 def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
     """Return the HTML of the report; ``paths`` are those of the claims' tables, by identity."""
-    hero_group, hero = _hero(run, matrix)
+    hero_study, hero = _hero(run)
     return (
         environment()
         .get_template("index.html.j2")
@@ -94,17 +76,20 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
             off=_off,
             hero=hero,
-            hero_group=hero_group,
+            hero_study=hero_study,
             filters=_filters(matrix),
             erratum_id=erratum_id,
             claim_commands=_claim_commands,
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
-            measurements=_measurements,
+            worst=worst,
+            in_short=in_short,
+            state_of=state_of,
+            particular=_particular,
             common=_common,
-            findings=[group for group in matrix.groups if group.agrees and _is_answered(group)],
+            findings=[study for study in matrix.studies if _is_answered(study, matrix.of(study))],
             quoting=_quoting,
-            pictures=lambda group: _pictures(run, group),
+            pictures=lambda study: _pictures(run, study),
             drawing_failed=lambda study: _reason(run.drawings.get(study.name)),
             commands=lambda study: _commands(run, study),
             failed=lambda value: isinstance(value, Failure),
@@ -166,17 +151,16 @@ def _others_in_words(totals: Counter[State]) -> str:
 def _exceptions(matrix: Matrix) -> list[Exceptional]:
     """Return what a reader must not overlook: claims that differ or show nothing, engines that failed."""
     found: dict[tuple[State, str, str], list[str]] = {}
-    for group in matrix.groups:
-        for row in group.rows:
-            for column, cell in row.cells.items():
-                if cell.state is State.FAILED:  # all claims of the study at once
-                    text, target = f"{group.study.title}: {cell.reason}", group.study.name
-                elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
-                    text, target = row.sentence, row.identity
-                else:
-                    continue
-                columns = found.setdefault((cell.state, text, target), [])
-                columns += [column] if column not in columns else []
+    for row in matrix.rows:
+        for column, cell in row.cells.items():
+            if cell.state is State.FAILED:  # all claims of the study at once
+                text, target = f"{row.study.title}: {cell.reason}", row.study.name
+            elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
+                text, target = row.sentence, row.identity
+            else:
+                continue
+            columns = found.setdefault((cell.state, text, target), [])
+            columns += [column] if column not in columns else []
     lines = [
         Exceptional(state, f"{', '.join(columns)}: {text}", target)
         for (state, text, target), columns in found.items()
@@ -184,18 +168,10 @@ def _exceptions(matrix: Matrix) -> list[Exceptional]:
     return sorted(lines, key=lambda line: WORST_FIRST.index(line.state))
 
 
-def _measurements(row: Row) -> list[Measurement]:
+def _particular(row: Row, claim: Claim) -> str:
+    """Return the parameters of a claim that the other claims of its row do not share."""
     shared = _shared_parameters(row.claims)
-    lines = []
-    for engine, cell in row.cells.items():
-        for claim in cell.claims:
-            own = {name: value for name, value in claim.parameters.items() if name not in shared}
-            lines.append(
-                Measurement(engine, state_of(claim), claim, worst(claim), _parameters(own), cell=cell)
-            )
-        if not cell.claims and cell.state is not State.NOT_SIMULATED:  # which is said once a study
-            lines.append(Measurement(engine, cell.state, reason=cell.reason))
-    return lines
+    return _parameters({name: value for name, value in claim.parameters.items() if name not in shared})
 
 
 def _common(row: Row) -> dict[str, Any]:
@@ -243,24 +219,25 @@ def _parameter(value: Any) -> str:
     return trimmed(float(value)) if isinstance(value, (int, float)) else str(value)
 
 
-def _is_answered(group: Group) -> bool:
-    """Tell whether the study has a finding all of whose numbers were measured."""
-    finding = group.study.finding
-    return bool(finding) and quotes.MISSING not in quotes.filled(finding, group.claims)
+def _is_answered(study: Study, own: Matrix) -> bool:
+    """Tell whether the study has a finding, all of its claims agree and all numbers of the finding were measured."""
+    return (
+        bool(study.finding) and own.agrees and quotes.MISSING not in quotes.filled(study.finding, own.claims)
+    )
 
 
-def _quoting(group: Group, text: str) -> Markup:
-    """Return a text of the group's study with its quotes, each with its error and a link to its claim."""
+def _quoting(own: Matrix, text: str) -> Markup:
+    """Return a text of a study with its quotes from ``own`` rows, each with its error and a link to its claim."""
     found = Markup()
     for literal, words in quotes.parts(text):
         found += _with_code(literal)
         if words is None:
             continue
-        number = quotes.quote(group.claims, words)
+        number = quotes.quote(own.claims, words)
         if number is None:
             found += quotes.MISSING
             continue
-        place = next(row.identity for row in group.rows if number.claim in row.claims)
+        place = next(row.identity for row in own.rows if number.claim in row.claims)
         found += Markup('<a class="quote" href="#{}" title="{}">{}</a>').format(
             place, _origin(number), number.text
         )
@@ -281,8 +258,7 @@ def _origin(quote: quotes.Quote) -> str:
     return f"{error}{quote.claim.engine}: {quote.claim.sentence}"
 
 
-def _pictures(run: Run, group: Group) -> list[Picture]:
-    study = group.study
+def _pictures(run: Run, study: Study) -> list[Picture]:
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
@@ -299,12 +275,12 @@ def _pictures(run: Run, group: Group) -> list[Picture]:
     )
 
 
-def _hero(run: Run, matrix: Matrix) -> tuple[Group | None, Picture | None]:
-    """Return the picture of the first screen and the group that it is from; None for none."""
-    for group in matrix.groups:
-        for picture in _pictures(run, group):
+def _hero(run: Run) -> tuple[Study | None, Picture | None]:
+    """Return the picture of the first screen and the study that it is from; None for none."""
+    for study in run.studies:
+        for picture in _pictures(run, study):
             if picture.name == HERO:
-                return group, picture
+                return study, picture
     return None, None
 
 
@@ -315,14 +291,12 @@ def _off(cell: Cell) -> str:
 
 def _filters(matrix: Matrix) -> dict[str, list[str]]:
     """Return what can be chosen of the claims: by engine, verdict, kind of evidence, study and equation."""
-    rows = [row for group in matrix.groups for row in group.rows]
-    cells = [cell for row in rows for cell in row.cells.values()]
     return {
         "engine": list(matrix.columns),
-        "verdict": [state.value for state in State if any(cell.state is state for cell in cells)],
-        "evidence": [kind for kind in EVIDENCE if any(cell.evidence == kind for cell in cells)],
-        "study": [group.study.name for group in matrix.groups],
-        "equation": list(dict.fromkeys(row.equation for row in rows if row.equation)),
+        "verdict": [state.value for state in State if matrix.totals[state]],
+        "evidence": [kind for kind in EVIDENCE if matrix.of_evidence(kind)],
+        "study": [study.name for study in matrix.studies],
+        "equation": list(dict.fromkeys(row.equation for row in matrix.rows if row.equation)),
     }
 
 

@@ -204,9 +204,8 @@ def _print_numbers(matrix: Matrix) -> None:
     """Print the numbers that decide each claim."""
     from compare.report.worst import account
 
-    for group in matrix.groups:
-        for claim in group.claims:
-            print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
+    for claim in matrix.claims:
+        print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
 
 
 def _is_suspect(matrix: Matrix, engine: str) -> bool:
@@ -271,17 +270,18 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
     from compare.report.matrix import State
     from compare.report.page import summary
 
-    for group in matrix.groups:
-        for row in group.rows:
-            for column, cell in row.cells.items():
-                if cell.state in (State.NOT_SIMULATED, State.FAILED):
-                    if group.first_with(column, cell.reason) is row:  # the same for all rows of the study
-                        failed = cell.state is State.FAILED
-                        reason = str(result.outcomes[group.study.name, column]) if failed else cell.reason
-                        print(f"{group.study.name} {column} {cell.state.value}: {reason}")
-                elif cell.state not in (State.AGREES, State.MISSING):  # what is missing is said at the end
-                    reason = f": {cell.reason}" if cell.reason else ""
-                    print(f"{group.study.name} {column} {cell.state.value}: {row.sentence}{reason}")
+    lines = []
+    for row in matrix.rows:
+        for column, cell in row.cells.items():
+            line = f"{row.study.name} {column} {cell.state.value}"
+            if cell.state is State.FAILED:
+                lines.append(f"{line}: {result.outcomes[row.study.name, column]}")
+            elif cell.state is State.NOT_SIMULATED:
+                lines.append(f"{line}: {cell.reason}")
+            elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
+                lines.append(f"{line}: {row.sentence}")
+    for line in dict.fromkeys(lines):  # an engine gives the same reason for all claims of a study
+        print(line)
     for what, failure in _failures(result).items():
         print(f"{what}: {failure}")
     print(f"{summary(matrix)} ({index})")

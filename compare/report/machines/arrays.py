@@ -44,7 +44,7 @@ LARGE = 32_768
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
     """Return the path in the report's folder and the content of each claim's file, by the claim's identity."""
-    return {row.identity: table(row) for group in matrix.groups for row in group.rows if row.claims}
+    return {row.identity: table(row) for row in matrix.rows if row.claims}
 
 
 def table(row: Row) -> tuple[str, bytes]:

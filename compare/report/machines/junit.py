@@ -17,15 +17,15 @@ def junit(run: Run, matrix: Matrix) -> bytes:
     Recorded engines are left out: a verdict on them is no test of this project.
     """
     root = ET.Element("testsuites", name="friction-discs")
-    for group in matrix.groups:
-        suite = ET.SubElement(root, "testsuite", name=group.study.name)
-        for row in group.rows:
+    for study in matrix.studies:
+        suite = ET.SubElement(root, "testsuite", name=study.name)
+        for row in matrix.of(study).rows:
             for column in row.cells:
-                _cases(suite, run, group.study.name, row, column)
-        drawing = run.drawings.get(group.study.name)
+                _cases(suite, run, study.name, row, column)
+        drawing = run.drawings.get(study.name)
         if isinstance(drawing, Failure):
-            _error(_case(suite, group.study.name, "figures", "drawn"), drawing.reason, drawing)
-        _share_time(suite, run, group.study.name)
+            _error(_case(suite, study.name, "figures", "drawn"), drawing.reason, drawing)
+        _share_time(suite, run, study.name)
         _count(suite)
     _count(root)
     ET.indent(root)

@@ -16,9 +16,10 @@ from compare.claims.as_json import as_json, claim_as_json
 from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.prose import slug
+from compare.claims.study import Study
 from compare.output.outside_text import all_printable
 from compare.report.machines.arrays import with_arrays
-from compare.report.matrix import VERDICTS, Cell, Group, Matrix, RecordedMatrix, State
+from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
 from compare.report.quotes import filled
 from compare.report.worst import worst
 from compare.run.drawings import Drawing
@@ -85,7 +86,7 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
             evidence: {state.value: matrix.of_evidence(evidence)[state] for state in VERDICTS}
             for evidence in EVIDENCE
         },
-        "studies": [_study(run, group, paths) for group in matrix.groups],
+        "studies": [_study(run, study, matrix.of(study), paths) for study in matrix.studies],
         "recorded": [
             {
                 "study": recorded.study.name,
@@ -112,19 +113,18 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
     }
 
 
-def _study(run: Run, group: Group, paths: Mapping[str, str]) -> dict[str, Any]:
-    study = group.study
+def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dict[str, Any]:
     drawing = run.drawings.get(study.name)
     return {
         "name": study.name,
         "title": study.title,
-        "finding": filled(study.finding, group.claims),
+        "finding": filled(study.finding, own.claims),
         "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",
         "claims": [
             _verdict(claim, cell, i, row.identity, paths[row.identity])
-            for row in group.rows
+            for row in own.rows
             for cell in row.cells.values()
             for i, claim in enumerate(cell.claims, 1)
         ],

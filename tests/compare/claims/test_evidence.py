@@ -68,8 +68,8 @@ def study_of(measure, **more):
 
 def kinds(folder, study, *of):
     result = run((study,), of or (GOOD,), folder=folder / "data")
-    (group,) = write_report(result, folder).groups
-    return {row.sentence: {name: cell.evidence for name, cell in row.cells.items()} for row in group.rows}
+    rows = write_report(result, folder).rows
+    return {row.sentence: {name: cell.evidence for name, cell in row.cells.items()} for row in rows}
 
 
 def test_what_follows_from_a_claim_that_agrees_adds_nothing(tmp_path):
@@ -227,7 +227,7 @@ def test_matrix_and_table_show_one_number(tmp_path):
         )
 
     matrix = write_report(run((study_of(budgets),), (GOOD,), folder=tmp_path / "data"), tmp_path)
-    cell = matrix.groups[0].rows[0].cells["good"]
+    cell = matrix.rows[0].cells["good"]
     assert (cell.state, cell.number) == (State.AGREES, "±\N{NO-BREAK SPACE}1.0×10⁻⁵ m")
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert page.count(f'<small class="within">{cell.number}</small>') == 2

@@ -56,7 +56,9 @@ def test_the_theorys_own_algebra_is_not_conclusive(tmp_path, capsys):
     assert cli.status([*arguments, "--min-conclusive", "1000"]) == 3
     out, err = capsys.readouterr()
     independent, algebra, implied = map(int, re.findall(r"(\d+) (?:agree|of algebra|implied)", out))
-    assert err == f"{independent + implied} verdicts are conclusive: 1000 are asked for\n"
+    assert (
+        err.splitlines()[-1] == f"{independent + implied} verdicts are conclusive: 1000 are asked for"
+    )  # after progress
     assert algebra > 0
 
 

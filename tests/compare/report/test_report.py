@@ -248,7 +248,7 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
     result, matrix, _ = partly_reported
     states = {
         row.sentence: {column: cell.state for column, cell in row.cells.items()}
-        for row in matrix.groups[0].rows
+        for row in matrix.of(matrix.studies[0]).rows
     }
     yes, no = State.AGREES, State.NOT_SIMULATED
     assert states == {
@@ -256,7 +256,7 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
         POINTS: {"all": yes, "some": yes, "pins": no},
         RING: {"all": yes, "some": no, "pins": no},
     }
-    (row,) = matrix.groups[1].rows
+    (row,) = matrix.of(matrix.studies[1]).rows
     assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
@@ -341,7 +341,7 @@ def test_programs_see_what_is_not_simulated(partly_reported):
 
 def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
-    (row,) = matrix.groups[0].rows
+    (row,) = matrix.rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert summary(matrix) == "0 agree on independent evidence; 0 differ, 0 inconclusive, 1 not simulated"
 
