@@ -56,9 +56,7 @@ def test_the_theorys_own_algebra_is_not_conclusive(tmp_path, capsys):
     assert cli.status([*arguments, "--min-conclusive", "1000"]) == 3
     out, err = capsys.readouterr()
     independent, algebra, implied = map(int, re.findall(r"(\d+) (?:agree|of algebra|implied)", out))
-    assert (
-        err.splitlines()[-1] == f"{independent + implied} verdicts are conclusive: 1000 are asked for"
-    )  # after progress
+    assert err.splitlines()[-1] == f"{independent + implied} verdicts are conclusive: 1000 are asked for"
     assert algebra > 0
 
 
