@@ -13,15 +13,7 @@ Where to find what:
 - ``orbits``: periodic motions by shooting, their branches, the map from release to release, boundaries of basins;
 - ``ensemble``: many trajectories at once, or a single one, compiled;
 - ``numerics``: roots, curves by continuation, curves on which a sign changes.
-
-Older paths of modules, such as ``reference_model.stability``, work and warn with the new one.
 """
-
-import importlib
-import sys
-import warnings
-from types import ModuleType
-from typing import Any
 
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing
@@ -87,28 +79,3 @@ __all__ = [
     "why_no_equilibrium",
     "why_no_whirl",
 ]
-
-
-class _Moved(ModuleType):
-    """A module at its older path: it hands out what is at the new one, and says where that is."""
-
-    def __init__(self, name: str, place: str) -> None:
-        super().__init__(name, f"Moved to ``{place}``.")
-        self._place = place
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # the machinery of imports asks for those, not the user
-            raise AttributeError(name)
-        message = f"{self.__name__} has moved: import {name} from {self._place}"
-        warnings.warn(message, DeprecationWarning, stacklevel=2)
-        return getattr(importlib.import_module(self._place), name)
-
-
-for _old, _new in {
-    "integrate": "simulation",
-    "pin_formulas": "formulas.pin",
-    "disc_formulas": "formulas.disc",
-    "steady_states": "steady.steady_states",
-    "stability": "steady.stability",
-}.items():
-    globals()[_old] = sys.modules[f"{__name__}.{_old}"] = _Moved(f"{__name__}.{_old}", f"{__name__}.{_new}")

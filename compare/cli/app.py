@@ -1,4 +1,4 @@
-"""The command line: ``friction-discs list | report | diff | matrix | judge | simulate | sweep | ...``.
+"""The command line: ``friction-discs list | report | diff | matrix | simulate | sweep | ...``.
 
 Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
 Exudyn, matplotlib) happen inside of the commands that need them.
@@ -32,7 +32,6 @@ try:
     from compare.cli.export_fmu import export_fmu
     from compare.cli.listing import errata, list_studies
     from compare.cli.measure.diff import diff
-    from compare.cli.measure.judge import judge
     from compare.cli.measure.matrix import matrix
     from compare.cli.measure.plan import plan
     from compare.cli.measure.report import report
@@ -54,7 +53,7 @@ app = typer.Typer(
 )
 app.command("list", cls=Command)(list_studies)
 app.command("compile", cls=Command)(compile_kernels)
-for command in (report, diff, matrix, plan, judge, errata):
+for command in (report, diff, matrix, plan, errata):
     app.command(cls=Command)(command)
 app.add_typer(export_fmu, name="export-fmu")
 app.add_typer(simulate, name="simulate")
@@ -117,7 +116,6 @@ def friction_discs(
       friction-discs report
       friction-discs matrix --engine reference
       friction-discs plan --level quick
-      friction-discs judge
       friction-discs diff report-of-main report
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
       friction-discs simulate disc --set contact_points=6 --output disc.json

@@ -50,7 +50,7 @@ class PointsBody(DiscBody):
     # ------------------------------------------------------------ slip, and points that come to rest
 
     def begin(self, y: list[float]) -> None:
-        """As :meth:`Body.begin`."""
+        """As :meth:`DiscBody.begin`."""
         resting = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
         if resting is not None and self._at_rest(resting, y):
             self._rest_on(resting, 0.0, y)
@@ -58,7 +58,7 @@ class PointsBody(DiscBody):
             super().begin(y)
 
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`Body.advance`."""
+        """As :meth:`DiscBody.advance`."""
         if self.pivot is not None:
             return self._turn_about(self.pivot, t, y)
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
@@ -87,7 +87,7 @@ class PointsBody(DiscBody):
         return t + speed / falling, come_to_rest(self.run, self.coordinates, t, speed / falling, y)
 
     def leave(self, y: list[float]) -> bool:
-        """As :meth:`Body.leave`: when a single point becomes slow."""
+        """As :meth:`DiscBody.leave`: when a single point becomes slow."""
         return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
 
     def leaving(self, motion: Coordinates) -> Leave:
@@ -170,7 +170,7 @@ class PointsBody(DiscBody):
         return forces / centre.friction, moment / centre.friction
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """As :meth:`Body.holds_for`: up to the first root of the margin, which is looked for through one turn."""
+        """As :meth:`DiscBody.holds_for`: up to the first root of the margin, which is looked for through one turn."""
         centre = self.motion.centre
 
         def margin(delay: float) -> float:
@@ -203,7 +203,7 @@ class PointsBody(DiscBody):
         return math.inf
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`Body.let_go`: the disc slips, or turns about one of its points."""
+        """As :meth:`DiscBody.let_go`: the disc slips, or turns about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
             return super().let_go(t, y)

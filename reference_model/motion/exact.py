@@ -1,14 +1,13 @@
 """Simulation of pin and disc with set-valued Coulomb friction: phases of slip and stick, one after the other.
 
-- While slip is fast it is integrated as it is, and in slip-polar coordinates near to rest (:mod:`slip`). A disc has
-  three components of slip, two of its centre and one of its rim.
-- Where an explicit method would be limited by stability, by strong damping or by slip that is small for long, an
-  implicit one takes over (:mod:`stiff`). Slip that decays for ever is slip to the end: what is left of it is followed
-  in closed form (:mod:`phases`).
-- Stuck, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`sticking`; for
-  points on a ring :mod:`limit_surface`).
-- Slip of a pin begins by the series of ``sticking.slip_from_rest``, that of a disc by collocation (:mod:`growth`).
-- A disc on single points may also turn about one of them that rests (:mod:`points`).
+- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`). A disc has three
+  components of slip: two of its centre and one of its rim.
+- An implicit method takes over where stability would limit an explicit one, because of strong damping or of slip that
+  stays small (:mod:`.slip.stiff`). Slip that decays for ever is followed to the end in closed form (:mod:`.bodies`).
+- In stick, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`.stick`).
+- The slip of a pin begins with the series of :func:`.stick.slip_from_rest`, that of a disc by collocation
+  (:mod:`.slip.breakaway`).
+- A disc on single points may also turn about one of them that rests (:mod:`.disc_on_points`).
 
 Inside, times and lengths are scaled to order one, so that tolerance and thresholds mean the same in any units, and
 velocities are relative to the master disc.

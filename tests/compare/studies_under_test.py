@@ -2,11 +2,12 @@
 
 import functools
 
+from faults import FAULTS
+from faults.make import Make
+from faults.plain import simulate as simulate_plainly
+from faults.wrong_parameters import with_parameters
+
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults import FAULTS
-from compare.judge.faults.make import Make
-from compare.judge.faults.plain import simulate as simulate_plainly
-from compare.judge.faults.wrong_parameters import with_parameters
 
 
 def with_changed(change):
@@ -22,12 +23,12 @@ def altered(**factors):
 
 
 def made(**make):
-    """Return the plain engine of the judge with one part made wrong."""
+    """Return the plain engine with one part made wrong."""
     return Engine("made", functools.partial(simulate_plainly, make=Make(**make)), EVERY_KIND)
 
 
 def fault(name):
-    """Return a wrong engine of the judge's catalogue."""
+    """Return a wrong engine of the catalogue."""
     return next(fault.engine for fault in FAULTS if fault.name == name)
 
 

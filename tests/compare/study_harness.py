@@ -6,11 +6,11 @@ from contextlib import redirect_stdout
 from dataclasses import replace
 
 import numpy as np
+from faults import SOUND
+from faults.reference import simulate
 
 from compare.claims.claim import Verdict
 from compare.engines import engines
-from compare.judge.faults import RIGHT
-from compare.judge.faults.reference import simulate
 
 SEES, BLIND, OPEN = Verdict.DIFFERS, Verdict.AGREES, Verdict.INCONCLUSIVE
 LEFT_OUT = None
@@ -26,7 +26,7 @@ def engine_named(name):
     promise less, get it once. ``test_engines`` has that equal runs are equal.
     """
     if name == "intact":
-        return RIGHT[1]
+        return SOUND[1]
     (engine,) = engines([name])
     return replace(engine, function=remembering(simulate)) if name == "reference" else engine
 

@@ -1,7 +1,8 @@
 """How slip of a disc begins from rest, as :mod:`reference_model.motion.slip.breakaway` has it.
 
 Slip grows like ½κt² with its direction slaved to the pull, which is stiff; but the motion is a smooth function of
-time, and an implicit method through all nodes of a step at once (:mod:`implicit`) follows it until an explicit one
+time, and an implicit method through all nodes of a step at once
+(:mod:`.core.stepping.implicit`) follows it until an explicit one
 can.
 """
 

@@ -3,7 +3,7 @@
 Self-centred
     Once in every free period the motion is looked at: the places, velocities and spins of a motion that goes to an
     equilibrium go to a fixed point. With d the distance from one look to the next and q the larger of its last two
-    ratios, d·q/(1 − q) is what is left to go (:mod:`.convergence`). Since a motion may come close to one that is
+    ratios, d·q/(1 − q) is what is left to go (:mod:`.core.convergence`). Since a motion may come close to one that is
     unstable and leave it later (some of Fig. 11 begin so), it must attract, too, and by Newton's method be as near
     (:mod:`.stability`).
 

@@ -157,7 +157,7 @@ def advance_with(
 def error_of_slip(
     state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
 ) -> float:
-    """Return the error of a step as a multiple of what is allowed, see :func:`.runge_kutta.error_of`.
+    """Return the error of a step as a multiple of what is allowed, see :func:`.core.stepping.runge_kutta.error_of`.
 
     Slip counts by its own size once it is small, if there is friction: its direction decides when it ends.
     """

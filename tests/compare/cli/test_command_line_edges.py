@@ -51,7 +51,6 @@ REFUSED = [
         "--set mass: it has its values from --vary, leave one of them out",
     ),
     (("report", "--output", ""), "--output '': it must not be empty"),
-    (("judge", "--output", ""), "--output '': it must not be empty"),
     ((*PIN, "--output", ""), "--output '': it must not be empty"),
     ((*BASIN, "--x", ""), "--x '': it must not be empty"),
 ]

@@ -8,7 +8,6 @@ import typer
 from processes import ROOT
 
 import compare.cli.sweep.run
-import compare.judge.judge
 import compare.run.kernels
 import compare.run.runner
 import compare.run.workers
@@ -74,7 +73,6 @@ def idle(monkeypatch, tmp_path):
     (tmp_path / "motions").mkdir()
     write_plan(tmp_path / "motions", ["pin"], [])  # that of a document
     monkeypatch.setattr(compare.run.runner, "run", stop)
-    monkeypatch.setattr(compare.judge.judge, "judge", stop)
     monkeypatch.setattr(compare.run.workers.Workers, "finished", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from faults.plain import simulate as viscous_near_rest
 from scipy.integrate import solve_ivp
 
 import reference_model
@@ -13,7 +14,6 @@ from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
 from compare.engines.engine import UnsupportedSystemError
-from compare.judge.faults.plain import simulate as viscous_near_rest
 from reference_model import Phase, Trajectory, plain
 
 TIMES = np.linspace(0.0, 30.0, 7)

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from studies_under_test import altered, sentences
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.disc.fig08 import theory
 from compare.studies.disc.fig08.claims import STUDY
 from compare.studies.disc.fig08.parameters import RING

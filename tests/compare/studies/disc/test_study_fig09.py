@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from studies_under_test import altered
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.claims import STUDY, of_theory
 from compare.studies.disc.fig09.parameters import LARGEST_LOAD, OFFSETS, RING

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from study_harness import LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.disc.fig11 import pictures, theory
 from compare.studies.disc.fig11.claims import STUDY, whirl
 from compare.studies.disc.fig11.parameters import EXPANSION, TIMES, UNTIL

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from scipy.integrate import solve_ivp
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.disc.free_ring.claims import STUDY
 from compare.studies.disc.free_ring.claims.ratios import other_ratios, powers
 from compare.studies.disc.free_ring.parameters import LOPSIDED, OTHERS, RINGS

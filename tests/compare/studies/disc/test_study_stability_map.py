@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+from faults.reference import simulate
 from studies_under_test import altered
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults.reference import simulate
 from compare.report.numbers import with_digits
 from compare.report.quotes import filled
 from compare.studies.disc.stability_map import theory

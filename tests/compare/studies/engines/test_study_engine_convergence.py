@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from scipy.integrate import solve_ivp
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
@@ -11,7 +12,6 @@ import exudyn_models
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine
-from compare.judge.faults.reference import simulate
 from compare.studies import STUDIES
 from compare.studies.engines.engine_convergence.claims import STUDY
 from compare.studies.engines.engine_convergence.solvers import SOLVERS

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from studies_under_test import altered
 from study_harness import BLIND, SEES, StudyTests, engine_named
 
@@ -11,7 +12,6 @@ from compare.claims.claim import Verdict
 from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
 from compare.claims.paper_parameters import FIG5
 from compare.engines import EVERY_KIND, Engine, engines
-from compare.judge.faults.reference import simulate
 from compare.studies.engines.error_estimates.calibration import Calibration, Problem, calibrated
 from compare.studies.engines.error_estimates.claims import STUDY, simulated
 from compare.studies.engines.error_estimates.parameters import KNOWN

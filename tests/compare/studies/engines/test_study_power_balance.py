@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from studies_under_test import GROSS, altered, fault, made, verdicts, with_changed
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.engines.power_balance import claims as study
 from compare.studies.engines.power_balance.parameters import (
     all_motions,

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import PIL.Image
 import pytest
+from faults.reference import simulate
 from studies_under_test import GROSS, altered, fault
 from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.engines import Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.pin.fig05 import parameters, theory
 from compare.studies.pin.fig05.claims import STUDY
 from compare.studies.pin.fig05.pictures import animate

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from scipy.optimize import brentq
 from studies_under_test import altered
 from study_harness import BLIND, SEES, StudyTests
 
 from compare.claims.paper_parameters import CENTRED
-from compare.judge.faults.reference import simulate
 from compare.studies.pin.nonlinear_support import parameters, theory
 from compare.studies.pin.nonlinear_support.claims import STUDY
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from faults.reference import simulate
 from scipy.integrate import solve_ivp
 from studies_under_test import GROSS, altered, fault
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.engines import Engine
-from compare.judge.faults.reference import simulate
 from compare.studies.plane.block import parameters, theory
 from compare.studies.plane.block.claims import STUDY
 from reference_model.trajectory import Trajectory

@@ -19,13 +19,9 @@ class Fault:
         What is wrong, in a sentence.
     engine : Engine
         Of the same name.
-    changes_physics : bool
-        Whether any motion can tell; otherwise ``why_not_caught`` says why not.
 
     """
 
     name: str
     says: str
     engine: Engine
-    changes_physics: bool = True
-    why_not_caught: str = ""

@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from compare.judge.faults.reference import simulate
+from faults.reference import simulate
 from reference_model.systems import DiscOnDisc, System
 from reference_model.trajectory import Trajectory
 
@@ -41,51 +41,9 @@ def one_point_too_few(system: System) -> dict[str, Any]:
     return {"contact_points": points_of(system) - 1} if points_of(system) > 3 else {}
 
 
-def load_shared_twice(system: System) -> dict[str, Any]:
-    """Return the load over n."""
-    return {"friction_force": system.friction_force / (points_of(system) or 1)}
-
-
 def load_not_shared(system: System) -> dict[str, Any]:
     """Return n times the load."""
     return {"friction_force": system.friction_force * (points_of(system) or 1)}
-
-
-def diameter_for_radius(system: System) -> dict[str, Any]:
-    """Return 2R."""
-    return {"contact_radius": 2.0 * system.contact_radius} if isinstance(system, DiscOnDisc) else {}
-
-
-def shaft_at_rest(system: System) -> dict[str, Any]:
-    """Return Ω = 0."""
-    return {"shaft_speed": 0.0} if isinstance(system, DiscOnDisc) else {}
-
-
-def mass_for_inertia(system: System) -> dict[str, Any]:
-    """Return m and J exchanged."""
-    if not isinstance(system, DiscOnDisc):
-        return {}
-    return {"mass": system.polar_inertia, "polar_inertia": system.mass}
-
-
-def stiffness_for_frequency(system: System) -> dict[str, Any]:
-    """Return the spring of which C is the natural frequency."""
-    return {"stiffness": system.mass * system.stiffness**2}
-
-
-def damping_per_mass(system: System) -> dict[str, Any]:
-    """Return the damper of which β is divided by the mass."""
-    return {"damping": system.damping * system.mass}
-
-
-def hardening_forgotten(system: System) -> dict[str, Any]:
-    """Return C₃ = 0."""
-    return {"hardening": 0.0}
-
-
-def stop_without_play(system: System) -> dict[str, Any]:
-    """Return a gap of 0."""
-    return {"stop_gap": 0.0}
 
 
 def disc_backwards(system: System) -> dict[str, Any]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from compare.judge.faults.jit import compiled
-from compare.judge.faults.make import Make, Numbers
+from faults.jit import compiled
+from faults.make import Make, Numbers
 
 
 @compiled

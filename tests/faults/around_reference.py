@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.judge.faults.equations import carried
-from compare.judge.faults.reference import simulate
+from faults.equations import carried
+from faults.reference import simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas.pin import release_time
 from reference_model.support import Support
@@ -44,11 +44,6 @@ def three_terms(
 def in_single_precision(trajectory: Trajectory) -> FloatArray:
     """Round to 24 bits."""
     return trajectory.states.astype(np.float32).astype(float)
-
-
-def one_sample_late(trajectory: Trajectory) -> FloatArray:
-    """Return every state one sample late, the first one twice."""
-    return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
 
 
 def with_angle_wrapped(trajectory: Trajectory) -> FloatArray:

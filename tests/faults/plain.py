@@ -12,7 +12,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -20,17 +19,16 @@ from numpy.typing import ArrayLike
 from scipy.integrate import LSODA
 from scipy.optimize import brentq
 
-from compare.judge.faults.equations import carried, fixed_steps, rates, rotated, slip_speed, turning_rates
-from compare.judge.faults.jit import for_types_of
-from compare.judge.faults.make import RIGHT, Make, Numbers, steepest
+from faults.equations import carried, fixed_steps, rates, rotated, slip_speed, turning_rates
+from faults.make import RIGHT, Make, Numbers, steepest
 from reference_model.systems import FloatArray, System, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 TIGHTEST = 1e-13
 """The smallest relative tolerance that LSODA is given."""
 
-MOST_STEPS = 150_000
-"""Several times what any right motion takes; what is wrong may be singular."""
+MOST_STEPS = 45_000
+"""Twice the steps of the longest motion without a fault; a wrong equation may be singular."""
 
 MOST_ALIKE = 200
 """Steps of the same size, after which LSODA is started anew.
@@ -66,25 +64,9 @@ class _Run:
     steps: int = 0
     phases: list[tuple[Literal["slip", "stick"], float, FloatArray]] = field(default_factory=list)
 
-    @cached_property
-    def rates(self) -> Callable[..., FloatArray]:
-        """The right side."""
-        return for_types_of(rates, 0.0, self.unknowns[0], 1.0, 1.0, self.numbers, self.make)
-
-    @cached_property
-    def turning_rates(self) -> Callable[..., FloatArray]:
-        """The same in the frame that turns."""
-        y = self.unknowns[0]
-        return for_types_of(turning_rates, 0.0, y, 0.0, y, 1.0, 1.0, self.numbers, self.make)
-
-    @cached_property
-    def slip_speed(self) -> Callable[..., float]:
-        """The slip speed of unknowns."""
-        return for_types_of(slip_speed, self.unknowns[0], self.numbers, self.make)
-
     def speed(self, y: FloatArray) -> float:
         """Return the slip speed."""
-        return self.slip_speed(y, self.numbers, self.make)
+        return float(slip_speed(y, self.numbers, self.make))
 
     @property
     def glance(self) -> float:
@@ -97,7 +79,7 @@ class _Run:
         numbers, make, speed = self.numbers, self.make, self.speed(y)
         least = self.epsilon / steepest(numbers)
         step = 1e-2 * least
-        moved = self.speed(y + step * self.rates(t, y, self.epsilon, 1.0, numbers, make))
+        moved = self.speed(y + step * rates(t, y, self.epsilon, 1.0, numbers, make))
         slowest = 1e-3 * speed / least  # friction that can hardly hold
         return speed / max((speed - moved) / step, slowest)
 
@@ -152,9 +134,9 @@ class _Run:
 
         def started(t: float, x: FloatArray) -> LSODA:
             return LSODA(
-                (lambda t, x: self.turning_rates(t, x, *law))
+                (lambda t, x: turning_rates(t, x, *law))
                 if turning
-                else (lambda t, x: self.rates(t, x, *slipping)),
+                else (lambda t, x: rates(t, x, *slipping)),
                 t,
                 x,
                 end,

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from compare.judge.faults.friction import contact
-from compare.judge.faults.jit import compiled
-from compare.judge.faults.make import Make, Numbers
+from faults.friction import contact
+from faults.jit import compiled
+from faults.make import Make, Numbers
 from reference_model.systems import FloatArray
 
 

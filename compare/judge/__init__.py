@@ -1,1 +1,0 @@
-"""The judge of the judges: engines with one mistake each, and which claims notice it."""

@@ -1,0 +1,82 @@
+"""Sound engines with random admissible parameters: no claim may accuse them, and wrong ones differ."""
+
+import functools
+import itertools
+
+import numpy as np
+import pytest
+from faults import SOUND
+from studies_under_test import altered
+
+from compare.claims.claim import Verdict
+from compare.claims.error_estimates import TRUTH, WORKING
+from compare.engines import engines
+from compare.studies.engines.trajectories.claims import measure
+from compare.studies.engines.trajectories.parameters import Motion
+from compare.studies.toolkit.random_systems import any_disc, any_pin, any_start
+from reference_model import simulate
+
+DRAWN = 12
+"""Four of each kind of system, of which two come to rest."""
+
+SEED = 50
+
+UNTIL = 10.0
+"""In s: three to thirty radians of the support's own oscillation."""
+
+RESOLUTION = 1e-4
+"""Of a claim, as a part of the largest number in the start."""
+
+SYSTEMS = {
+    "pin": any_pin,
+    "disc on the continuous ring": lambda random: any_disc(random, None),
+    "disc on points": lambda random: any_disc(random, int(random.integers(3, 7))),
+}
+
+
+@functools.cache
+def motions():
+    """Return motions with random parameters and starts, of pins and discs by turns."""
+    random = np.random.default_rng(SEED)
+    found = {}
+    for i, kind in zip(range(DRAWN), itertools.cycle(SYSTEMS), strict=False):
+        system = SYSTEMS[kind](random)
+        start = any_start(random, system)
+        phases = simulate(system, start, [0.0, UNTIL], tolerance=TRUTH).phases
+        found[f"{kind}, parameters {i + 1}"] = Motion(
+            system,
+            tuple(start.tolist()),
+            UNTIL,
+            sticks=any(phase.kind != "slip" for phase in phases),
+            tolerance=WORKING,
+            resolution=RESOLUTION * float(np.max(np.abs(start))),
+            source=f"assumption: parameters and start are random, with seed {SEED}",
+        )
+    return found
+
+
+def differing(engine, count):
+    """Return what an engine differs in of the first ``count`` motions."""
+    few = dict(itertools.islice(motions().items(), count))
+    return [claim.sentence for claim in measure(engine, few).claims if claim.verdict is Verdict.DIFFERS]
+
+
+@pytest.mark.parametrize("engine", SOUND, ids=lambda engine: engine.name)
+def test_no_claim_accuses_a_sound_engine(engine):
+    assert sum(motion.sticks for motion in motions().values()) == 2
+    found = measure(engine, motions()).claims
+    assert len(found) > 2 * DRAWN
+    assert not [claim.sentence for claim in found if claim.verdict is Verdict.DIFFERS]
+    agree = sum(claim.verdict is Verdict.AGREES for claim in found)
+    assert agree > 0.8 * len(found)  # where a point comes to rest, integrals of forces say little
+
+
+def test_the_exudyn_models_do_not_fail_either():
+    assert not differing(engines(["exudyn"])[0], 6)
+
+
+@pytest.mark.parametrize("parameter", ["mass", "offset", "friction_force"])
+def test_an_engine_that_is_wrong_by_1e_5_fails_with_every_kind_of_system(parameter):
+    wrong = differing(altered(**{parameter: 1.0 + 1e-5}), 3)
+    for kind in SYSTEMS:
+        assert any(kind in sentence for sentence in wrong)
