@@ -22,8 +22,8 @@ from compare.judge.outcome import Catch, Judged, Judgement, Outcome
 from compare.judge.page import judge_page
 from compare.judge.repetitions import REPEATED, REPETITIONS
 from compare.output.text_files import write_text
+from compare.run.provenance import platform_stamp
 from compare.run.runner import Run, run
-from compare.run.stamp import platform_stamp
 from compare.run.workers import Failure
 
 if TYPE_CHECKING:

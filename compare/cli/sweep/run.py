@@ -105,7 +105,7 @@ def _check_writable(folder: Files) -> None:
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
-    from compare.sweep.store.stamp import sweep_stamp
+    from compare.run.stamp import stamp
     from compare.sweep.store.store import SweepStore, is_free
 
     if is_free(files):
@@ -117,10 +117,8 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
         raise ValueError(
             f"{files.url!r} is there already: --resume goes on with it, or take another --output"
         )
-    if store.stamp != sweep_stamp():
-        raise ValueError(
-            f"{files.url!r} was computed by other code or libraries ({store.stamp}): take another --output"
-        )
+    if store.stamp != stamp():
+        raise ValueError(f"{files.url!r} was computed by other code or libraries: take another --output")
     if chunk not in (None, store.chunk):
         raise ValueError(f"chunk = {chunk}: {files.url!r} has chunks of {store.chunk}")
     return store

@@ -28,12 +28,12 @@ import zarr
 from numpy.typing import NDArray
 
 from compare.output.outside_text import all_printable
-from compare.run.stamp import version_of
+from compare.run.provenance import version_of
+from compare.run.stamp import stamp as stamp_now
 from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
 from compare.sweep.store.files import Files, told
 from compare.sweep.store.round import CHECKSUM, DESCRIPTION, Arrays, Chunks, Round, description_of
-from compare.sweep.store.stamp import sweep_stamp
 
 FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
 """Every version of Zarr reads it, and no copy of the metadata goes stale when a round grows."""
@@ -117,14 +117,14 @@ class SweepStore:
             "title": f"friction-discs sweep: {plan.kind}",
             "plan": json.dumps(plan_as_json(plan)),
             "chunk": chunk,
-            "stamp": sweep_stamp(),
+            "stamp": stamp_now(),
             "versions": json.dumps({name: version_of(name) for name in libraries}),
             "id": secrets.token_hex(8),
         }
         attributes[CHECKSUM] = _checksum(attributes)
         files.write({GROUP: GROUP_CONTENT})
         files.claim(DESCRIPTION, json.dumps(attributes).encode())
-        return cls(files, plan, chunk, sweep_stamp())
+        return cls(files, plan, chunk, stamp_now())
 
     @classmethod
     def open(cls, path: str | Path) -> SweepStore:

@@ -166,7 +166,7 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(finished, m
 
 def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
     _, arguments = finished
-    monkeypatch.setattr("compare.sweep.store.stamp.sweep_stamp", lambda: "other")
+    monkeypatch.setattr("compare.run.stamp.stamp", lambda: "other")
     assert cli.status([*arguments, "--resume"]) == 2
     assert "was computed by other code or libraries" in capsys.readouterr().err
 
