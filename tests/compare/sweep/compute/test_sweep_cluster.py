@@ -17,9 +17,10 @@ from compare.sweep.compute.run import run
 from compare.sweep.compute.work import OtherCodeError
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
+from compare.sweep.store.arrays import DESCRIPTION
 from compare.sweep.store.files import StoreError
 from compare.sweep.store.round import Chunks
-from compare.sweep.store.store import DESCRIPTION, SweepStore
+from compare.sweep.store.store import SweepStore
 
 
 def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path, capsys):
