@@ -23,7 +23,10 @@ from compare.sweep.store.round import Chunks
 from compare.sweep.store.store import SweepStore
 
 
-def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path, capsys):
+def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
+    undisturbed, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("compare.sweep.store.store.SMALL", 0)  # the chunks stay files
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
