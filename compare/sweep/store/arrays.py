@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -125,6 +125,14 @@ class Group:
         digest = checksum({name: digest_of(content) for name, content in self._described().items()})
         self.files.write({f"{self.name}/{DESCRIPTION}": group_content({CHECKSUM: digest})})
 
+    def has_seal(self) -> bool:
+        """Return whether the group has any seal; a garbled description may have had one."""
+        content = self.files.read(f"{self.name}/{DESCRIPTION}")
+        try:
+            return content is not None and json.loads(content)["attributes"] != {}
+        except (ValueError, KeyError, TypeError):
+            return True
+
     def is_sealed(self) -> bool:
         """Return whether the descriptions are those that were sealed, and of arrays as sweeps write them."""
         described = self._described()
@@ -132,19 +140,26 @@ class Group:
         sealed = self.files.read(f"{self.name}/{DESCRIPTION}") == group_content({CHECKSUM: digest})
         return sealed and all(map(is_ours, described.values()))
 
-    def is_whole(self) -> bool:
-        """Return whether every piece of all arrays is there and can be read, piece by piece."""
-        for name in self._described():
-            array = self.array(name)
-            if array.nchunks_initialized != array.nchunks:
-                return False
-            try:
-                for first in range(0, array.shape[0], array.chunks[0]):
-                    array[first : first + array.chunks[0]]
-            except MemoryError:
-                raise
-            except Exception:  # whatever a file may raise that can have any contents
-                return False
+    def is_whole(self, names: Sequence[str] = ()) -> bool:
+        """Return whether every piece of arrays, of all unless there are ``names``, is there and can be read."""
+        arrays = {name: self.array(name) for name in names or self._described()}
+        return all(
+            array.nchunks_initialized == array.nchunks
+            and all(
+                self.can_read(name, slice(first, first + array.chunks[0]))
+                for first in range(0, array.shape[0], array.chunks[0])
+            )
+            for name, array in arrays.items()
+        )
+
+    def can_read(self, name: str, where: slice) -> bool:
+        """Return whether a part of an array can be read, with the right checksums."""
+        try:
+            self.array(name)[where]
+        except MemoryError:
+            raise
+        except Exception:  # whatever is raised by a file that may have any contents
+            return False
         return True
 
     def _described(self) -> dict[str, bytes]:

@@ -16,7 +16,7 @@ import json
 import secrets
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -142,20 +142,19 @@ class SweepStore:
             self._unpacked.cleanup()
 
     def round(self, i: int, numbers: Numbers) -> Round:
-        """Return round ``i`` of the trajectories ``numbers``, made if it is not there or broken."""
-        if not self.has(i):
-            group = self.begin(ROUND.format(i), self._template(len(numbers)))
-            self.end(group, xr.Dataset(coords={"component": list(components(self.plan.system))}))
-        return self._round(i, numbers)
+        """Return round ``i`` of the trajectories ``numbers``, made if :meth:`look` does not find it."""
+        if found := self.look(i, numbers):
+            return found
+        group = self.begin(ROUND.format(i), self._template(len(numbers)))
+        self.end(group, xr.Dataset(coords={"component": list(components(self.plan.system))}))
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, or None if it is not there or can't be read."""
-        return self._round(i, numbers) if self.has(i) else None
-
-    def has(self, i: int) -> bool:
-        """Return whether round ``i`` is described; what its chunks are is another question."""
+        """Return round ``i`` of the trajectories ``numbers``, None if it is not there or broken."""
         group = self._group(ROUND.format(i))
-        return self._is_there(group) and self._is_intact(group, f"the description of {group.name}")
+        if not self._is_intact(group, f"the description of {group.name}", ["component"]):
+            return None
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
         """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
@@ -186,15 +185,10 @@ class SweepStore:
     def get(self, name: str) -> xr.Dataset | None:
         """Return a group that was read once and is whole, or None if it is not there or broken."""
         group = self._group(name)
-        if not self._is_there(group) or not self._is_intact(group, name, read=True):
-            return None
-        return group.dataset()
+        return group.dataset() if self._is_intact(group, name) else None
 
     def _group(self, name: str) -> Group:
         return Group(self.files, self._description, name)
-
-    def _round(self, i: int, numbers: Numbers) -> Round:
-        return Round(Chunks(self._group(ROUND.format(i)), len(numbers), self.chunk), numbers)
 
     def _template(self, count: int) -> dict[str, Large]:
         """Return the arrays of a round of ``count`` trajectories."""
@@ -206,22 +200,20 @@ class SweepStore:
             arrays[name] = Large(dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes)
         return arrays
 
-    def _is_there(self, group: Group) -> bool:
-        """Return whether a group was begun, and not merely begun: then it is not broken but unfinished."""
-        content = self.files.read(f"{group.name}/{DESCRIPTION}")
-        try:
-            return content is not None and json.loads(content)["attributes"] != {}
-        except (ValueError, KeyError, TypeError):
-            return True
+    def _is_intact(self, group: Group, called: str, names: Sequence[str] = ()) -> bool:
+        """Return whether a group is as it was sealed, with all pieces of its arrays or of those with ``names``.
 
-    def _is_intact(self, group: Group, called: str, *, read: bool = False) -> bool:
-        """Return whether a group is as it was sealed, and if ``read`` all its pieces; note it as broken otherwise."""
-        if group.name not in self._whole:
-            if not group.is_sealed() or (read and not group.is_whole()):
-                self.broken.append(called)
-                return False
+        Note it as broken otherwise, unless it was never sealed: then it is unfinished.
+        """
+        if group.name in self._whole:
+            return True
+        if not group.has_seal():
+            return False
+        if group.is_sealed() and group.is_whole(names):
             self._whole.add(group.name)
-        return True
+            return True
+        self.broken.append(called)
+        return False
 
 
 def archive_of(place: str) -> Path | None:

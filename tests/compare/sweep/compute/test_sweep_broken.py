@@ -101,6 +101,8 @@ MENDED = [
     (garble, "round-0/zarr.json", "the description of round-0"),
     (another_unit, "round-0/time/zarr.json", "the description of round-0"),
     (remove, "round-0/time", "the description of round-0"),
+    (remove, "round-0/component/c/0", "the description of round-0"),
+    (one_bit, "round-0/component/c/0", "the description of round-0"),
     (remove, "result/time/c/0/0/0", "result"),
     (one_bit, "result/time/c/0/0/0", "result"),
     (another_unit, "result/time/zarr.json", "result"),

@@ -105,8 +105,8 @@ class Store(RuleBasedStateMachine):
 
 
 Store.TestCase.settings = settings(
-    max_examples=12,
-    stateful_step_count=6,
+    max_examples=10,
+    stateful_step_count=5,
     deadline=None,
     suppress_health_check=list(HealthCheck),
     phases=(Phase.reuse, Phase.generate),  # to shrink an example takes minutes
