@@ -125,7 +125,7 @@ def friction_discs(
       friction-discs compile
     """
     if version:
-        from compare.run.stamp import version_of
+        from compare.run.provenance import version_of
 
         print(f"friction-discs {version_of('friction-discs')}")
     elif context.invoked_subcommand is None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from compare.claims.as_json import as_json
-from compare.run.stamp import version_of
+from compare.run.provenance import version_of
 from reference_model.systems import COLUMNS
 from reference_model.trajectory import Trajectory
 

@@ -31,7 +31,6 @@ from compare.engines.names import one_of
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program
-from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import (
     engines,
     imported,
@@ -61,7 +60,6 @@ __all__ = [
     "Program",
     "Simulate",
     "StatesOnly",
-    "Unseen",
     "UnsupportedSystemError",
     "compiled",
     "engines",

@@ -16,8 +16,8 @@ from compare.report.machines.results_json import FILE, results
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
 from compare.run.drawings import Drawing
+from compare.run.provenance import platform_stamp
 from compare.run.runner import Run
-from compare.run.stamp import platform_stamp
 
 LINES = 4
 """How deep lines are nested in ``results.json``: each claim has one."""

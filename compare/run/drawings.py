@@ -16,10 +16,6 @@ from compare.output.figures import as_svg, paper_style
 from compare.output.text_files import replacing
 from compare.run.stamp import stamp
 
-CODE = ("compare.run.drawings", "compare.output.figures", "compare.report.animation")
-LIBRARIES = ("numpy", "matplotlib", "pillow", "exudyn")
-"""What draws, beside the study's own code: Exudyn in three dimensions."""
-
 
 @dataclass(frozen=True)
 class Drawing:
@@ -37,15 +33,15 @@ def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
     return Drawing(figures, animations)
 
 
-def drawing_stamp(study: str, data: Mapping[str, Data]) -> str:
-    """Return what a drawing depends on: each number of the data, and the study of this fingerprint."""
+def drawing_stamp(data: Mapping[str, Data]) -> str:
+    """Return what a drawing depends on: each number of the data, the code and the libraries."""
     digest = hashlib.sha256()
     for engine, arrays in data.items():
         for name, values in arrays.items():
             array = np.asarray(values)
             digest.update(repr((engine, name, array.dtype.str, array.shape)).encode())
             digest.update(array.tobytes())
-    return stamp(study, digest.hexdigest(), code=CODE, libraries=LIBRARIES)
+    return stamp(digest.hexdigest())
 
 
 @dataclass(frozen=True)

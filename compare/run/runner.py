@@ -10,17 +10,13 @@ from typing import Any
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import ByName, Engine, UnsupportedSystemError, owner_of
+from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.output.outside_text import printable
-from compare.run.code_files import UnknownCodeError
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
 from compare.run.findings_store import Store
-from compare.run.fingerprint import fingerprint
-from compare.run.stamp import PACKAGES, engine_version, stamp
+from compare.run.provenance import engine_version
+from compare.run.stamp import engine_stamp
 from compare.run.workers import Done, Failure, Workers
-
-CODE = ("compare.run", "compare.claims.as_json")
-"""What runs a study and writes its findings down: they depend on it beside the study's and the engine's own."""
 
 
 @dataclass
@@ -45,8 +41,6 @@ class Run:
         Drawing or failure for each study.
     evidence : dict
         Evidence or failure for each erratum, by its place in ``errata``.
-    unknown : dict
-        Why a study or an engine is always measured anew, by its name: what it depends on can't be seen.
     versions : dict
         Of the engines, by name; "" where none is known.
     interrupted : bool
@@ -63,7 +57,6 @@ class Run:
     seconds: dict[tuple[str, str], float] = field(default_factory=dict)
     drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
     evidence: dict[int, Evidence | Failure] = field(default_factory=dict)
-    unknown: dict[str, str] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     interrupted: bool = False
 
@@ -124,7 +117,7 @@ def run(
     limit : float, optional
         Seconds after which a measurement is given up, as its engine's failure.
     resume : bool
-        Take from ``folder`` what was found by the same code.
+        Take from ``folder`` what has the same digest of code and libraries, see ``compare.run.stamp``.
     progress : callable
         Called with the number of finished and of all pieces of work, and the name of the last one.
 
@@ -161,8 +154,7 @@ class _Runner:
         self._store = Store(folder)
         self._drawings = DrawingStore(folder)
         self._progress = progress
-        self._stamps: dict[tuple[str, str], str | None] = {}
-        self._prints: dict[int, str | None] = {}
+        self._stamps: dict[str, str | None] = {}
         self._drawn_from: dict[str, str] = {}
 
     def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
@@ -172,15 +164,14 @@ class _Runner:
             for study in sorted(result.studies, key=lambda study: -study.seconds)
             for column in result.columns(study)
         }
-        for key, (study, engine) in () if resume else work.items():
-            self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
-        self._workers.begin()  # while it is found out what the findings depend on
+        self._stamps = {
+            column: engine_stamp(engines.get(column)) for column in {column for _, column in work}
+        }
         for key, (study, engine) in work.items():
-            self._stamps[key] = self._stamp(study, engine)
-            found = self._store.find(*key, self._stamps[key], _identities(study)) if resume else None
+            found = self._store.find(*key, self._stamps[key[1]], _identities(study)) if resume else None
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
-            elif resume:
+            else:
                 self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
         for study in result.studies:
             self._draw_if_complete(study.name)
@@ -192,21 +183,6 @@ class _Runner:
             name = self._take(finished)
             self._progress(result.done, total, name)
 
-    def _stamp(self, study: Study, engine: Engine | None) -> str | None:
-        """Return what the findings depend on, None where that is not known."""
-        what = {study.name: study} if engine is None else {study.name: study, engine.name: engine}
-        prints = [self._fingerprint(name, thing) for name, thing in what.items()]
-        return None if None in prints else stamp(*filter(None, prints), code=CODE)
-
-    def _fingerprint(self, name: str, thing: object) -> str | None:
-        """Return what ``thing`` depends on; file why that is not known."""
-        if id(thing) not in self._prints:
-            found = _printed(thing)
-            if isinstance(found, Failure):
-                self._result.unknown[name] = found.reason
-            self._prints[id(thing)] = None if isinstance(found, Failure) else found
-        return self._prints[id(thing)]
-
     def _take(self, done: Done) -> str:
         """File what is finished where it belongs and return its name."""
         kind: Any
@@ -217,13 +193,13 @@ class _Runner:
             return "errata"
         if kind == "draw":
             self._result.drawings[name] = done.value
-            if isinstance(done.value, Drawing) and name in self._drawn_from:
+            if isinstance(done.value, Drawing):
                 self._drawings.keep(name, self._drawn_from[name], done.value)
             return f"{name} figures"
         self._result.outcomes[kind, name] = done.value
         self._result.seconds[kind, name] = done.seconds
         if isinstance(done.value, Findings):
-            self._store.keep(kind, name, self._stamps[kind, name], done.value, done.seconds)
+            self._store.keep(kind, name, self._stamps[name], done.value, done.seconds)
         self._draw_if_complete(kind)
         return f"{kind} {name}"
 
@@ -231,27 +207,13 @@ class _Runner:
         study = next(study for study in self._result.studies if study.name == name)
         if any((name, column) not in self._result.outcomes for column in self._result.columns(study)):
             return
-        data, code, found = self._result.data(study), self._fingerprint(name, study), None
-        if code is not None:
-            self._drawn_from[name] = drawing_stamp(code, data)
-            found = self._drawings.find(name, self._drawn_from[name], study.figures)
+        data = self._result.data(study)
+        self._drawn_from[name] = drawing_stamp(data)
+        found = self._drawings.find(name, self._drawn_from[name], study.figures)
         if found is not None:
             self._result.drawings[name] = found
         else:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
-
-
-def _printed(thing: object) -> str | Failure:
-    """Return the fingerprint of a study or an engine; one that has to be imported for it is so in another process."""
-    function = getattr(thing, "function", None)
-    if isinstance(function, ByName) and function.module.partition(".")[0] not in PACKAGES:
-        with Workers() as workers:
-            found: str | Failure = workers.ask(fingerprint, thing, PACKAGES)
-            return found
-    try:
-        return fingerprint(thing, PACKAGES)
-    except UnknownCodeError as error:
-        return Failure(str(error))
 
 
 def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:

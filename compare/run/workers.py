@@ -97,7 +97,6 @@ class Workers:
         self._limit = limit
         self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
-        self._refused: list[Done] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
 
     def __enter__(self) -> Workers:
@@ -129,14 +128,8 @@ class Workers:
         else:
             self._queue.append(work)
 
-    def begin(self) -> None:
-        """Let the processes begin with what is submitted; whoever calls this has something else to do first."""
-        self._refused += self._start()
-
     def finished(self) -> Iterator[Done]:
         """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
-        yield from self._refused
-        self._refused.clear()
         while self._queue or any(worker.key is not None for worker in self._processes):
             yield from self._start()
             yield from self._collect()

@@ -1,7 +1,7 @@
 """Small studies and engines with known verdicts, to test the machinery around the real ones.
 
-A module of its own, because functions are sent to other processes by their names. It imports little, because all
-that it imports is in the fingerprint of its studies; the command line with these studies is ``fake_command``.
+A module of its own, because functions are sent to other processes by their names. The command line with these studies
+is ``fake_command``.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -151,8 +151,6 @@ def report(
             errata=() if part else ERRATA,
             progress=progress,
         )
-    if resume:
-        _tell_unknown(result.unknown)
     matrix = _write(result, output)
     with printing():
         if claim is not None:
@@ -290,12 +288,6 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
 def _listed(names: Sequence[str]) -> str:
     more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
     return ", ".join(names[:MOST_LISTED]) + more
-
-
-def _tell_unknown(unknown: Mapping[str, str]) -> None:
-    """Say what could not be taken from an earlier run, and why."""
-    for name, reason in unknown.items():
-        say(f"{name} is measured anew, since what it depends on can't be seen: {reason}", FINE)
 
 
 def _failures(result: Run) -> dict[str, Failure]:

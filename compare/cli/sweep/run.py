@@ -57,6 +57,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
                 if store is None:
                     store = SweepStore.create(files.url, plan, chunk or CHUNK)
                 run(store, executor, progress)
+        store.pack()
         return finish(store, folder)
     except FileExistsError:
         return say(
@@ -76,8 +77,10 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     except KeyboardInterrupt:
         return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
     finally:
-        if store is not None and store.broken:
-            say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
+        if store is not None:
+            store.tidy()
+            if store.broken:
+                say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
 
 
 @contextmanager
@@ -105,25 +108,33 @@ def _check_writable(folder: Files) -> None:
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
-    from compare.sweep.store.stamp import sweep_stamp
     from compare.sweep.store.store import SweepStore, is_free
 
     if is_free(files):
         return None
     store = SweepStore.open(files.url)
+    try:
+        _check_same(store, plan, chunk, resume)
+    except ValueError:
+        store.tidy()
+        raise
+    return store
+
+
+def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
+    """Raise ``ValueError`` if a store is not that of ``plan``, or must not be gone on with."""
+    from compare.run.stamp import stamp
+
     if store.plan != plan:
-        raise ValueError(f"{files.url!r} belongs to another sweep: take another --output")
+        raise ValueError(f"{store.path!r} belongs to another sweep: take another --output")
     if not resume:
         raise ValueError(
-            f"{files.url!r} is there already: --resume goes on with it, or take another --output"
+            f"{store.path!r} is there already: --resume goes on with it, or take another --output"
         )
-    if store.stamp != sweep_stamp():
-        raise ValueError(
-            f"{files.url!r} was computed by other code or libraries ({store.stamp}): take another --output"
-        )
+    if store.stamp != stamp():
+        raise ValueError(f"{store.path!r} was computed by other code or libraries: take another --output")
     if chunk not in (None, store.chunk):
-        raise ValueError(f"chunk = {chunk}: {files.url!r} has chunks of {store.chunk}")
-    return store
+        raise ValueError(f"chunk = {chunk}: {store.path!r} has chunks of {store.chunk}")
 
 
 @contextmanager
@@ -172,9 +183,12 @@ def redraw(place: str) -> int:
     with _looking():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
-        _check_finished(store)
-    with _looking():
-        return finish(store, folder)
+    try:
+        with _looking():
+            _check_finished(store)
+            return finish(store, folder)
+    finally:
+        store.tidy()
 
 
 def _check_finished(store: SweepStore) -> None:

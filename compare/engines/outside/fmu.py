@@ -17,14 +17,13 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine, UnsupportedSystemError
 from compare.engines.outside.stick_events import NAMES_OF_POINTS, Events, PointRests, StickEvents, tells_stick
-from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
 from reference_model.trajectory import Trajectory
@@ -55,7 +54,7 @@ class FmuError(RuntimeError):
 
 
 @dataclass(frozen=True)
-class Fmu(Unseen):
+class Fmu:
     """The ``simulate`` of a model.
 
     Parameters
@@ -67,7 +66,10 @@ class Fmu(Unseen):
 
     file: str
 
-    why: ClassVar[str] = "it is a model that was compiled elsewhere"
+    @property
+    def files(self) -> set[Path]:
+        """The archive: all that the model consists of."""
+        return {Path(self.file)}
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float

@@ -13,14 +13,13 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import KINDS, Engine, UnsupportedSystemError
 from compare.engines.outside.json_lines import question
-from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, FloatArray, System
 from reference_model.trajectory import Trajectory
@@ -35,12 +34,15 @@ class BadFileError(RuntimeError):
 
 
 @dataclass(frozen=True)
-class MotionFiles(Unseen):
+class MotionFiles:
     """The ``simulate`` that reads what stands in the folder ``folder``."""
 
     folder: str
 
-    why: ClassVar[str] = "it is a folder of files, which may have changed"
+    @property
+    def files(self) -> set[Path]:
+        """The plan and the motions."""
+        return {Path(self.folder, INDEX), *Path(self.folder).glob("*.csv")}
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float

@@ -6,15 +6,16 @@ import importlib
 import os
 import re
 import shlex
+import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import PurePath
-from typing import Any, ClassVar
+from pathlib import Path, PurePath
+from typing import Any
 
 from numpy.typing import ArrayLike
 
+from compare.engines.code_files import MODULES, code_below
 from compare.engines.engine import Engine
-from compare.engines.outside.unseen import Unseen
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
@@ -32,7 +33,7 @@ def _conversation() -> Any:
 
 
 @dataclass(frozen=True)
-class Program(Unseen):
+class Program:
     """The ``simulate`` of a program: whichever process calls it has a process of the program for itself.
 
     Parameters
@@ -47,7 +48,23 @@ class Program(Unseen):
     command: tuple[str, ...]
     folder: str
 
-    why: ClassVar[str] = "it is a program, and what that consists of no import says"
+    @property
+    def files(self) -> set[Path]:
+        """The program, the files among its arguments, and what lies next to a script and is of its language.
+
+        None if an interpreter runs something else than a file, as ``python -m`` does.
+        """
+        program, *arguments = self.command
+        found = shutil.which(program) if not os.path.dirname(program) else os.path.join(self.folder, program)
+        given = {path for word in arguments if (path := Path(self.folder, word)).is_file()}
+        if found is None or (_is_interpreter(program) and not given):
+            return set()
+        files = given | {Path(found)}
+        for script in files if os.path.dirname(program) else given:
+            if script.suffix.lstrip(".").isalpha() and script.suffix != ".exe":
+                endings = MODULES if script.suffix == ".py" else (script.suffix,)
+                files = files | code_below([script.parent], endings)
+        return files
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
@@ -100,10 +117,14 @@ def own_name(command: Sequence[str]) -> str:
 
 def _run(command: Sequence[str]) -> Sequence[str]:
     """Return the command without an interpreter and its options."""
-    if not INTERPRETERS.fullmatch(PurePath(command[0]).name.removesuffix(".exe")):
+    if not _is_interpreter(command[0]):
         return command
     own = next((i for i, word in enumerate(command) if i > 0 and not word.startswith("-")), 0)
     return command[own:]
+
+
+def _is_interpreter(program: str) -> bool:
+    return INTERPRETERS.fullmatch(PurePath(program).name.removesuffix(".exe")) is not None
 
 
 register_scheme("exec", Scheme(program_engine, check_program))

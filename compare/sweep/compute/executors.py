@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
-from compare.sweep.store.stamp import sweep_stamp
+from compare.run.stamp import stamp
 
 WAIT = 3.0
 """In s, for a scheduler to be reached, to answer, and to have a worker."""
@@ -114,7 +114,7 @@ class Cluster:
             self._client = self._dask.Client(address, timeout=WAIT, set_as_default=False)
         try:
             self._client.wait_for_workers(1, timeout=WAIT)
-            self._client.submit(sweep_stamp, pure=False).result()
+            self._client.submit(stamp, pure=False).result()
         except TimeoutError:
             self._client.close()
             raise ClusterError(

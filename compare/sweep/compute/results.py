@@ -19,8 +19,9 @@ from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.define.quantities import RESULTS, components, units
 from compare.sweep.define.refinement import Grid
-from compare.sweep.store.round import Arrays, Chunks, Round
-from compare.sweep.store.store import Large, flags, write_piece
+from compare.sweep.store.arrays import Group, Large
+from compare.sweep.store.round import Chunks, Round
+from compare.sweep.store.store import flags
 from reference_model.ensemble import EndState
 from reference_model.systems import System
 
@@ -62,11 +63,10 @@ class Part(NamedTuple):
 class Labelled(NamedTuple):
     """What is known of a block when it is written.
 
-    The digests of its files; how many trajectories ended as each of ``EndState``, shape (rows, ends), a row for each
-    value of a continuation and else a single one; what it adds to the sensitivities; the motions at each value.
+    How many trajectories ended as each of ``EndState``, shape (rows, ends), a row for each value of a continuation
+    and else a single one; what it adds to the sensitivities; the motions at each value.
     """
 
-    digests: dict[str, str]
     counts: NDArray[np.int64]
     moments: Moments | None
     motions: list[list[Motion]]
@@ -141,8 +141,10 @@ def large_of(plan: Plan) -> dict[str, Large]:
     if isinstance(plan, Map):
         found["modulation"] = large("f8", {"long_name": "(largest − least)/(largest + least) radius"})
     if isinstance(plan, Basin):
-        meaning = {"long_name": "whether the trajectory was simulated; the others end as those around them"}
-        found["simulated"] = large("?", meaning)
+        meaning = {
+            "long_name": "1 where the trajectory was simulated; the others, 0, end as those around them"
+        }
+        found["simulated"] = large("u1", meaning)
     return found
 
 
@@ -162,7 +164,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
 
 
 def label(
-    arrays: Arrays, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
+    group: Group, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
 ) -> Labelled:
     """Write the labelled results of a block; ``grid``: what a basin came to there, ends and which are simulated."""
     found = {name: _found(name, block, parts) for name in SHOWN}
@@ -189,10 +191,11 @@ def label(
         drawn = np.arange(block.first, block.last).reshape(-1, plan.row)[:, :BASES].ravel()
         values = plan.values(drawn) | {name: all_[drawn - block.first] for name, all_ in found.items()}
     shape = tuple(at.stop - at.start for at in block.where)
-    digests = write_piece(arrays, {name: one.reshape(shape) for name, one in values.items()}, block.where)
+    region = dict(zip(large_of(plan)["end"].dimensions, block.where, strict=True))
+    group.write({name: one.reshape(shape) for name, one in values.items()}, region)
     ends = values["end"].reshape(-1, plan.samples) if isinstance(plan, Continuation) else [values["end"]]
     counts = np.array([shares.counted(row) for row in ends])
-    return Labelled(digests, counts, sensitive, motions)
+    return Labelled(counts, sensitive, motions)
 
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:

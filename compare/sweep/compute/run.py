@@ -90,8 +90,8 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
 
 
 def _look_at_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
-    """Note which chunks of round ``i`` are done, and which of those that were written are broken."""
-    tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.marked)
+    """Note which chunks of round ``i`` are done, and which of those that are there are broken."""
+    tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.chunks.there())
     broken = []
     for chunk, whole in executor.run(tasks):
         found.done[chunk] = whole
@@ -124,22 +124,21 @@ def _label(
     store: SweepStore, rounds: Sequence[Round], grid: Grid | None, executor: Executor, progress: Progress
 ) -> None:
     """Have the results labelled, block by block."""
-    plan, large = store.plan, large_of(store.plan)
-    arrays = store.begin(RESULT, xr.Dataset(), large)
+    plan = store.plan
+    group = store.begin(RESULT, large_of(plan))
     blocks = blocks_of(plan)
 
     def tasks() -> Iterator[Task]:
         for i, block in enumerate(blocks):
             of_grid = None if grid is None else (grid.ends[block.where], grid.simulated[block.where])
-            yield Task(i, label, (arrays, plan, block, parts_of(block, rounds), of_grid), True)
+            yield Task(i, label, (group, plan, block, parts_of(block, rounds), of_grid), True)
 
     found: dict[int, Labelled] = {}
     for i, labelled in executor.run(tasks()):
         found[i] = labelled
         progress("labelled results", len(found), len(blocks))
     in_order = [found[i] for i in range(len(blocks))]
-    digests = {name: digest for one in in_order for name, digest in one.digests.items()}
-    store.end(RESULT, labels_of(plan, in_order, grid), large, digests)
+    store.end(group, labels_of(plan, in_order, grid))
 
 
 def _checked(

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from compare.run.stamp import stamp
 from compare.sweep.compute.plain import end_of, plain_trajectory, twice_as_long, watched_until
 from compare.sweep.define.plan import Numbers, Plan
 from compare.sweep.define.quantities import RESULTS
 from compare.sweep.store.round import Chunks
-from compare.sweep.store.stamp import sweep_stamp
 from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -38,16 +38,14 @@ class Plain:
 
 
 def simulate_chunk(
-    chunks: Chunks, chunk: int, plan: Plan, numbers: Numbers, threads: int | None, stamp: str
+    chunks: Chunks, chunk: int, plan: Plan, numbers: Numbers, threads: int | None, made_by: str
 ) -> int:
     """Simulate the trajectories of a chunk and write what they come to; return how many there are.
 
-    Raises :class:`OtherCodeError`, and writes nothing, where the code is not that of ``stamp``.
+    Raises :class:`OtherCodeError`, and writes nothing, where the code is not that of the stamp ``made_by``.
     """
-    if sweep_stamp() != stamp:
-        raise OtherCodeError(
-            f"a worker has other code or libraries ({sweep_stamp()}) than this process ({stamp})"
-        )
+    if stamp() != made_by:
+        raise OtherCodeError("a worker has other code or libraries than this process")
     chunks.write(chunk, compute(plan, numbers, threads))
     return len(numbers)
 

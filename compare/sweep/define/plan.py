@@ -288,6 +288,13 @@ PLANS: dict[str, type[Any]] = {
 }
 
 
+def count(plan: Plan) -> int:
+    """Return the number of trajectories; of a basin that is refined, the points of its finest grid."""
+    if isinstance(plan, Basin):
+        return plan.x.points * plan.y.points
+    return len(next(plan.rounds()))
+
+
 def plan_as_json(plan: Plan) -> dict[str, Any]:
     """Return the plan as JSON values."""
     return {"kind": plan.kind, **as_json(plan)}

@@ -1,82 +1,52 @@
 """Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets, valid at every moment.
 
-- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose chunks are written by those who
+- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose regions are written by those who
   simulate them (:mod:`compare.sweep.store.round`).
 - ``check``, ``result``, ``curves``, ``branches``: written when all chunks are done.
 
-A group is there once it has the file ``.zgroup``, which is written last, and as long as its files have the checksum
-in its attributes. The attributes of the store have the plan, the code that computed it and its libraries, and their
-checksum; who writes them first is the one who makes the store. What does not have the contents that it was written
-with is computed again, and ``SweepStore.broken`` says so.
+A group is there once it is sealed (:meth:`compare.sweep.store.arrays.Group.seal`). The attributes of the store
+contain the plan, the digest of the code that computed it and their checksum; whoever writes them first makes the
+store. Groups and chunks that are damaged are computed again, and ``SweepStore.broken`` lists them. A store of few
+trajectories in a folder of this machine becomes one file when the sweep is finished (:meth:`SweepStore.pack`).
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import re
 import secrets
+import shutil
 import tempfile
-from collections.abc import Iterable, Mapping
-from fnmatch import fnmatch
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 import xarray as xr
-import zarr
-from numpy.typing import NDArray
 
 from compare.output.outside_text import all_printable
-from compare.run.stamp import version_of
-from compare.sweep.define.plan import Numbers, Plan, plan_as_json, plan_from_json
+from compare.run.provenance import version_of
+from compare.run.stamp import stamp as stamp_now
+from compare.sweep.define.plan import Numbers, Plan, count, plan_as_json, plan_from_json
 from compare.sweep.define.quantities import RESULTS, components
-from compare.sweep.store.files import Files, told
-from compare.sweep.store.round import CHECKSUM, DESCRIPTION, Arrays, Chunks, Round, description_of
-from compare.sweep.store.stamp import sweep_stamp
+from compare.sweep.store.arrays import (
+    CHECKSUM,
+    DESCRIPTION,
+    Group,
+    Large,
+    checksum,
+    description_of,
+    group_content,
+)
+from compare.sweep.store.files import Files, is_remote, told
+from compare.sweep.store.packing import pack, unpacked
+from compare.sweep.store.round import Chunks, Round
 
-FORMAT: dict[str, Any] = {"zarr_format": 2, "consolidated": False}
-"""Every version of Zarr reads it, and no copy of the metadata goes stale when a round grows."""
+SMALL = 1_000_000
+"""Trajectories from which on a finished store stays a folder."""
 
 MOST_NAMED = 10
 """Chunks that a sentence lists."""
 
 ROUND = "round-{}"
-
-MISSING = {"f8": np.nan, "u1": 255, "i8": -1}
-"""What an array has where nothing is written, by its type: no result is like this."""
-
-ARRAY = ".zarray"
-"""Name of the file that describes an array."""
-
-TYPES, FILTERS, COMPRESSOR = re.compile(r"[<|](f8|[iu]8|u1|b1|U\d+)"), (None, [{"id": "vlen-utf8"}]), "blosc"
-"""What the versions of Zarr write for our arrays."""
-
-GROUP, GROUP_CONTENT = ".zgroup", json.dumps({"zarr_format": FORMAT["zarr_format"]}).encode()
-
-FILES_OF_GROUP = (".z*", "*/.z*", "*/[0-9]*")
-"""Those of a group of which all is written before it counts; what else may lie in a folder makes no difference."""
-
-FILES_OF_ROUND = (
-    GROUP,
-    "component/0",
-    *(f"{name}/{file}" for name in (*RESULTS, CHECKSUM, "component") for file in (ARRAY, ".zattrs")),
-)
-"""Those of a round that are there before its chunks."""
-
-
-class Large(NamedTuple):
-    """An array that is written piece by piece: its dimensions, shape, and that of its pieces, type and attributes.
-
-    ``missing`` is what it has where nothing is written, None if all of it will be.
-    """
-
-    dimensions: tuple[str, ...]
-    shape: tuple[int, ...]
-    pieces: tuple[int, ...]
-    dtype: str
-    attributes: dict[str, Any]
-    missing: float | None = None
 
 
 class SweepStore:
@@ -92,19 +62,24 @@ class SweepStore:
         Number of trajectories that are computed and written together.
     stamp : str
         Of the code that computes them.
+    place : str, optional
+        The URL that it is asked for by, if ``files`` are those of an unpacked archive.
 
     """
 
-    def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str) -> None:
+    def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str, place: str = "") -> None:
         self.files, self.plan, self.chunk, self.stamp = files, plan, chunk, stamp
         self.broken: list[str] = []  # what is not as it was written, in words
+        self._place = place or files.url
         self._whole: set[str] = set()
         self._description = description_of(files)
+        self._unpacked: tempfile.TemporaryDirectory[str] | None = None
 
     @property
     def path(self) -> str:
         """Where it is, in words."""
-        return self.files.url
+        archive = archive_of(self._place)
+        return str(archive) if archive is not None and archive.exists() else self._place
 
     @classmethod
     def create(cls, path: str | Path, plan: Plan, chunk: int) -> SweepStore:
@@ -117,48 +92,69 @@ class SweepStore:
             "title": f"friction-discs sweep: {plan.kind}",
             "plan": json.dumps(plan_as_json(plan)),
             "chunk": chunk,
-            "stamp": sweep_stamp(),
+            "stamp": stamp_now(),
             "versions": json.dumps({name: version_of(name) for name in libraries}),
             "id": secrets.token_hex(8),
         }
-        attributes[CHECKSUM] = _checksum(attributes)
-        files.write({GROUP: GROUP_CONTENT})
-        files.claim(DESCRIPTION, json.dumps(attributes).encode())
-        return cls(files, plan, chunk, sweep_stamp())
+        files.claim(DESCRIPTION, group_content(attributes | {CHECKSUM: checksum(attributes)}))
+        return cls(files, plan, chunk, stamp_now())
 
     @classmethod
     def open(cls, path: str | Path) -> SweepStore:
         """Open a store; raise ``ValueError`` if there is none of a sweep, or its description is broken."""
-        files = Files.at(path)
+        files, folder = Files.at(path), None
+        archive, place = archive_of(files.url), files.url
         try:  # not by Zarr, which would look at all groups, and one of them may be broken
-            group, attributes = (json.loads(files.read(name) or b"") for name in (GROUP, DESCRIPTION))
-            whole = group["zarr_format"] == FORMAT["zarr_format"]
-            whole = attributes.pop(CHECKSUM) == _checksum(attributes) and whole
+            if archive is not None and archive.exists():
+                folder = unpacked(archive)
+                files = Files.at(folder.name)
+            content = files.read(DESCRIPTION) or b""
+            attributes = json.loads(content)["attributes"]
+            whole = content == group_content(attributes)
+            whole = attributes.pop(CHECKSUM) == checksum(attributes) and whole
             plan = plan_from_json(all_printable(json.loads(attributes["plan"])))
             chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
         except (OSError, AttributeError, KeyError, TypeError, ValueError):
             whole = False
         if not whole:
-            raise ValueError(f"{files.url!r} is no store of a sweep, or its description is broken")
-        return cls(files, plan, chunk, stamp)
+            if folder is not None:
+                folder.cleanup()
+            raise ValueError(f"{place!r} is no store of a sweep, or its description is broken")
+        store = cls(files, plan, chunk, stamp, place)
+        store._unpacked = folder
+        return store
+
+    def pack(self) -> None:
+        """Make one file of a small store that is finished; :meth:`tidy` removes the folder."""
+        archive = archive_of(self._place)
+        if archive is None or count(self.plan) >= SMALL:
+            return
+        if not archive.exists() or self.broken:
+            with told(str(archive)):
+                pack(Path(self.files.url), archive)
+
+    def tidy(self) -> None:
+        """Remove the folders of a store that is one file by now; it can't be read any more then."""
+        archive = archive_of(self._place)
+        if archive is not None and archive.exists():
+            shutil.rmtree(self._place, ignore_errors=True)
+        if self._unpacked is not None:
+            self._unpacked.cleanup()
 
     def round(self, i: int, numbers: Numbers) -> Round:
-        """Return round ``i`` of the trajectories ``numbers``, made if it is not there, mended if it is broken."""
-        if not self.has(i):
-            name = ROUND.format(i)
-            self._seal(name, self._describe(name, *self._template(len(numbers))))
-        return self._round(i, numbers)
+        """Return round ``i`` of the trajectories ``numbers``, made if :meth:`look` does not find it."""
+        if found := self.look(i, numbers):
+            return found
+        group = self.begin(ROUND.format(i), self._template(len(numbers)))
+        self.end(group, xr.Dataset(coords={"component": list(components(self.plan.system))}))
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, or None if it is not there or can't be read."""
-        return self._round(i, numbers) if self.has(i) else None
-
-    def has(self, i: int) -> bool:
-        """Return whether round ``i`` is described; what its chunks are is another question."""
-        name = ROUND.format(i)
-        if self.files.read(f"{name}/{GROUP}") is None:
-            return False
-        return self._is_whole(name, FILES_OF_ROUND, f"the description of {name}")
+        """Return round ``i`` of the trajectories ``numbers``, None if it is not there or broken."""
+        group = self._group(ROUND.format(i))
+        if not self._is_intact(group, f"the description of {group.name}", ["component"]):
+            return None
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
         """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
@@ -169,161 +165,66 @@ class SweepStore:
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
         """Write a group, in place of an older one."""
-        self.files.remove(name)
-        self._seal(name, self._describe(name, dataset, {}))
+        self.end(self.begin(name, {}), dataset)
 
-    def begin(self, name: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> Arrays:
+    def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
         """Begin a group, in place of an older one, with arrays that others write; :meth:`end` ends it."""
         self.files.remove(name)
-        self._describe(name, dataset, large)
-        return self._arrays(name)
-
-    def end(
-        self, name: str, dataset: xr.Dataset, large: Mapping[str, Large], digests: Mapping[str, str]
-    ) -> None:
-        """End a group with what else is to be in it; ``digests`` are those of the files that others wrote."""
-        self._seal(name, self._describe(name, dataset, large) | dict(digests))
-
-    def get(self, name: str) -> xr.Dataset | None:
-        """Return a group, of which nothing is read yet, or None if it is not there or broken."""
-        if self.files.read(f"{name}/{GROUP}") is None:
-            return None
-        if not self._is_whole(name, self._names(name), name):
-            return None
-        group: xr.Dataset = xr.open_zarr(
-            self.files.below(name), chunks=None, storage_options=self.files.options, **FORMAT
-        )
+        group = self._group(name)
+        with told(self.files.url):
+            group.create(arrays)
         return group
 
-    def _arrays(self, name: str) -> Arrays:
-        return Arrays(self.files, self._description, name)
+    def end(self, group: Group, dataset: xr.Dataset) -> None:
+        """End a group with what else is to be in it."""
+        with told(self.files.url):
+            group.add(dataset)
+        group.seal()
+        self._whole.add(group.name)
 
-    def _round(self, i: int, numbers: Numbers) -> Round:
-        return Round(Chunks(self._arrays(ROUND.format(i)), len(numbers), self.chunk), numbers)
+    def get(self, name: str) -> xr.Dataset | None:
+        """Return a group that was read once and is whole, or None if it is not there or broken."""
+        group = self._group(name)
+        return group.dataset() if self._is_intact(group, name) else None
 
-    def _template(self, count: int) -> tuple[xr.Dataset, dict[str, Large]]:
-        """Return what a round of ``count`` trajectories has besides its chunks."""
-        state = list(components(self.plan.system))
-        large: dict[str, Large] = {}
+    def _group(self, name: str) -> Group:
+        return Group(self.files, self._description, name)
+
+    def _template(self, count: int) -> dict[str, Large]:
+        """Return the arrays of a round of ``count`` trajectories."""
+        arrays: dict[str, Large] = {}
         for name, result in RESULTS.items():
-            more = (len(state),) if name == "states" else ()
+            more = (len(components(self.plan.system)),) if name == "states" else ()
             attributes = {"long_name": result.meaning, "units": result.unit} | flags(name)
             dimensions = ("trajectory", "component")[: 1 + len(more)]
-            missing = MISSING[result.dtype]
-            large[name] = Large(
-                dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes, missing
-            )
-        meaning = {"long_name": "of all that is written of the chunk, 0 where nothing is"}
-        large[CHECKSUM] = Large(("chunk",), (-(-count // self.chunk),), (1,), "u8", meaning, 0)
-        return xr.Dataset(coords={"component": state}), large
+            arrays[name] = Large(dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes)
+        return arrays
 
-    def _describe(self, name: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> dict[str, str]:
-        """Write all of a group but its pieces and what makes it count; return the digests of its files."""
-        with tempfile.TemporaryDirectory() as folder:
-            _make(folder, dataset, large)
-            made = Path(folder)
-            contents = {
-                path.relative_to(made).as_posix(): path.read_bytes()
-                for path in made.rglob("*")
-                if path.is_file() and path.parent != made
-            }
-        self.files.write({f"{name}/{file}": content for file, content in contents.items()})
-        return {file: digest_of(content) for file, content in ({GROUP: GROUP_CONTENT} | contents).items()}
+    def _is_intact(self, group: Group, called: str, names: Sequence[str] = ()) -> bool:
+        """Return whether a group is as it was sealed, with all pieces of its arrays or of those with ``names``.
 
-    def _seal(self, name: str, digests: Mapping[str, str]) -> None:
-        """Write the checksum of a group, and then that it is there."""
-        attributes = {CHECKSUM: _checksum(digests)}
-        self.files.write({f"{name}/{DESCRIPTION}": json.dumps(attributes).encode()})
-        self.files.write({f"{name}/{GROUP}": GROUP_CONTENT})
-        self._whole.add(name)
-
-    def _is_whole(self, group: str, names: Iterable[str], called: str) -> bool:
-        """Return whether a group is as it was written, with arrays of ours alone; note it as broken otherwise."""
-        if group in self._whole:
+        Note it as broken otherwise, unless it was never sealed: then it is unfinished.
+        """
+        if group.name in self._whole:
             return True
-        ours, digests = True, {}
-        for name in names:
-            content = self.files.read(f"{group}/{name}")
-            if content is not None and name != DESCRIPTION:  # which holds what the others come to
-                digests[name] = digest_of(content)
-                ours = ours and (not name.endswith(ARRAY) or is_ours(content))
-        if not ours or self._checksum_in(group) != _checksum(digests):
-            self.broken.append(called)
+        if not group.has_seal():
             return False
-        self._whole.add(group)
-        return True
-
-    def _names(self, group: str) -> Iterable[str]:
-        names = (name[len(group) + 1 :] for name in self.files.names(group))
-        return (name for name in names if any(fnmatch(name, pattern) for pattern in FILES_OF_GROUP))
-
-    def _checksum_in(self, group: str) -> str | None:
-        """Return the checksum that a group was written with, None if there is none that can be read."""
-        try:
-            return str(json.loads(self.files.read(f"{group}/{DESCRIPTION}") or b"")[CHECKSUM])
-        except (ValueError, KeyError, TypeError):
-            return None
-
-
-def is_free(files: Files) -> bool:
-    """Return whether nothing is there, but what one leaves who is killed before a store has its description."""
-    return set(files.inside()) <= {GROUP}
-
-
-def is_ours(description: bytes) -> bool:
-    """Return whether an array has a data type, filters and a compressor that sweeps write.
-
-    Others, such as the filter "pickle", may run code of whoever wrote the array.
-    """
-    try:
-        found = json.loads(description)
-        known = found["filters"] in FILTERS and found["compressor"]["id"] == COMPRESSOR
-        return known and TYPES.fullmatch(found["dtype"]) is not None
-    except (ValueError, KeyError, TypeError):
+        if group.is_sealed() and group.is_whole(names):
+            self._whole.add(group.name)
+            return True
+        self.broken.append(called)
         return False
 
 
-def write_piece(
-    arrays: Arrays, values: Mapping[str, NDArray[Any]], where: tuple[slice, ...]
-) -> dict[str, str]:
-    """Write a piece of each array of a group; return the digests of its files."""
-    digests = {}
-    with told(arrays.files.url):
-        for name, piece in values.items():
-            array = arrays.open(name)
-            array[where] = piece
-            place = ".".join(str(at.start // size) for at, size in zip(where, array.chunks, strict=True))
-            content = arrays.files.read(f"{arrays.group}/{name}/{place}")
-            if content is not None:  # it is not if nothing differs from what is missing
-                digests[f"{name}/{place}"] = digest_of(content)
-    return digests
+def archive_of(place: str) -> Path | None:
+    """Return the file that the store at a place becomes if it is small, None in an object store."""
+    return None if is_remote(place) else Path(f"{place}.zip")
 
 
-def digest_of(content: bytes) -> str:
-    """Return the digest of the contents of a file."""
-    return hashlib.blake2b(content, digest_size=8).hexdigest()
-
-
-def _checksum(attributes: Mapping[str, Any]) -> str:
-    """Return the checksum of attributes, or of the digests of the files of a group."""
-    return digest_of(json.dumps(attributes, sort_keys=True).encode())
-
-
-def _make(folder: str, dataset: xr.Dataset, large: Mapping[str, Large]) -> None:
-    """Write a group into a folder, with large arrays without pieces."""
-    dataset, encoding = dataset.copy(), dict[str, Any]()
-    for name, array in large.items():
-        # of length 0, and as long as it has it a dimension of its own
-        dimensions = (f"{name}, to grow", *array.dimensions[1:])
-        dataset[name] = (dimensions, np.zeros((0, *array.shape[1:]), array.dtype), array.attributes)
-        encoding[name] = {"chunks": array.pieces}
-        if array.missing is not None:
-            encoding[name]["_FillValue"] = array.missing
-    dataset.to_zarr(folder, mode="w", encoding=encoding, write_empty_chunks=True, **FORMAT)
-    for name, array in large.items():
-        grown = zarr.open_array(f"{folder}/{name}", mode="r+")
-        grown.resize(array.shape)
-        grown.attrs["_ARRAY_DIMENSIONS"] = list(array.dimensions)
+def is_free(files: Files) -> bool:
+    """Return whether nothing is there."""
+    archive = archive_of(files.url)
+    return not files.inside() and (archive is None or not archive.exists())
 
 
 def flags(variable: str) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """What is drawn of equal data by equal code is drawn once; anything else is drawn anew."""
 
 import shutil
-from dataclasses import replace
 from zipfile import ZipFile
 
 import fake_studies as fake
@@ -10,6 +9,7 @@ import pytest
 
 from compare.run import drawings, runner, stamp
 from compare.run.drawings import Drawing, DrawingStore, drawing_stamp
+from compare.run.engine_files import PACKAGES
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 
@@ -66,20 +66,19 @@ ZEROS = {"good": {"radius": np.zeros(4)}}
     ids=["last bit", "type", "shape", "name", "engine", "empty array", "nothing"],
 )
 def test_other_data_have_another_stamp(data):
-    assert drawing_stamp("study", ZEROS) == drawing_stamp("study", {"good": {"radius": np.zeros(4)}})
-    assert drawing_stamp("study", data) != drawing_stamp("study", ZEROS)
+    assert drawing_stamp(ZEROS) == drawing_stamp({"good": {"radius": np.zeros(4)}})
+    assert drawing_stamp(data) != drawing_stamp(ZEROS)
 
 
 @pytest.mark.parametrize(
     ("study", "engines"),
     [
-        (replace(fake.VERDICTS, draw=fake.draw_nothing), [fake.GOOD]),
         (fake.VERDICTS, [fake.GOOD, fake.ALSO_GOOD]),
         (fake.VERDICTS, [fake.FAILING]),
     ],
-    ids=["code", "one engine more", "an engine that fails"],
+    ids=["one engine more", "an engine that fails"],
 )
-def test_other_data_and_other_code_are_drawn_anew(study, engines, run):
+def test_other_data_are_drawn_anew(study, engines, run):
     run(fake.VERDICTS, fake.GOOD)
     assert run(study, *engines)[1]
 
@@ -87,17 +86,13 @@ def test_other_data_and_other_code_are_drawn_anew(study, engines, run):
 @pytest.mark.parametrize(("changed", "anew"), [("", False), ("# another look", True)])
 def test_all_is_drawn_anew_where_figures_look_different_now(changed, anew, run, tmp_path, monkeypatch):
     run(fake.VERDICTS, fake.GOOD)
-    copy = tmp_path / "code" / "compare"
-    shutil.copytree(stamp.ROOT / "compare", copy, ignore=shutil.ignore_patterns("__pycache__", "studies"))
-    with open(copy / "output" / "figures.py", "a", encoding="utf-8") as stream:
+    for package in PACKAGES:
+        skipped = shutil.ignore_patterns("__pycache__", "built")
+        shutil.copytree(stamp.ROOT / package, tmp_path / "code" / package, ignore=skipped)
+    with open(tmp_path / "code" / "compare" / "output" / "figures.py", "a", encoding="utf-8") as stream:
         stream.write(changed)
-    monkeypatch.setattr(stamp, "ROOT", copy.parent)
+    monkeypatch.setattr(stamp, "ROOT", tmp_path / "code")
     assert run(fake.VERDICTS, fake.GOOD)[1] is anew
-
-
-def test_a_study_whose_code_is_not_known_is_drawn_anew(run):
-    study = replace(fake.AGREEMENT, draw=eval("lambda data: {}"))  # of no file
-    assert [run(study, fake.GOOD)[1] for _ in range(2)] == [True, True]
 
 
 def test_a_drawing_that_failed_is_drawn_anew(run):

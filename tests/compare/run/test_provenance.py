@@ -8,42 +8,44 @@ from types import SimpleNamespace
 
 import pytest
 
-from compare.run import stamp
+from compare.run import provenance
 
 
 @pytest.fixture
 def installed(monkeypatch, tmp_path):
     """The project without a repository; return what says how its distribution was installed."""
-    monkeypatch.setattr(stamp, "ROOT", tmp_path)
+    monkeypatch.setattr(provenance, "ROOT", tmp_path)
 
     def as_said(content):
-        monkeypatch.setattr(stamp, "distribution", lambda _: SimpleNamespace(read_text=lambda _: content))
+        monkeypatch.setattr(
+            provenance, "distribution", lambda _: SimpleNamespace(read_text=lambda _: content)
+        )
 
     return as_said
 
 
 def test_an_installed_project_has_the_commit_that_it_was_installed_from(installed):
     installed(json.dumps({"vcs_info": {"commit_id": "abc"}}))
-    assert stamp.commit() == "abc"
+    assert provenance.commit() == "abc"
     installed(None)  # from a package registry
-    assert stamp.commit() == ""
+    assert provenance.commit() == ""
 
 
 def test_without_distribution_or_git_the_commit_is_not_known(installed, monkeypatch, tmp_path):
     def missing(_):
         raise PackageNotFoundError
 
-    monkeypatch.setattr(stamp, "distribution", missing)
-    assert stamp.commit() == ""
+    monkeypatch.setattr(provenance, "distribution", missing)
+    assert provenance.commit() == ""
     (tmp_path / ".git").touch()
     monkeypatch.setenv("PATH", "")
-    assert stamp.commit() == ""
+    assert provenance.commit() == ""
 
 
 def test_an_engine_has_its_own_version_or_that_of_where_its_code_is_from():
-    assert stamp.engine_version("exudyn-native", "exudyn", "") == stamp.version_of("exudyn")
-    assert stamp.engine_version("mine", "", "1.2") == "1.2"
-    assert stamp.engine_version("mine", "", "") == ""
+    assert provenance.engine_version("exudyn-native", "exudyn", "") == provenance.version_of("exudyn")
+    assert provenance.engine_version("mine", "", "1.2") == "1.2"
+    assert provenance.engine_version("mine", "", "") == ""
 
 
 def test_a_processor_without_a_name_is_told_by_its_kind(monkeypatch):
@@ -51,4 +53,4 @@ def test_a_processor_without_a_name_is_told_by_its_kind(monkeypatch):
         raise FileNotFoundError
 
     monkeypatch.setattr(Path, "read_text", missing)
-    assert stamp.processor() == (platform.processor() or platform.machine())
+    assert provenance.processor() == (platform.processor() or platform.machine())

@@ -1,32 +1,25 @@
-"""Findings are resumed only where it can be shown that nothing has changed that they depend on."""
+"""Findings are resumed while sources, libraries and the engine's own files are the same."""
 
-import ast
-import functools
 import importlib
-import inspect
-import json
-import re
-import subprocess
 import sys
-import textwrap
 import types
 from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+from shutil import copytree, ignore_patterns
 
 import fake_studies
-import numpy as np
 import pytest
-from processes import environment
 
-from compare.cli import app as cli
 from compare.engines import ByName, Engine, reference
-from compare.run import code_files
-from compare.run.code_files import CodeFiles
-from compare.run.fingerprint import fingerprint
+from compare.engines.code_files import code_below
+from compare.engines.outside.fmu import Fmu
+from compare.engines.outside.motion_files import MotionFiles
+from compare.engines.outside.program import Program
+from compare.run import stamp
+from compare.run.engine_files import PACKAGES
 from compare.run.runner import run
-from compare.run.stamp import PACKAGES
+from compare.run.stamp import engine_stamp
 from compare.studies import STUDIES
-
-pytestmark = pytest.mark.usefixtures("in_this_process")
 
 HEAD = """
 from dataclasses import replace
@@ -44,10 +37,10 @@ def simulate(system, start, times, *, tolerance=1e-9):
 
 
 @pytest.fixture
-def found(tmp_path):
+def found(tmp_path, in_this_process):
     """Return where the pin of an engine is after 1 s, over that of the reference, by a run that resumes.
 
-    Return also whether it was measured and not taken from an earlier run, and why it had to be.
+    Return also whether it was measured and not taken from an earlier run.
     """
     exact = fake_studies.measure_motion(reference).data["end"]
 
@@ -55,52 +48,35 @@ def found(tmp_path):
         fake_studies.MEASURED.clear()
         result = run((fake_studies.MOTION,), (engine,), folder=tmp_path / "data", resume=True)
         ratio = result.outcomes["motion", engine.name].data["end"] / exact
-        return (
-            round(float(ratio[0]), 6),
-            bool(fake_studies.MEASURED),
-            result.unknown.get(engine.name, ""),
-        )
+        return round(float(ratio[0]), 6), bool(fake_studies.MEASURED)
 
     return of
 
 
 @pytest.fixture
-def module(tmp_path, monkeypatch):
-    """Write modules in place of older ones, and return the one that is named first as it is then imported."""
+def code(tmp_path, monkeypatch):
+    """Write modules in place of older ones, which are forgotten, into a folder where imports find them."""
     folder = tmp_path / "code"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
     def forget():
-        for name in list(sys.modules):
-            where = (getattr(sys.modules[name], kind, "") for kind in ("__file__", "__path__"))
+        for name, module in list(sys.modules.items()):
+            where = (getattr(module, kind, "") for kind in ("__file__", "__path__"))
             if any(str(folder) in str(one) for one in where):
                 del sys.modules[name]
         importlib.invalidate_caches()
 
-    def of(**sources):
-        written = {name if "/" in name else name.replace("__", "/"): text for name, text in sources.items()}
-        for name, text in written.items():
-            path = folder / f"{name}.py"
+    def of(sources):
+        for name, text in sources.items():
+            path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            path.write_bytes(text.encode())
         forget()
-        return importlib.import_module(next(iter(sources)).replace("__", "."))
+        return folder
 
     yield of
-    forget()
-
-
-@pytest.fixture
-def look_anew():
-    """Let what is installed be looked for anew, which takes longer than all else here."""
-
-    def forget():
-        for known in (code_files._installed, code_files._installed_packages, code_files._distributions):
-            known.cache_clear()
-
-    yield forget
     forget()
 
 
@@ -108,383 +84,164 @@ SAME_AND_CHANGED = ((1.0, True), (1.0, False), (2.0, True))
 """Factors of the engine, one run after the other, and whether it must be measured."""
 
 CHANGED = {
-    "the module itself": lambda factor: {"mine": HEAD + ENGINE.format(factor=factor)},
-    "an imported module": lambda factor: {
-        "mine": f"{HEAD}from settings import FACTOR{ENGINE.format(factor='FACTOR')}",
-        "settings": f"FACTOR = {factor}",
-    },
-    "a module that an imported module imports": lambda factor: {
-        "mine": f"{HEAD}import settings{ENGINE.format(factor='settings.factor()')}",
-        "settings": "def factor():\n    import numbers_of_mine\n    return numbers_of_mine.FACTOR",
-        "numbers_of_mine": f"FACTOR = {factor}",
-    },
-    "another module of its package": lambda factor: {
-        "package__solver": f"{HEAD}from . import settings{ENGINE.format(factor='settings.FACTOR')}",
-        "package__settings": "from .deep.inside import FACTOR",
-        "package__deep__inside": f"FACTOR = {factor}",
-    },
+    "the module itself": ("mine", lambda factor: {"mine.py": HEAD + ENGINE.format(factor=factor)}),
+    "a module beside it": (
+        "mine",
+        lambda factor: {
+            "mine.py": f"{HEAD}from settings import FACTOR{ENGINE.format(factor='FACTOR')}",
+            "settings.py": f"FACTOR = {factor}",
+        },
+    ),
+    "a module of a package beside it, imported by name when it runs": (
+        "mine",
+        lambda factor: {
+            "mine.py": f"{HEAD}import importlib{ENGINE.format(factor=BY_NAME)}",
+            "helpers/deep/numbers_of_mine.py": f"FACTOR = {factor}",
+        },
+    ),
+    "another module of its package": (
+        "package.inner.solver",
+        lambda factor: {
+            "package/inner/solver.py": f"{HEAD}from ..deep.settings import FACTOR{ENGINE.format(factor='FACTOR')}",
+            "package/deep/settings.py": f"FACTOR = {factor}",
+        },
+    ),
 }
+BY_NAME = "importlib.import_module('helpers.deep.numbers_of_mine').FACTOR"
 
 
-@pytest.mark.parametrize("sources", CHANGED.values(), ids=CHANGED)
-def test_an_engine_is_measured_anew_when_code_changes(sources, module, found):
-    for factor, anew in SAME_AND_CHANGED:
-        assert found(Engine("mine", module(**sources(factor)).simulate)) == (factor, anew, "")
+@pytest.mark.parametrize(("module", "sources"), CHANGED.values(), ids=CHANGED)
+def test_an_engine_is_measured_again_when_its_module_or_one_beside_it_changes(module, sources, code, found):
+    for factor, again in SAME_AND_CHANGED:
+        code(sources(factor))
+        assert found(Engine("mine", ByName(module, "simulate"))) == (factor, again)
 
 
-OBJECTS = f"""{HEAD}
-import ast
-import functools
-
-class Solver:
-    scale = 1.0
-
-    def __init__(self, factor):
-        self.settings = {{"factors": [factor]}}
-
-    def __call__(self, *arguments, tolerance=1e-9):
-        return off(self.settings["factors"][0] * self.scale, *arguments, tolerance)
-
-    def simulate(self, *arguments, tolerance=1e-9):
-        return self(*arguments, tolerance=tolerance)
-
-def closure(factor):
-    def simulate(*arguments, tolerance=1e-9):
-        return off(factor, *arguments, tolerance)
-
-    return simulate
-
-def with_default(factor):
-    def simulate(*arguments, tolerance=1e-9, factor=factor):
-        return off(factor, *arguments, tolerance)
-
-    return simulate
-
-def decorated(factor):
-    @functools.wraps(closure)
-    def simulate(*arguments, **more):
-        return closure(factor)(*arguments, **more)
-
-    return simulate
-
-GLOBAL = 1.0
-
-def by_global(factor):
-    global GLOBAL
-    GLOBAL = factor
-    return of_global
-
-def of_global(*arguments, tolerance=1e-9):
-    return off(GLOBAL, *arguments, tolerance)
-
-def by_class(factor):
-    Solver.scale = factor
-    return Solver(1.0)
-"""
-
-MADE = {
-    "a partial's arguments": lambda module, factor: functools.partial(module.off, factor),
-    "a partial of a partial": lambda module, factor: functools.partial(functools.partial(module.off), factor),
-    "an instance's attributes": lambda module, factor: module.Solver(factor),
-    "attributes of a method's instance": lambda module, factor: module.Solver(factor).simulate,
-    "what a closure holds": lambda module, factor: module.closure(factor),
-    "a default": lambda module, factor: module.with_default(factor),
-    "what is decorated": lambda module, factor: module.decorated(factor),
-    "a global number": lambda module, factor: module.by_global(factor),
-    "a number of a class": lambda module, factor: module.by_class(factor),
-}
+def test_an_engine_is_measured_again_when_a_compiled_extension_beside_it_changes(code, found):
+    folder = code({"mine.py": HEAD + ENGINE.format(factor=1.0)})
+    for content, again in ((b"one", True), (b"one", False), (b"two", True)):
+        (folder / f"kernel{EXTENSION_SUFFIXES[0]}").write_bytes(content)
+        assert found(Engine("mine", ByName("mine", "simulate"))) == (1.0, again)
 
 
-@pytest.mark.parametrize("make", MADE.values(), ids=MADE)
-def test_an_engine_is_measured_anew_when_what_it_holds_changes(make, module, found):
-    mine = module(mine=OBJECTS)
-    for factor, anew in SAME_AND_CHANGED:
-        mine.made = make(mine, factor)
-        assert found(Engine("mine", ByName("mine", "made"))) == (factor, anew, "")
-
-
-def test_an_engine_is_measured_anew_when_it_promises_something_else(module, found):
-    mine = module(mine=HEAD + ENGINE.format(factor=1.0)).simulate
-    assert [found(Engine("mine", mine, kinds, sticks))[1] for kinds, sticks in PROMISES] == [
-        True,
-        False,
-        True,
-        True,
-    ]
+def test_an_engine_is_measured_again_when_it_promises_something_else(code, found):
+    code({"mine.py": HEAD + ENGINE.format(factor=1.0)})
+    engine = ByName("mine", "simulate")
+    assert [found(Engine("mine", engine, *promises))[1] for promises in PROMISES] == [True, False, True, True]
 
 
 PROMISES = ((("pin",), True), (("pin",), True), (("pin", "ring"), True), (("pin", "ring"), False))
 
-KERNEL = f"kernel{EXTENSION_SUFFIXES[0]}"
 
-
-def test_an_engine_is_measured_anew_when_a_compiled_extension_changes(module, found, tmp_path):
-    never = "\n\ndef never():\n    import kernel\n"  # imported where it is needed, which is not here
-    for content, anew in ((b"one", True), (b"one", False), (b"two", True)):
-        (tmp_path / "code" / KERNEL).write_bytes(content)
-        mine = module(mine=HEAD + ENGINE.format(factor=1.0) + never)
-        assert found(Engine("mine", mine.simulate)) == (1.0, anew, "")
-
-
-@pytest.mark.parametrize("editable", [False, True])
-def test_an_engine_is_measured_anew_when_what_is_installed_changes(
-    editable, module, found, look_anew, tmp_path, monkeypatch
-):
-    """Though its version stays the same; a distribution that is installed requires what changes."""
-    site = tmp_path / "site-packages"
-    outside = tmp_path / "source"
-    for folder in (site / "first-1.0.dist-info", site / "second-1.0.dist-info", outside):
-        folder.mkdir(parents=True)
-    (site / "first.py").write_text("")
-    for name, requires in (("first", "Requires-Dist: second>=1\n"), ("second", "")):
-        metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n{requires}"
-        (site / f"{name}-1.0.dist-info" / "METADATA").write_text(metadata)
-        (site / f"{name}-1.0.dist-info" / "top_level.txt").write_text(name)
-    if editable:
-        direct = {"url": outside.as_uri(), "dir_info": {"editable": True}}
-        (site / "second-1.0.dist-info" / "direct_url.json").write_text(json.dumps(direct))
-    monkeypatch.syspath_prepend(site)
-    monkeypatch.syspath_prepend(outside)
-    for content, anew in (("one", True), ("one", False), ("two", True)):
-        files = {
-            site / "second-1.0.dist-info" / "RECORD": "second.py,,"
-            if editable
-            else f"second.py,sha256={content},3",
-            (outside if editable else site) / "second.py": f"# {content}",
-        }
-        for path, text in files.items():
-            path.write_text(text)
-        look_anew()
-        mine = module(mine=f"{HEAD}import first\n{ENGINE.format(factor=1.0)}")
-        assert found(Engine("mine", mine.simulate)) == (1.0, anew, "")
-
-
-HIDDEN = {
-    "import ctypes": "mine.py:2 uses ctypes, which may run any code",
-    "from ctypes import CDLL": "mine.py:2 uses ctypes, which may run any code",
-    "import subprocess as run": "mine.py:2 uses subprocess, which may run any code",
-    "import os\nfrom os import system": "mine.py:3 uses system, which may run any code",
-    "import os; found = os.popen": "mine.py:2 uses os.popen, which may run any code",
-    "import importlib; importlib.import_module('math')": "mine.py:2 uses import_module, which may run any code",
-    "exec('scale = 1.0')": "mine.py:2 uses exec, which may run any code",
-    "import threading; LOCK = threading.Lock()": "an object of the class lock can't be written down: ",
-}
-
-
-@pytest.mark.parametrize("line", HIDDEN)
-def test_an_engine_that_may_depend_on_anything_is_always_measured_anew_and_that_is_told(line, module, found):
-    text = HEAD + ENGINE.format(factor=1.0) + "    LOCK\n" * ("LOCK" in line)
-    mine = Engine("mine", module(mine=f"\n{line}\n{text}").simulate)
-    for _ in range(2):
-        factor, anew, reason = found(mine)
-        assert (factor, anew) == (1.0, True)
-        assert reason.startswith(HIDDEN[line])
-
-
-def test_an_engine_of_an_interactive_session_is_always_measured_anew_and_that_is_told(found):
+def test_an_engine_without_files_is_always_measured_again(found):
     session = types.ModuleType("session")
     exec(compile(HEAD + ENGINE.format(factor=1.0), "<stdin>", "exec"), vars(session))
     sys.modules["session"] = session
     try:
-        for _ in range(2):
-            assert found(Engine("mine", session.simulate)) == (1.0, True, "session was not read from a file")
+        assert [found(Engine("mine", session.simulate)) for _ in range(2)] == [(1.0, True)] * 2
     finally:
         del sys.modules["session"]
 
 
-def test_an_engine_of_a_class_that_is_made_in_a_function_is_always_measured_anew(module, found):
-    class Local:
-        def __call__(self, *arguments, tolerance=1e-9):
-            return reference.simulate(*arguments, tolerance=tolerance)
-
-    module(mine="").made = Local()
-    for _ in range(2):
-        assert found(Engine("mine", ByName("mine", "made"))) == (
-            1.0,
-            True,
-            "the class Local is made when the program runs",
-        )
+@pytest.mark.parametrize("module", ["bad", "bad.inner", "bad_package.inner"])
+def test_the_modules_of_an_engine_are_not_imported_for_its_stamp(module, code):
+    folder = code({"bad.py": "raise SystemExit", "bad_package/__init__.py": "raise SystemExit"})
+    before = list(sys.path)
+    assert engine_stamp(Engine("bad", ByName(module, "simulate", str(folder)))) is not None
+    assert sys.path == before
+    assert "bad" not in sys.modules
 
 
-COMPILED = """
-import numba, numpy as np, logging
-from numpy import hypot
-from functools import cache, partial
-from pathlib import Path
-from reference_model.numerics.compiled_parts import Part
+def test_of_an_installed_module_its_own_file_counts_and_the_versions_of_all_packages(tmp_path, monkeypatch):
+    site = tmp_path / "site-packages"
+    (metadata := site / "helper-1.0.dist-info").mkdir(parents=True)
+    monkeypatch.syspath_prepend(site)
 
-LOG, HERE, NAMES = logging.getLogger("mine"), Path("here"), {{"a", "b", "c", "d"}}
+    def now(own="", other="", version="1.0"):
+        (site / "installed.py").write_text(own)
+        (site / "another.py").write_text(other)
+        (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: helper\nVersion: {version}\n")
+        return engine_stamp(Engine("installed", ByName("installed", "simulate")))
 
-@numba.njit(cache=True)
-def force(x):
-    return {factor} * x
-
-@Part
-def shifted(x):
-    return x + {shift}
-
-@cache
-def table(n):
-    return np.zeros(n)
-
-def simulate(x):
-    LOG.info(HERE, NAMES)
-    return force(x) + shifted(x) + hypot(table(3)[0], x) + np.sin(x)
-
-INSTANCE = partial(simulate, np.arange(3.0), kinds=NAMES)
-"""
-
-PRINT = """
-from compare.run.fingerprint import fingerprint
-from compare.run.stamp import PACKAGES
-import mine
-print(fingerprint(mine.simulate, PACKAGES), fingerprint(mine.INSTANCE, PACKAGES))
-"""
+    assert now() == now(other="# of another package")
+    assert len({now(), now(own="# changed"), now(version="1.1")}) == 3
 
 
-def test_a_compiled_function_is_known_by_its_code_in_every_process(module, tmp_path):
-    mine = module(mine=COMPILED.format(factor=2.0, shift=1.0))
-    here = [printed(mine.simulate), printed(mine.INSTANCE)]
-    process = subprocess.run(
-        [sys.executable, "-c", PRINT],
-        cwd=tmp_path / "code",
-        env=environment(PYTHONHASHSEED="1", PYTHONDONTWRITEBYTECODE="1"),
-        capture_output=True,
-        text=True,
-    )
-    assert (process.stdout.split(), process.stderr) == (here, "")
-    for factor, shift in ((3.0, 1.0), (2.0, 2.0)):
-        other = module(mine=COMPILED.format(factor=factor, shift=shift))
-        assert {printed(other.simulate), printed(other.INSTANCE)}.isdisjoint(here)
-
-
-@pytest.mark.skipif(not hasattr(np.hypot, "__dict__"), reason="no attributes of ufuncs before numpy 2")
-def test_what_another_package_attaches_to_an_installed_function_makes_no_difference(module, monkeypatch):
-    mine = module(mine=COMPILED.format(factor=2.0, shift=1.0))
-    before = printed(mine.simulate)
-    attached = inspect.Signature()  # as libraries of arrays do
-    monkeypatch.setattr(np.hypot, "__signature__", attached, raising=False)
-    assert printed(mine.simulate) == before
-
-
-def printed(thing):
-    return fingerprint(thing, PACKAGES)
-
-
-OURS = {
-    "ours__first": "import ours.common.helper",
-    "ours/__init__": "import ours.second",
-    "ours__common__helper": "",
-    "ours__second": "from ours.common import helper",
-    "ours__third": "import subprocess, ours",
-}
-"""Modules of a trusted package: the package itself imports one of them, as ours does to list its studies."""
+@pytest.fixture
+def outside(tmp_path):
+    """Engines from elsewhere by their kind, with the file that is changed, in the folder of the test."""
+    for name in ("engine.js", "helper.js", "engine.py", "engine", "model.fmu", "plan.json", "0f3a.csv"):
+        (tmp_path / name).write_text("before")
+    (tmp_path / "helpers").mkdir()
+    (tmp_path / "helpers" / "helper.py").write_text("before")
+    folder = str(tmp_path)
+    return {
+        "a program": (Program(("./engine", "1"), folder), "engine"),
+        "a script": (Program((sys.executable, "engine.py"), folder), "engine.py"),
+        "a package beside a script": (Program(("./engine.py",), folder), "helpers/helper.py"),
+        "a file of its language beside a script": (
+            Program((sys.executable, "-x", "engine.js"), folder),
+            "helper.js",
+        ),
+        "an FMU": (Fmu(f"{folder}/model.fmu"), "model.fmu"),
+        "a motion in a file": (MotionFiles(folder), "0f3a.csv"),
+    }
 
 
 @pytest.mark.parametrize(
-    ("changed", "others"),
+    "kind",
     [
-        ("ours__first", {"ours.first"}),
-        ("ours__second", {"ours.second", "ours.third"}),
-        ("ours__common__helper", {"ours.first", "ours.second", "ours.third"}),
-        ("ours/__init__", {"ours.first", "ours.second", "ours.third"}),
+        "a program",
+        "a script",
+        "a package beside a script",
+        "a file of its language beside a script",
+        "an FMU",
+        "a motion in a file",
     ],
 )
-def test_what_depends_on_a_changed_file_of_ours_is_measured_anew_and_nothing_else(changed, others, module):
-    def facts():
-        found = {}
-        for name in ("ours.first", "ours.second", "ours.third"):
-            code = CodeFiles(["ours"])
-            assert code.add(name)
-            found[name] = code.facts
-        return found
-
-    module(**OURS)
-    before = facts()
-    module(**OURS | {changed: OURS[changed] + "\n# changed"})
-    after = facts()
-    assert {name for name in before if before[name] != after[name]} == others
+def test_a_program_or_model_has_another_stamp_when_a_file_changes(kind, outside, tmp_path):
+    function, name = outside[kind]
+    before = engine_stamp(Engine("it", function))
+    assert before is not None
+    assert engine_stamp(Engine("it", function)) == before
+    (tmp_path / name).write_text("after")
+    assert engine_stamp(Engine("it", function)) != before
 
 
-def test_an_import_is_found_wherever_a_statement_may_stand():
-    source = """
-    class A:
-        async def f(self):
-            import a
-    if a: import b
-    elif b: import c
+@pytest.mark.parametrize("command", [("python3", "-m", "mine"), ("no-such-program",)])
+def test_a_program_whose_files_are_not_known_is_always_measured_again(command, tmp_path):
+    assert engine_stamp(Engine("it", Program(command, str(tmp_path)))) is None
+
+
+def test_environments_and_links_that_lead_back_are_left_out(tmp_path):
+    (tmp_path / "back").symlink_to(tmp_path, target_is_directory=True)
+    for folder in ("helpers", ".venv", "site-packages", "__pycache__"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "module.py").touch()
+    assert code_below([tmp_path]) == {tmp_path / "helpers" / "module.py"}
+
+
+@pytest.mark.parametrize(
+    "changed",
+    ["reference_model/systems.py", "fmu_models/sources/contact.c", "compare/foreign/mujoco.json", "numpy"],
+)
+def test_any_source_and_any_library_changes_the_stamp(changed, tmp_path, monkeypatch):
+    for package in PACKAGES:
+        copytree(stamp.ROOT / package, tmp_path / package, ignore=ignore_patterns("__pycache__", "built"))
+    before = stamp.stamp()
+    monkeypatch.setattr(stamp, "ROOT", tmp_path)
+    assert stamp.stamp() == before
+    if changed == "numpy":
+        right = stamp.version_of
+        monkeypatch.setattr(stamp, "version_of", lambda name: "0" if name == changed else right(name))
     else:
-        try: import d
-        except OSError: import e
-        else: import f
-        finally: import g
-    for x in y:
-        while x: import h
-        else: import i
-    else:
-        with x, y: import j
-        match x:
-            case 1 if y: import k
-    """
-    tree = ast.parse(textwrap.dedent(source))
-    found = {node.names[0].name for node in code_files._statements(tree) if isinstance(node, ast.Import)}
-    assert found == set("abcdefghijk")
+        with open(tmp_path / changed, "a", encoding="utf-8") as stream:
+            stream.write("\n")
+        stamp._sources.cache_clear()  # a process has the code that it was started with
+    assert stamp.stamp() != before
 
 
-def test_a_study_depends_on_its_own_files_and_on_those_of_no_other_study():
-    """But for what they share: the toolkit, claims, reference, and Exudyn models where they are its subject."""
-    for study in STUDIES:
-        code = CodeFiles(PACKAGES)
-        for declared in study.declared:
-            code.add(declared.function.__module__)
-        package = sys.modules[(study.by_hand or study.declared[0].function).__module__].__package__
-        modules = {fact.split()[0] for fact in code.facts}
-        studies = {name for name in modules if re.match(r"compare\.studies\.(?!toolkit)\w+\.\w+", name)}
-        assert studies
-        assert all(name.startswith(package.removesuffix(".claims")) for name in studies), study.name
-        assert "reference_model.systems" in modules
-
-
-def test_recorded_engines_depend_on_the_files_of_records():
-    code = CodeFiles(PACKAGES)
-    code.add("compare.foreign.records")
-    assert any(fact.startswith("compare.foreign.records mujoco.json") for fact in code.facts)
-
-
-def test_an_engine_of_ours_depends_on_the_package_that_it_imports_when_it_is_called(monkeypatch):
-    added = []
-    monkeypatch.setattr(CodeFiles, "add", lambda _, module: added.append(module) or True)
-    fingerprint(ByName("exudyn_models", "simulate"), PACKAGES)
-    assert "exudyn_models" in added
-
-
-def test_what_is_measured_anew_is_told_on_the_command_line(module, tmp_path, monkeypatch, capsys):
-    module(mine=f"import ctypes\n{HEAD}{ENGINE.format(factor=1.0)}")
-    monkeypatch.chdir(tmp_path / "code")
-    arguments = [
-        "report",
-        "agreement",
-        "--engine",
-        "mine:simulate",
-        "--jobs",
-        "1",
-        "--output",
-        str(tmp_path / "r"),
-    ]
-    assert cli.status(arguments, fake_studies.ALL) == 0
-    assert capsys.readouterr().err == ""
-    assert cli.status([*arguments, "--resume"], fake_studies.ALL) == 0
-    assert capsys.readouterr().err == (
-        "mine:simulate is measured anew, since what it depends on can't be seen: "
-        "mine.py:1 uses ctypes, which may run any code\n"
-    )
-
-
-def test_a_built_in_function_as_engine_ends_in_sentences(tmp_path, capsys):
-    arguments = ["report", "partly", "--engine", "math:sin", "--jobs", "1", "--output", str(tmp_path)]
-    for more in ([], ["--resume"]):
-        assert cli.status([*arguments, *more], fake_studies.ALL) == 1
-        out, err = capsys.readouterr()
-        assert "partly math:sin failed" in out
-        assert "TypeError: math.sin() takes no keyword arguments" in out
-        assert err == ""
+def test_the_stamp_knows_the_code_of_every_study_and_of_our_engines():
+    own = {Path(sys.modules[one.function.__module__].__file__) for study in STUDIES for one in study.declared}
+    assert all(path.is_relative_to(stamp.ROOT / "compare") for path in own)
+    assert engine_stamp(reference) != engine_stamp(None) is not None

@@ -2,7 +2,6 @@ import json
 import lzma
 import multiprocessing
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -18,13 +17,12 @@ from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli.measure.report import store_of
-from compare.run import stamp, workers
+from compare.run import workers
 from compare.run.drawings import Drawing
 from compare.run.runner import run
 from compare.run.workers import Failure
 
 BOTH = (fake.GOOD, fake.FAILING)
-OTHER_FILES = shutil.ignore_patterns("__pycache__", "studies")
 
 
 @pytest.fixture(scope="module")
@@ -149,26 +147,10 @@ def test_resume_does_not_take_what_another_version_found(tmp_path, count):
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
     (path,) = tmp_path.glob("counted--good--*.json.xz")
     content = json.loads(lzma.decompress(path.read_bytes()))
-    other = content | {"stamp": content["stamp"].replace("numpy", "numpi")}
+    other = content | {"stamp": content["stamp"][::-1]}
     path.write_bytes(lzma.compress(json.dumps(other).encode()))
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path, resume=True)
     assert count() == ["good", "good"]
-
-
-@pytest.mark.parametrize(
-    ("changed", "measured"),
-    [(None, 1), ("compare/run/findings_store.py", 2), ("compare/claims/as_json.py", 2)],
-)
-def test_resume_does_not_take_what_other_code_has_written_down(
-    changed, measured, tmp_path, count, monkeypatch
-):
-    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings")
-    shutil.copytree(stamp.ROOT / "compare", tmp_path / "compare", ignore=OTHER_FILES)
-    if changed is not None:
-        (tmp_path / changed).write_text("# changed")
-    monkeypatch.setattr(stamp, "ROOT", tmp_path)
-    run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path / "findings", resume=True)
-    assert len(count()) == measured
 
 
 def test_progress_counts_to_its_end(both_ways):

@@ -77,18 +77,6 @@ def done(function, *arguments):
     return one.value
 
 
-def test_work_begins_before_it_is_waited_for_if_asked_and_what_can_not_be_sent_is_told(tmp_path):
-    place = tmp_path / "begun"
-    with Workers(2) as workers:
-        workers.submit("refused", lambda: None)
-        workers.submit("begun", place.touch)
-        workers.begin()
-        wait_until(place.exists)
-        found = {one.key: one.value for one in workers.finished()}
-    assert found["begun"] is None
-    assert "it cannot be sent to another process" in found["refused"].reason
-
-
 def leave_a_folder_and(end, *arguments):
     tempfile.mkdtemp()
     end(*arguments)

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+import zarr
 from processes import PATIENCE, REAL, environment
+from zarr.storage import ZipStore
 
 from compare.cli import app as cli
+from compare.sweep.define.quantities import RESULTS
 
 LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
 SIGNALLING = Path(__file__).with_name("signalling_sweep.py")
@@ -37,9 +40,10 @@ def long_sweep(folder, *more, limit=None, signalled=None):
 
 
 def marks(folder: Path) -> set[str]:
-    """Return the files that mark written chunks."""
-    written = folder / "sweep.zarr" / "round-0" / "checksum"
-    return {path.name for path in written.iterdir() if path.name.isdigit()} if written.exists() else set()
+    """Return the chunks of which all results are written."""
+    chunks = folder / "sweep.zarr" / "round-0"
+    there = [{path.name for path in (chunks / name / "c").glob("*")} for name in RESULTS]
+    return {chunk for chunk in set.intersection(*there) if chunk.isdigit()}
 
 
 def finished_by(process):
@@ -53,13 +57,13 @@ def resumed(folder, *more):
 
 
 def content(path):
-    """Return all arrays of a store but for the marks of chunks, by group and name."""
-    groups = sorted(group.name for group in path.iterdir() if group.is_dir())
+    """Return all arrays of a store by group and name; it is the file that it has become, if there is one."""
+    archive = Path(f"{path}.zip")
+    store = ZipStore(archive, mode="r") if archive.exists() else path
     return {
         (group, name): values.values
-        for group in groups
-        for name, values in xr.open_zarr(path, group=group, consolidated=False).variables.items()
-        if name != "checksum"
+        for group in sorted(zarr.open_group(store, mode="r").group_keys())
+        for name, values in xr.open_zarr(store, group=group, consolidated=False).variables.items()
     }
 
 

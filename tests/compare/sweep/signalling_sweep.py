@@ -15,16 +15,6 @@ from compare.sweep.compute.executors import Cluster
 from compare.sweep.store.round import Chunks
 
 
-class Signalling(dict):
-    """Results of a chunk, in the middle of which a signal is sent."""
-
-    def items(self):
-        for i, item in enumerate(super().items()):
-            if i == 1:
-                os.kill(self.process, self.number)
-            yield item
-
-
 def signalling(name, process, chunk):
     """Let this process send the signal while it writes its ``chunk``-th chunk, and write one after the other."""
     write, lock, written = Chunks.write, threading.Lock(), 0
@@ -34,8 +24,8 @@ def signalling(name, process, chunk):
         with lock:
             written += 1
             if written == chunk:
-                results = Signalling(results)
-                results.process, results.number = process or os.getpid(), signal.Signals[name]
+                write(self, place, {"end": results["end"]})
+                os.kill(process or os.getpid(), signal.Signals[name])
             return write(self, place, results)
 
     run = Cluster.run

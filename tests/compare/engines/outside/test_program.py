@@ -20,9 +20,6 @@ from compare.cli import app as cli
 from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
 from compare.engines.outside import conversation, json_lines
 from compare.engines.outside.program import name_of
-from compare.run.code_files import UnknownCodeError
-from compare.run.fingerprint import fingerprint
-from compare.run.stamp import PACKAGES
 from compare.run.workers import Failure, Workers
 from reference_model import simulate
 
@@ -351,11 +348,6 @@ def test_an_engine_may_not_be_called_as_one_that_is_registered(tmp_path, monkeyp
     (tmp_path / "reference").chmod(0o755)
     if os.name == "posix":
         assert [engine.name for engine in engines(["exec:./reference"])] == ["exec:./reference"]
-
-
-def test_a_program_is_always_measured_anew():
-    with pytest.raises(UnknownCodeError, match="it is a program"):
-        fingerprint(faulty("none"), PACKAGES)
 
 
 def test_the_lines_in_the_document_are_those_that_are_exchanged():

@@ -2,17 +2,17 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
-import zarr
 from long_sweeps import assert_same, content
 
 from compare.cli import app as cli
 from compare.cli.sweep import run
 from compare.cli.sweep.run import STORE
-from compare.sweep.store.round import CHECKSUM, DESCRIPTION
-from compare.sweep.store.store import FILES_OF_ROUND, SweepStore, _checksum, digest_of
+from compare.sweep.store import store
+from compare.sweep.store.store import SweepStore
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
 
@@ -26,15 +26,18 @@ def most_may_be_undecided():
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The folder of a finished sweep and what is in its store."""
+    """The folder of a finished sweep whose store is a folder, and what is in it."""
     folder = tmp_path_factory.mktemp("whole")
-    assert cli.status([*MAP, "--output", str(folder)]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(store, "SMALL", 0)
+        assert cli.status([*MAP, "--output", str(folder)]) == 0
     return folder, content(folder / STORE)
 
 
 @pytest.fixture
 def copied(whole, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("compare.sweep.show.figures.write_figures", lambda store, folder: ())
+    monkeypatch.setattr(store, "SMALL", 0)
     folder = shutil.copytree(whole[0], tmp_path / "copied")
     capsys.readouterr()
     return folder
@@ -56,15 +59,14 @@ def garble(path):
     path.write_bytes(np.random.default_rng(1).bytes(path.stat().st_size))
 
 
-def with_other_numbers(path):
-    """Change one number of the chunk, in a file that is whole."""
-    array = zarr.open_array(str(path.parent), mode="r+")
-    start = int(path.name.partition(".")[0]) * array.chunks[0]
-    array[start] = array[start] + 1
+def one_bit(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
 
 
-def of_another_chunk(path):
-    shutil.copy(path.with_name(path.name.replace("1", "0", 1)), path)
+def another_unit(path):
+    path.write_text(path.read_text().replace('"units": "s"', '"units": "h"'))
 
 
 def another_seed(path):
@@ -72,46 +74,42 @@ def another_seed(path):
 
 
 def foreign(**changes):
-    """Return what makes an array another one, of which every checksum is right."""
+    """Return what makes an array another one, in a group whose checksum is right."""
 
     def described(path):
         path.write_text(json.dumps(json.loads(path.read_text()) | changes))
-        store, group = SweepStore.open(path.parents[2]), path.parents[1].name
-        names = FILES_OF_ROUND if group.startswith("round") else list(store._names(group))
-        contents = {name: store.files.read(f"{group}/{name}") for name in names if name != DESCRIPTION}
-        digests = {name: digest_of(content) for name, content in contents.items() if content is not None}
-        (path.parents[1] / DESCRIPTION).write_text(json.dumps({CHECKSUM: _checksum(digests)}))
+        SweepStore.open(path.parents[2])._group(path.parents[1].name).seal()
 
     described.__name__ = "foreign " + " ".join(changes)
     return described
 
 
-PICKLE = {"id": "pickle"}  # runs code of whoever wrote the array
+PICKLE = [{"name": "numcodecs.pickle"}]  # runs code of whoever wrote the array
 
 MENDED = [
-    (foreign(filters=[PICKLE]), "result/time/.zarray", "result"),
-    (foreign(compressor=PICKLE), "check/time/.zarray", "check"),
-    (foreign(filters=[PICKLE], compressor=None, dtype="|O"), "curves/curve/.zarray", "curves"),
-    (foreign(filters=[PICKLE]), "round-0/end/.zarray", "the description of round-0"),
-    (remove, "round-0/end/1", "of 3 chunks of round-0 these: 1"),
-    (empty, "round-0/end/1", "of 3 chunks of round-0 these: 1"),
-    (garble, "round-0/time/2", "of 3 chunks of round-0 these: 2"),
-    (cut, "round-0/states/1.0", "of 3 chunks of round-0 these: 1"),
-    (with_other_numbers, "round-0/states/1.0", "of 3 chunks of round-0 these: 1"),
-    (with_other_numbers, "round-0/steps/0", "of 3 chunks of round-0 these: 0"),
-    (of_another_chunk, "round-0/states/1.0", "of 3 chunks of round-0 these: 1"),
-    (of_another_chunk, "round-0/checksum/1", "of 3 chunks of round-0 these: 1"),
-    (garble, "round-0/checksum/1", "of 3 chunks of round-0 these: 1"),
-    (empty, "round-0/end/.zarray", "the description of round-0"),
-    (garble, "round-0/.zgroup", "the description of round-0"),
-    (remove, "round-0/.zattrs", "the description of round-0"),
-    (remove, "round-0/component/0", "the description of round-0"),
-    (remove, "round-0/time", "the description of round-0; of 3 chunks of round-0 these: 0, 1, 2"),
-    (remove, "result/time/0.0.0", "result"),
-    (with_other_numbers, "result/time/0.0.0", "result"),
-    (cut, "result/.zattrs", "result"),
-    (cut, "check/difference/0.0", "check"),
-    (empty, "curves/.zgroup", "curves"),
+    (foreign(codecs=PICKLE), "result/time/zarr.json", "result"),
+    (foreign(codecs=PICKLE, data_type="object"), "curves/curve/zarr.json", "curves"),
+    (foreign(data_type="numpy.void"), "check/time/zarr.json", "check"),
+    (foreign(storage_transformers=PICKLE), "check/time/zarr.json", "check"),
+    (foreign(codecs=PICKLE), "round-0/end/zarr.json", "the description of round-0"),
+    (foreign(codecs=[{"name": "bytes"}]), "round-0/end/zarr.json", "the description of round-0"),
+    (empty, "round-0/end/c/1", "of 3 chunks of round-0 these: 1"),
+    (garble, "round-0/time/c/2", "of 3 chunks of round-0 these: 2"),
+    (cut, "round-0/states/c/1/0", "of 3 chunks of round-0 these: 1"),
+    (one_bit, "round-0/steps/c/0", "of 3 chunks of round-0 these: 0"),
+    (empty, "round-0/end/zarr.json", "the description of round-0"),
+    (garble, "round-0/zarr.json", "the description of round-0"),
+    (another_unit, "round-0/time/zarr.json", "the description of round-0"),
+    (remove, "round-0/time", "the description of round-0"),
+    (remove, "round-0/component/c/0", "the description of round-0"),
+    (one_bit, "round-0/component/c/0", "the description of round-0"),
+    (remove, "result/time/c/0/0/0", "result"),
+    (one_bit, "result/time/c/0/0/0", "result"),
+    (another_unit, "result/time/zarr.json", "result"),
+    (cut, "result/zarr.json", "result"),
+    (cut, "check/difference/c/0/0", "check"),
+    (one_bit, "curves/curve/c/0", "curves"),
+    (empty, "curves/zarr.json", "curves"),
 ]
 NAMES = [f"{how.__name__} {file}" for how, file, _ in MENDED]
 
@@ -119,13 +117,13 @@ NAMES = [f"{how.__name__} {file}" for how, file, _ in MENDED]
 @pytest.mark.parametrize(("how", "file", "broken"), MENDED, ids=NAMES)
 def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, whole, capsys):
     path = copied / STORE
+    before = (path / file).read_bytes() if (path / file).is_file() else None
     how(path / file)
+    assert not (path / file).exists() or (path / file).read_bytes() != before
     assert cli.status(["sweep", "figures", str(copied)]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
-    assert err.startswith(
-        f"{str(path)!r} is broken ({broken.partition('; ')[0]}): --resume computes that again"
-    )
+    assert err == f"{str(path)!r} is broken ({broken}): --resume computes that again\n"
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert capsys.readouterr().err == f"{str(path)!r} was broken and is computed again: {broken}\n"
     assert_same(content(path), whole[1])
@@ -135,33 +133,71 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
 
 def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
     for folder in ("", "result", "result/time", "round-0/end"):
-        (copied / STORE / folder / "zarr.json").write_text(
-            '{"zarr_format": 3, "codecs": [{"name": "pickle"}]}'
+        (copied / STORE / folder / ".zarray").write_text(
+            '{"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "filters": [{"id": "pickle"}]}'
         )
     assert cli.status(["sweep", "figures", str(copied)]) == 0
 
 
-REFUSED = [*((how, file) for file in (".zattrs", ".zgroup") for how in (empty, cut, garble, remove))]
+REFUSED = [*((how, "zarr.json") for how in (empty, cut, garble, remove)), (another_seed, "zarr.json")]
 
 
-@pytest.mark.parametrize(("how", "file"), [*REFUSED, (another_seed, ".zattrs")])
+@pytest.mark.parametrize(("how", "file"), REFUSED)
 def test_a_store_whose_plan_is_broken_is_refused_and_left_as_it_is(how, file, copied, capsys):
     file = copied / STORE / file
     before = file.read_bytes()
     how(file)
     assert not file.exists() or file.read_bytes() != before
-    left = {path: path.read_bytes() for path in copied.rglob("*") if path.is_file()}
-    for arguments in ([*MAP, "--output", str(copied), "--resume"], ["sweep", "figures", str(copied)]):
+    assert_refused(copied, capsys)
+
+
+def assert_refused(folder, capsys):
+    left = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    for arguments in ([*MAP, "--output", str(folder), "--resume"], ["sweep", "figures", str(folder)]):
         assert cli.status(arguments) == 2
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1)
         assert "broken" in err
-    assert {path: path.read_bytes() for path in copied.rglob("*") if path.is_file()} == left
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == left
 
 
-def test_a_round_that_is_gone_is_computed_again(copied, whole, capsys):
-    remove(copied / STORE / "round-0")
+@pytest.mark.parametrize("what", ["round-0", "round-0/end/c/1", "result/zarr.json"])
+def test_what_is_gone_is_computed_again(what, copied, whole, capsys):
+    remove(copied / STORE / what)
     assert cli.status(["sweep", "figures", str(copied)]) == 2
     assert "is not finished: --resume goes on with it" in capsys.readouterr().err
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert_same(content(copied / STORE), whole[1])
+
+
+@pytest.fixture
+def packed(copied, monkeypatch, capsys):
+    """The same sweep as one file."""
+    monkeypatch.setattr(store, "SMALL", 10)
+    assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
+    capsys.readouterr()
+    return Path(f"{copied / STORE}.zip")
+
+
+def test_a_small_sweep_is_one_file(packed, whole):
+    assert [path for path in packed.parent.rglob("*") if "zarr" in path.name] == [packed]
+    assert_same(content(packed.with_suffix("")), whole[1])
+
+
+@pytest.mark.parametrize("name", ["round-0/states/c/1/0", "result/time/c/0/0/0", "check/time/zarr.json"])
+def test_a_file_of_which_a_part_is_broken_is_mended(name, packed, whole, capsys):
+    content_of, before = bytearray(packed.read_bytes()), packed.read_bytes()
+    content_of[before.index(name.encode()) + len(name) + 20] ^= 1
+    packed.write_bytes(content_of)
+    assert cli.status(["sweep", "figures", str(packed.parent)]) == 2
+    assert capsys.readouterr().err.startswith(f"{str(packed)!r} is ")
+    assert cli.status([*MAP, "--output", str(packed.parent), "--resume"]) == 0
+    assert_same(content(packed.with_suffix("")), whole[1])
+    assert cli.status(["sweep", "figures", str(packed.parent)]) == 0
+    assert [path for path in packed.parent.rglob("*") if "zarr" in path.name] == [packed]
+
+
+@pytest.mark.parametrize("how", [empty, cut, garble])
+def test_a_file_that_is_no_archive_any_more_is_refused_and_left_as_it_is(how, packed, capsys):
+    how(packed)
+    assert_refused(packed.parent, capsys)

@@ -17,12 +17,16 @@ from compare.sweep.compute.run import run
 from compare.sweep.compute.work import OtherCodeError
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import RandomBasin
+from compare.sweep.store.arrays import DESCRIPTION
 from compare.sweep.store.files import StoreError
 from compare.sweep.store.round import Chunks
-from compare.sweep.store.store import DESCRIPTION, SweepStore
+from compare.sweep.store.store import SweepStore
 
 
-def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(undisturbed, tmp_path, capsys):
+def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
+    undisturbed, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("compare.sweep.store.store.SMALL", 0)  # the chunks stay files
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(tmp_path, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
@@ -112,8 +116,8 @@ class Elsewhere(InProcess):
 
 
 def test_a_worker_with_other_code_is_refused_and_writes_nothing(store, tmp_path, monkeypatch):
-    other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.sweep_stamp", lambda: "other"))
-    with pytest.raises(OtherCodeError, match=r"other code or libraries \(other\) than this process"):
+    other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.stamp", lambda: "other"))
+    with pytest.raises(OtherCodeError, match="other code or libraries than this process"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 from long_sweeps import assert_same, content
 
 from compare.claims.paper_parameters import FIG5
@@ -120,7 +121,7 @@ def test_power_of_friction_on_the_whirl_is_that_of_its_slip(tmp_path):
 
 def test_a_store_tells_how_it_was_made(tmp_path):
     swept(tmp_path / "s", RANDOM, 50)
-    attributes = xr.open_zarr(tmp_path / "s", consolidated=False).attrs
+    attributes = zarr.open_group(tmp_path / "s", mode="r").attrs
     plan = json.loads(attributes["plan"])
     assert (plan["seed"], plan["tolerance"], plan["system"]["friction_force"]) == (4, 1e-9, 0.09)
     assert json.loads(attributes["versions"])["numpy"] == np.__version__
@@ -190,8 +191,7 @@ def test_an_interrupted_sweep_goes_on_without_computing_anything_twice(plan, tmp
     swept(tmp_path / "whole", plan, 7, whole)
     with pytest.raises(KeyboardInterrupt):
         swept(tmp_path / "s", plan, 7, first)
-    rounds = (tmp_path / "s").glob("round-*")
-    done = sum(int((xr.open_zarr(one, consolidated=False)["checksum"] > 0).sum()) for one in rounds)
+    done = len(list((tmp_path / "s").glob("round-*/steps/c/*")))
     swept(tmp_path / "s", plan, 7, second)
     assert 5 - AT_ONCE <= done <= 5
     assert first.simulated()[:done] + second.simulated() == whole.simulated()
@@ -205,10 +205,10 @@ def test_a_finished_sweep_is_not_computed_again(tmp_path):
     assert again.simulated() == []
 
 
-def test_a_chunk_whose_mark_is_missing_is_computed_again(tmp_path):
+def test_a_chunk_of_which_a_file_is_missing_is_computed_again(tmp_path):
     swept(tmp_path / "s", RANDOM, 7)
     before = content(tmp_path / "s")
-    (tmp_path / "s" / "round-0" / "checksum" / "3").unlink()
+    (tmp_path / "s" / "round-0" / "steps" / "c" / "3").unlink()
     again = Recording()
     swept(tmp_path / "s", RANDOM, 7, again)
     assert again.simulated() == [list(range(21, 28))]

@@ -1,0 +1,123 @@
+"""A store through any order of kills, damage and resumption: it always comes to the same results."""
+
+import shutil
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+from long_sweeps import assert_same, content
+
+from compare.claims.paper_parameters import FIG5
+from compare.sweep.compute.executors import InProcess
+from compare.sweep.compute.run import finished, run
+from compare.sweep.define.axes import Axis
+from compare.sweep.define.plan import Basin
+from compare.sweep.store.store import SweepStore
+
+X, Y = Axis("x", -0.3, 0.5, 5), Axis("vx", -0.4, 0.4, 5)
+PLAN = Basin(
+    system=FIG5, duration=300.0, tolerance=1e-6, seed=1, start=(0.1, 0.0, 0.03, 0.0), x=X, y=Y, coarse=3
+)
+"""In rounds, each of several chunks."""
+
+CHUNK = 3
+
+
+class Killed(InProcess):
+    """Does so many tasks, and then no more."""
+
+    def __init__(self, tasks):
+        self.left = tasks
+
+    def run(self, tasks):
+        for task in tasks:
+            if self.left == 0:
+                raise KeyboardInterrupt
+            self.left -= 1
+            yield task.key, task.function(*task.arguments)
+
+
+def silent(what, done, total):
+    pass
+
+
+class Store(RuleBasedStateMachine):
+    """Kills, damages and resumes one store."""
+
+    whole = None
+
+    @initialize()
+    def begin(self):
+        self.folder = Path(tempfile.mkdtemp())
+        SweepStore.create(self.folder / "sweep.zarr", PLAN, CHUNK)
+        if Store.whole is None:
+            SweepStore.create(self.folder / "whole.zarr", PLAN, CHUNK)
+            run(SweepStore.open(self.folder / "whole.zarr"), InProcess(), silent)
+            Store.whole = content(self.folder / "whole.zarr")
+            assert ("round-1", "end") in Store.whole
+
+    def files(self):
+        """Return all files but the description of the store, without which it is refused."""
+        found = sorted(path for path in (self.folder / "sweep.zarr").rglob("*") if path.is_file())
+        return [path for path in found if path != self.folder / "sweep.zarr" / "zarr.json"]
+
+    @rule(tasks=st.integers(1, 12))
+    def work_and_be_killed(self, tasks):
+        with suppress(KeyboardInterrupt):
+            run(SweepStore.open(self.folder / "sweep.zarr"), Killed(tasks), silent)
+
+    @rule(data=st.data())
+    def lose_a_file(self, data):
+        if files := self.files():
+            data.draw(st.sampled_from(files)).unlink()
+
+    @rule(data=st.data(), share=st.floats(0.0, 0.99))
+    def cut_a_file(self, data, share):
+        if files := self.files():
+            path = data.draw(st.sampled_from(files))
+            path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+
+    @rule(data=st.data(), place=st.floats(0.0, 0.999), bit=st.integers(0, 7))
+    def flip_a_bit(self, data, place, bit):
+        if files := self.files():
+            path = data.draw(st.sampled_from(files))
+            damaged = bytearray(path.read_bytes())
+            if damaged:
+                damaged[int(place * len(damaged))] ^= 1 << bit
+                path.write_bytes(damaged)
+                if finished(SweepStore.open(self.folder / "sweep.zarr")):
+                    pytest.fail(f"a bit of {path} is another one, and nobody tells")
+
+    @rule()
+    def resume(self):
+        run(SweepStore.open(self.folder / "sweep.zarr"), InProcess(), silent)
+        assert finished(SweepStore.open(self.folder / "sweep.zarr"))
+        assert_same(content(self.folder / "sweep.zarr"), Store.whole)
+
+    def teardown(self):
+        if hasattr(self, "folder"):
+            self.resume()
+            shutil.rmtree(self.folder)
+
+
+Store.TestCase.settings = settings(
+    max_examples=10,
+    stateful_step_count=5,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    phases=(Phase.reuse, Phase.generate),  # to shrink an example takes minutes
+)
+
+
+@pytest.mark.usefixtures("few_checks")
+class TestStore(Store.TestCase):
+    pass
+
+
+@pytest.fixture
+def few_checks(monkeypatch):
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 1)
