@@ -17,9 +17,7 @@ from compare.studies.drivetrain.clutch_parts import STUDY as CLUTCH_PARTS
 from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
 from compare.studies.drivetrain.dual_clutch import STUDY as DUAL_CLUTCH
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
-from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
-from compare.studies.drivetrain.reduced import STUDY as DRIVETRAIN_REDUCED
 from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
 from compare.studies.engines.clutch_scale import STUDY as CLUTCH_SCALE
 from compare.studies.engines.connector import STUDY as CONNECTOR
@@ -59,8 +57,6 @@ STUDIES: tuple[Study, ...] = (
     THROWN_DISC,
     DRIVETRAIN_RUN_UP,
     DRIVETRAIN_FROZEN,
-    DRIVETRAIN_LAUNCH,
-    DRIVETRAIN_REDUCED,
     DRIVETRAIN_MOMENTUM,
     CLUTCH_PARTS,
     COUPLED_CLUTCHES,
