@@ -15,7 +15,6 @@ from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
 from compare.studies.drivetrain.clutch_parts import STUDY as CLUTCH_PARTS
 from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
-from compare.studies.drivetrain.dual_clutch import STUDY as DUAL_CLUTCH
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
 from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
@@ -60,7 +59,6 @@ STUDIES: tuple[Study, ...] = (
     DRIVETRAIN_MOMENTUM,
     CLUTCH_PARTS,
     COUPLED_CLUTCHES,
-    DUAL_CLUTCH,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
