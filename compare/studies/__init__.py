@@ -19,7 +19,6 @@ from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
 from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
 from compare.studies.engines.clutch_scale import STUDY as CLUTCH_SCALE
-from compare.studies.engines.connector import STUDY as CONNECTOR
 from compare.studies.engines.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.engines.error_estimates import STUDY as ERROR_ESTIMATES
 from compare.studies.engines.foreign_engines import STUDY as FOREIGN_ENGINES
@@ -62,7 +61,6 @@ STUDIES: tuple[Study, ...] = (
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
-    CONNECTOR,
     ENGINE_CONVERGENCE,
     ERROR_ESTIMATES,
     FOREIGN_ENGINES,
