@@ -13,17 +13,12 @@ from compare.studies.disc.fig11 import STUDY as FIG11
 from compare.studies.disc.free_ring import STUDY as FREE_RING
 from compare.studies.disc.simulated_map import STUDY as SIMULATED_MAP
 from compare.studies.disc.stability_map import STUDY as STABILITY_MAP
+from compare.studies.drivetrain.clutch_parts import STUDY as CLUTCH_PARTS
 from compare.studies.drivetrain.coupled_clutches import STUDY as COUPLED_CLUTCHES
-from compare.studies.drivetrain.dual_clutch import STUDY as DUAL_CLUTCH
 from compare.studies.drivetrain.frozen import STUDY as DRIVETRAIN_FROZEN
-from compare.studies.drivetrain.judder import STUDY as JUDDER
-from compare.studies.drivetrain.launch import STUDY as DRIVETRAIN_LAUNCH
 from compare.studies.drivetrain.momentum import STUDY as DRIVETRAIN_MOMENTUM
-from compare.studies.drivetrain.reduced import STUDY as DRIVETRAIN_REDUCED
 from compare.studies.drivetrain.run_up import STUDY as DRIVETRAIN_RUN_UP
-from compare.studies.drivetrain.warm_clutch import STUDY as WARM_CLUTCH
 from compare.studies.engines.clutch_scale import STUDY as CLUTCH_SCALE
-from compare.studies.engines.connector import STUDY as CONNECTOR
 from compare.studies.engines.engine_convergence import STUDY as ENGINE_CONVERGENCE
 from compare.studies.engines.error_estimates import STUDY as ERROR_ESTIMATES
 from compare.studies.engines.foreign_engines import STUDY as FOREIGN_ENGINES
@@ -60,17 +55,12 @@ STUDIES: tuple[Study, ...] = (
     THROWN_DISC,
     DRIVETRAIN_RUN_UP,
     DRIVETRAIN_FROZEN,
-    DRIVETRAIN_LAUNCH,
-    DRIVETRAIN_REDUCED,
     DRIVETRAIN_MOMENTUM,
+    CLUTCH_PARTS,
     COUPLED_CLUTCHES,
-    JUDDER,
-    DUAL_CLUTCH,
-    WARM_CLUTCH,
     TRAJECTORIES,
     POWER_BALANCE,
     CLUTCH_SCALE,
-    CONNECTOR,
     ENGINE_CONVERGENCE,
     ERROR_ESTIMATES,
     FOREIGN_ENGINES,

@@ -108,7 +108,6 @@ def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
         "contact-laws",
         "trajectories",
         "power-balance",
-        "connector",
         "coupled-clutches",
         "block",
         "thrown-disc",

@@ -1,5 +1,3 @@
-"""An isolated drivetrain of public parts, of every kind of node: its angular momentum does not change."""
+"""An isolated drivetrain of the project's parts, on every kind of node, keeps its angular momentum."""
 
-from compare.studies.drivetrain.momentum.claims import STUDY
-
-__all__ = ["STUDY"]
+from compare.studies.drivetrain.momentum.study import STUDY as STUDY

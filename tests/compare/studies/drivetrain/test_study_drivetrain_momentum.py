@@ -9,8 +9,7 @@ from study_harness import BLIND, SEES
 from wrong_parts import WrongPartTests
 
 import exudyn_models
-from compare.studies.drivetrain.momentum.claims import STUDY
-from compare.studies.drivetrain.momentum.parameters import DRAWN, DRIVETRAINS, KINDS
+from compare.studies.drivetrain.momentum.study import DRAWN, DRIVETRAINS, KINDS, STUDY
 
 items: Any = exudyn.itemInterface
 

@@ -1,0 +1,156 @@
+"""A dual clutch changes from the first gear to the second while the engine pulls.
+
+The first clutch opens while the second closes, both linearly, until the second one has slowed the engine down to the
+speed of its own shaft. The gears are elastic. An energy balance checks the run.
+"""
+
+import exudyn as exu
+import numpy as np
+from exudyn.itemInterface import (
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+    Node1D,
+    ObjectGenericODE2,
+    ObjectRotationalMass1D,
+    SensorNode,
+)
+
+from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
+
+ENGINE, SHAFTS, VEHICLE = 0.2, (0.02, 0.025), 150.0  # kg m², the vehicle at its wheels
+RATIOS = (13.0, 8.0)  # speed of a shaft over that of the wheels
+STIFFNESS, DAMPING = 5000.0, 10.0  # N m/rad, N m s/rad, of each gear
+TORQUE, RESISTANCE = 150.0, 400.0  # N m, of the engine and against the wheels
+RADIUS, FRICTION_COEFFICIENT, PLATES = 0.07, 0.12, 8  # m; wet clutches of 8 pairs of faces
+LOAD = 4500.0  # N, under which a clutch holds 302 N m, twice the engine's torque
+BEGIN, END = 0.2, 0.5  # s, of the change
+UNTIL = 0.9  # s
+START = 200.0  # rad/s, of the engine in the first gear
+EPSILON = 0.02  # m/s: a clutch that holds the engine's torque creeps with half of it
+VELOCITIES = exu.OutputVariableType.Coordinates_t
+
+container = exu.SystemContainer()
+mbs = container.AddSystem()
+
+
+def add_rotor(inertia, speed, angle=0.0):
+    """Return the node of a rotor."""
+    node = mbs.AddNode(Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
+    mbs.AddObject(ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+    return node
+
+
+def add_torque(node, torque):
+    """Let a constant torque act on a rotor."""
+    marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+    mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=torque))
+
+
+def opening(time):
+    """Return the load of the first clutch in N."""
+    return LOAD * min(1.0, max(0.0, (END - time) / (END - BEGIN)))
+
+
+def closing(time):
+    """Return the load of the second clutch in N."""
+    return LOAD - opening(time)
+
+
+# At the start the first shaft is wound up by what accelerates all that it drives, so nothing swings.
+behind = (SHAFTS[1] * RATIOS[1] ** 2 + VEHICLE) / RATIOS[0] ** 2
+rate = (TORQUE - RESISTANCE / RATIOS[0]) / (ENGINE + SHAFTS[0] + behind)
+twist = (behind * rate + RESISTANCE / RATIOS[0]) / STIFFNESS
+
+engine = add_rotor(ENGINE, START)
+shafts = [add_rotor(SHAFTS[0], START, twist), add_rotor(SHAFTS[1], START * RATIOS[1] / RATIOS[0])]
+wheels = add_rotor(VEHICLE, START / RATIOS[0])
+add_torque(engine, TORQUE)
+add_torque(wheels, -RESISTANCE)
+
+clutches, gears = [], []
+for shaft, load, ratio in zip(shafts, (opening, closing), RATIOS, strict=True):
+    wound = np.outer(
+        (1.0, -ratio), (1.0, -ratio)
+    )  # by the angle of the shaft less ratio times that of the wheels
+    mbs.AddObject(
+        ObjectGenericODE2(
+            nodeNumbers=[shaft, wheels],
+            massMatrix=np.zeros((2, 2)),
+            stiffnessMatrix=STIFFNESS * wound,
+            dampingMatrix=DAMPING * wound,
+        )
+    )
+    clutches.append(
+        add_ring_friction(
+            mbs,
+            engine,
+            shaft,
+            contact_radius=RADIUS,
+            friction_coefficient=FRICTION_COEFFICIENT,
+            normal_load=load,
+            plates=PLATES,
+            regularisation=EPSILON,
+        )
+    )
+
+
+def speed(node):
+    """Return the speed of a rotor in rad/s."""
+    return float(mbs.GetNodeOutput(node, VELOCITIES))
+
+
+def angle(node):
+    """Return the angle of a rotor in rad."""
+    return float(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates))
+
+
+def gear_power(mbs, t):
+    """Return what the dampers of both gears take, in W."""
+    rates = [speed(shaft) - ratio * speed(wheels) for shaft, ratio in zip(shafts, RATIOS, strict=True)]
+    return DAMPING * float(np.dot(rates, rates))
+
+
+def gear_energy(mbs):
+    """Return what the springs of both gears store, in J."""
+    twists = [angle(shaft) - ratio * angle(wheels) for shaft, ratio in zip(shafts, RATIOS, strict=True)]
+    return STIFFNESS * float(np.dot(twists, twists)) / 2.0
+
+
+read_balance = add_energy_balance(
+    mbs,
+    gains={"engine": lambda mbs, t: TORQUE * speed(engine)},
+    losses={
+        "first clutch": clutches[0].power,
+        "second clutch": clutches[1].power,
+        "gears": gear_power,
+        "resistance": lambda mbs, t: RESISTANCE * speed(wheels),
+    },
+    stored=[gear_energy],
+)
+sensors = [
+    mbs.AddSensor(SensorNode(nodeNumber=node, outputVariableType=VELOCITIES, storeInternal=True))
+    for node in (engine, *shafts, wheels)
+]
+mbs.Assemble()
+
+settings = exu.SimulationSettings()
+settings.solution.file.write = False
+settings.solution.sensors.writePeriod = 2e-3
+options = settings.timeIntegration
+options.verboseMode = 0
+options.endTime, options.numberOfSteps = UNTIL, 1800
+# Implicit, because explicit steps would have to follow the fast decay of slip below EPSILON.
+solve_dynamic(mbs, settings, exu.DynamicSolverType.TrapezoidalIndex2, breaks=[BEGIN, END])
+
+balance = read_balance()
+speeds = np.column_stack([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors])
+
+
+if __name__ == "__main__":
+    print(
+        f"the engine turns with {speeds[-1, 0]:.2f} rad/s, in the second gear {RATIOS[1] * speeds[-1, 3]:.2f} rad/s"
+    )
+    for name in ("first clutch", "second clutch"):
+        print(f"{name}: {balance.losses[name][-1]:.0f} J of heat")
+    residual = np.max(np.abs(balance.residual)) / balance.turnover
+    print(f"energy is accounted for to {residual:.1g} of what was turned over")

@@ -1,0 +1,90 @@
+"""A clutch disc on a torsional spring that a drive drags, with friction that falls with the slip: judder."""
+
+import math
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface
+import numpy as np
+import pytest
+from free_bodies import rotor, run_explicitly
+
+from exudyn_models import add_ring_friction, solve_dynamic
+
+items: Any = exudyn.itemInterface
+
+INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
+SPEED, RADIUS, LOAD, COEFFICIENT = 50.0, 0.1, 1000.0, 0.5
+MOMENT = COEFFICIENT * LOAD * RADIUS
+ONSET = DAMPING / (RADIUS**2 * LOAD)
+FALLS = [-1.0, 0.0, 0.9, 1.1, 4.0]
+"""Falls of the coefficient over that of onset."""
+
+
+def juddering(fall, push, epsilon=1e-3):
+    mbs = exu.SystemContainer().AddSystem()
+    drive, disc = rotor(mbs, 1e12, SPEED), rotor(mbs, INERTIA, push)
+    mbs.SetNodeParameter(disc, "initialCoordinates", [MOMENT / STIFFNESS])
+    ends = [
+        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+        for node in (mbs.AddNode(items.NodePointGround()), disc)
+    ]
+    mbs.AddObject(items.CoordinateSpringDamper(markerNumbers=ends, stiffness=STIFFNESS, damping=DAMPING))
+    add_ring_friction(
+        mbs,
+        drive,
+        disc,
+        contact_radius=RADIUS,
+        friction_coefficient=lambda slip_speed: COEFFICIENT - fall * ONSET * (slip_speed - RADIUS * SPEED),
+        normal_load=LOAD,
+        regularisation=epsilon,
+    )
+    kinds = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
+    sensors = [
+        mbs.AddSensor(items.SensorNode(nodeNumber=disc, storeInternal=True, outputVariableType=kind))
+        for kind in kinds
+    ]
+    mbs.Assemble()
+    return mbs, sensors
+
+
+def eigenvalue(fall):
+    """J·λ² + (D − N·R²·γ)·λ + K = 0: a disc that turns with the drive slips less and has more friction."""
+    half = DAMPING * (1.0 - fall) / (2.0 * INERTIA)
+    return -half + 1j * math.sqrt(STIFFNESS / INERTIA - half**2)
+
+
+@pytest.mark.parametrize("fall", FALLS)
+def test_exudyns_linearisation_has_the_eigenvalue_of_small_vibrations(fall):
+    mbs, _ = juddering(fall, 0.1)
+    values, _ = mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
+    found = max(values, key=lambda value: value.imag)
+    assert found == pytest.approx(eigenvalue(fall), abs=1e-7)
+
+
+@pytest.mark.parametrize("fall", FALLS)
+def test_a_pushed_disc_vibrates_by_the_closed_form_while_it_slips(fall):
+    mbs, sensors = juddering(fall, push := 0.1)
+    run_explicitly(mbs, 0.5, 1000)
+    root = eigenvalue(fall)
+    (t, angle), (_, speed) = (mbs.GetSensorStoredData(sensor).T for sensor in sensors)
+    wave = -1j * push / root.imag * np.exp(root * t)  # φ = φ₀ + Re(c·e^(λt)) from φ₀ with the push
+    # RK67 with ω·h = 0.06 is off by some 2e-9 of the amplitude.
+    size = np.abs(wave).max()
+    np.testing.assert_allclose(angle, MOMENT / STIFFNESS + wave.real, rtol=0.0, atol=1e-8 * size)
+    np.testing.assert_allclose(speed, (root * wave).real, rtol=0.0, atol=1e-8 * size * abs(root))
+
+
+def test_judder_that_has_grown_sticks_once_in_a_period_and_never_passes_the_drive():
+    mbs, (_, of_speed) = juddering(2.0, push=40.0)
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0  # every step
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = 0.6, 600, 0
+    options.absoluteTolerance, options.relativeTolerance = 1e-8, 0.0
+    solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
+    t, speed = mbs.GetSensorStoredData(of_speed).T
+    creep = 1e-3 / RADIUS
+    for begin in np.arange(0.3, 0.55, 0.06):  # a little more than a period, 0.051 s and the stick
+        assert np.max(speed[(t >= begin) & (t < begin + 0.06)]) == pytest.approx(SPEED, abs=creep)
