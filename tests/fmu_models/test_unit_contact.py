@@ -1,6 +1,7 @@
 """The law of the units in C: what holds for the friction of every contact at any slip, and its digits.
 
-Above ε friction takes the power μN·P of the mean slip speed P, and no other slip would meet more; below it is viscous.
+Above ε friction takes the power μN·P of the mean slip speed P, and no other slip would meet more; below ε it is
+viscous.
 """
 
 import ctypes

@@ -1,9 +1,8 @@
 """The functions that Exudyn calls: planar pairs in closed form against the law for any pair, and their renewal."""
 
-import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import planar_body, rotor
+from free_bodies import new_model, planar_body, rotor
 
 from exudyn_models import add_ring_friction
 from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any
@@ -40,7 +39,7 @@ def test_closed_form_of_planar_pairs_is_the_law_for_any_pair(kinds, contact):
 
 @pytest.mark.parametrize("master", [rotor, planar_body])
 def test_force_and_jacobian_are_those_of_the_load_after_every_change(master):
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     state = (0.7, 2.0) if master is rotor else (2.0, 0.7, [0.3, -0.2, 0.1], [0.1, 0.05, 2.0])
     nodes = master(mbs, *state), planar_body(mbs, 1.0, 0.02, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
     connector = add_ring_friction(

@@ -1,7 +1,7 @@
 """What holds for the friction of every contact at any slip: pin, points, ring, and annuli under each pressure.
 
-A contact that slips with u and S exerts the force and moment F of the largest power: −F·slip = μN·P, and −F·v <= μN·P(v)
-for any other slip v, where P is the mean slip speed. Where P < ε it creeps: F is that at P = ε, times P/ε.
+P is the mean slip speed. Where P > ε force and moment F take the power −F·slip = μN·P, and −F·v <= μN·P(v) for any
+other slip v. Where P < ε the contact creeps: F is that at P = ε, times P/ε.
 """
 
 import functools
@@ -114,7 +114,7 @@ def test_a_turned_mirrored_or_reversed_slip_meets_friction_of_the_same_kind(cont
         assert np.all(abs(turned - [force.real, force.imag, moment]) <= size)
         mirrored = friction(contact, mirror * slip, -ANGLE)
         assert np.all(abs(mirrored - mirror * [x, y, moment]) <= size)
-        assert np.all(abs(friction(contact, -slip) + [x, y, moment]) <= size)
+        assert np.all(abs(np.add(friction(contact, -slip), [x, y, moment])) <= size)
 
 
 @pytest.mark.parametrize(("contact", "lever"), CONTACTS.values(), ids=CONTACTS)
