@@ -1,17 +1,22 @@
 """Static and eigenvalue analysis, and Newton's iteration, of a disc on springs over a master that turns."""
 
 from itertools import pairwise
-from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import coordinates, planar_body, rotor, spatial_body
+from free_bodies import (
+    coordinate,
+    coordinates,
+    items,
+    new_model,
+    planar_body,
+    rotor,
+    settings_of,
+    spatial_body,
+)
 
 from exudyn_models import add_ring_friction
-
-items: Any = exudyn.itemInterface
 
 MASS, STIFFNESS, DAMPING, OFFSET, SPEED = 2.0, 1.3, 0.1, 0.1, 1.5
 KINDS = {
@@ -33,7 +38,7 @@ def falling(radius):
 
 def supported_disc(kind, place, contact, spin=0.0, held=False):
     """A disc on springs to (X₀, 0, 0) at rest in ``place`` over a master disc; its other motions have springs too."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     master = rotor(mbs, 1e30, SPEED)
     if kind == "planar":
         disc = planar_body(mbs, MASS, 0.02, [*place, 0.0], [0.0, 0.0, spin])
@@ -44,13 +49,10 @@ def supported_disc(kind, place, contact, spin=0.0, held=False):
     reference = mbs.GetNodeParameter(disc, "referenceCoordinates")
     relaxed = [OFFSET] + [0.0] * (len(reference) - 1)
     springs = [(disc, i, relaxed[i] - reference[i]) for i in range(len(reference))]
-    for node, coordinate, offset in [*springs, (master, 0, 0.0)] if held else springs:
+    for node, axis, offset in [*springs, (master, 0, 0.0)] if held else springs:
         mbs.AddObject(
             items.ObjectConnectorCoordinateSpringDamper(
-                markerNumbers=[
-                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0)),
-                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)),
-                ],
+                markerNumbers=[coordinate(mbs, ground), coordinate(mbs, node, axis)],
                 stiffness=STIFFNESS,
                 damping=DAMPING if node == disc else 0.0,
                 offset=offset,
@@ -84,8 +86,7 @@ def test_static_solver_finds_the_self_centred_equilibrium(kind, factors, contact
     # All of a ring that turns with the master slips alike, as a pin does. A static run keeps the initial velocities.
     mbs, disc, _ = supported_disc(kind, [0.08, 0.03], contact | factors, spin, held=True)
     mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
+    settings = settings_of(1.0, 1)
     options = settings.staticSolver
     options.verboseMode = 0
     options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, 1e-13
@@ -134,17 +135,15 @@ def test_newtons_iteration_converges_quadratically_at_large_steps(kind, solver):
     }
     mbs, *_ = supported_disc(kind, [0.3, 0.0], contact)
     mbs.Assemble()
-    iterates: dict[float, list[Any]] = {}
+    iterates = {}
 
     def record(mbs, t, *details):
         iterates.setdefault(t, []).append(mbs.systemData.GetODE2Coordinates().copy())
         return True
 
     mbs.SetPreNewtonResidualUserFunction(record)
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
+    settings = settings_of(10.0, 20)  # 16 steps in a period
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = 10.0, 20, 0  # 16 steps in a period
     options.adaptiveStep = False
     options.newton.useModifiedNewton = False
     options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-10, 1e-12
