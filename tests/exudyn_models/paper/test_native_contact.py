@@ -19,14 +19,11 @@ from free_bodies import (
     run_explicitly,
     settings_of,
 )
-from plain_slip import slide
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
 from exudyn_models import add_native_friction, add_ring_friction, simulate_with_native_contact
-from exudyn_models.forces.friction_laws import point_regularisation
 from exudyn_models.paper.models import build as models
-from reference_model import plain
 from reference_model.systems import DiscOnDisc
 
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
@@ -58,11 +55,6 @@ RESTING = {
 """System, start and span in s of motions in which points of a disc come to rest, or do so no more."""
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-
-
-def viscous(disc, smallest):
-    """Friction that is viscous where a point slips with less than ``smallest`` m/s."""
-    return plain.on_ring(disc.friction_force, disc.contact_radius, disc.contact_points, smallest)
 
 
 def observed_order(errors):
@@ -124,53 +116,10 @@ def test_a_free_disc_moves_as_by_the_connector_and_keeps_its_momenta_with_a_free
     np.testing.assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-11)
 
 
-@pytest.mark.parametrize(
-    ("system", "start"), [(FIG5, SLIPPING_PIN), (DISC, SLIPPING_DISC)], ids=["pin", "points"]
-)
-def test_error_of_what_slips_falls_with_the_tolerance_and_stays_below_it(system, start):
-    exact = slide(system, start, [0.0, 100.0]).y[:, -1]
-    errors = np.array(
-        [
-            np.abs(
-                simulate_with_native_contact(system, start, [0.0, 100.0], tolerance=tolerance).at_end - exact
-            ).max()
-            for tolerance in TOLERANCES
-        ]
-    )
-    assert np.all(errors < TOLERANCES), errors
-    assert observed_order(errors) == pytest.approx(1.0, abs=0.1), errors
-
-
-def test_stick_phases_of_a_pin_have_errors_of_first_order_in_the_regularisation():
-    exact = reference_model.simulate(FIG5, STICKING_PIN, [0.0, 14.0], tolerance=1e-12)
-    assert len(exact.stick_phases) == 2
-    errors = []
-    for tolerance in TOLERANCES[:4]:
-        found = simulate_with_native_contact(FIG5, STICKING_PIN, [0.0, 14.0], tolerance=tolerance)
-        assert [phase.kind for phase in found.phases] == [phase.kind for phase in exact.phases]
-        errors.append(np.abs(found.stick_times - exact.stick_times))
-    # The first touch comes before any creep; all later times carry the creep that went before.
-    assert errors[-1][0] < 1e-9
-    for order in (observed_order([error[i] for error in errors]) for i in (1, 2, 3)):
-        assert order == pytest.approx(1.0, abs=0.1), errors
-
-
 @functools.cache
 def coming_to_rest(name, tolerance):
     disc, start, span = RESTING[name]
     return simulate_with_native_contact(disc, start, [0.0, span], tolerance=tolerance)
-
-
-@pytest.mark.parametrize(("name", "tolerance"), [("thrown", 1e-7), ("caught", 1e-7), ("let go", 1e-6)])
-def test_resting_points_of_a_disc_creep_as_an_integrator_for_stiff_equations_has_it(name, tolerance):
-    found = coming_to_rest(name, tolerance)
-    disc, start, span = RESTING[name]
-    epsilon = found.solution.regularisation
-    friction = viscous(disc, point_regularisation(epsilon, 6))
-    run = slide(disc, start, [0.0, span], friction, method="Radau", rtol=1e-10, atol=1e-12)
-    creeping = run.y[:, -1]
-    # The steps make an error of one per cent of the creep, which is ε·t.
-    assert found.at_end == pytest.approx(creeping, abs=0.01 * epsilon * span)
 
 
 @pytest.mark.parametrize(
@@ -228,10 +177,3 @@ def test_no_user_function_takes_part_in_the_friction(system, state):
     assert sum("trianglePoints" in item for item in objects) == (1 if system is FIG5 else 6)
     for item in objects:
         assert not any(value for name, value in item.items() if "UserFunction" in name), item
-
-
-def test_the_solution_names_the_contact_and_its_regularisation():
-    solution = simulate_with_native_contact(FIG5, SLIPPING_PIN, [0.0, 1.0], tolerance=1e-8).solution
-    assert solution.method == "Exudyn DOPRI5, generalised-α while sticking, built-in contact"
-    assert solution.tolerance == 1e-8
-    assert solution.regularisation == pytest.approx(1e-6 * FIG5.disc_speed * SLIPPING_PIN[0])

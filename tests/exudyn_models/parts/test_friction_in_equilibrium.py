@@ -1,8 +1,5 @@
 """Static and eigenvalue analysis, and Newton's iteration, of a disc on springs over a master that turns."""
 
-from itertools import pairwise
-
-import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import (
@@ -123,37 +120,3 @@ def test_eigenvalues_are_those_of_the_linearised_pin(kind, factors):
     # The others belong to the springs alone and to the master.
     errors = np.abs(np.asarray(found)[:, None] - expected).min(axis=0)
     np.testing.assert_allclose(errors, 0.0, atol=1e-9)
-
-
-@pytest.mark.parametrize("solver", ["GeneralizedAlpha", "TrapezoidalIndex2"])
-@pytest.mark.parametrize("kind", KINDS)
-def test_newtons_iteration_converges_quadratically_at_large_steps(kind, solver):
-    contact = {
-        "contact_radius": 0.05,
-        "friction_coefficient": coefficient,
-        "normal_load": lambda radius: 0.5 * falling(radius),
-    }
-    mbs, *_ = supported_disc(kind, [0.3, 0.0], contact)
-    mbs.Assemble()
-    iterates = {}
-
-    def record(mbs, t, *details):
-        iterates.setdefault(t, []).append(mbs.systemData.GetODE2Coordinates().copy())
-        return True
-
-    mbs.SetPreNewtonResidualUserFunction(record)
-    settings = settings_of(10.0, 20)  # 16 steps in a period
-    options = settings.timeIntegration
-    options.adaptiveStep = False
-    options.newton.useModifiedNewton = False
-    options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-10, 1e-12
-    mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver))
-    assert mbs.sys["dynamicSolver"].it.newtonStepsCount <= 4 * 20
-    orders = []
-    for states in iterates.values():
-        steps = [float(np.abs(after - before).max()) for before, after in pairwise(states)]
-        steps = [step for step in steps if step > 1e-14]  # the others are rounding
-        if len(steps) >= 3:
-            orders.append(np.log(steps[-1] / steps[-2]) / np.log(steps[-2] / steps[-3]))
-    assert len(orders) > 5
-    assert min(orders) > 1.7, orders

@@ -30,7 +30,6 @@ from exudyn_models import (
 from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
-    friction_of_slip,
     point_regularisation,
     slip_potential_of_contact,
 )
@@ -177,22 +176,6 @@ def test_a_shaft_with_its_damper_adds_to_the_contact():
     assert largest_stable_step(mbs, SOLVERS.RK33) == pytest.approx(INTERVALS["RK33"] / by_hand, rel=1e-9)
 
 
-@pytest.mark.parametrize("direction", [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], ids=["sideways", "turning"])
-@pytest.mark.parametrize("points", [None, 24])
-def test_a_disc_comes_to_rest_below_the_limit_and_chatters_beyond(direction, points):
-    """Its inertia is such that sideways motion, J = 2·mR², or turning, J = mR²/2, is the faster to decay."""
-    share = 2.0 if direction[0] else 0.5
-    for factor, at_rest in ((0.95, True), (1.06, False)):
-        mbs = new_model()
-        master = rotor(mbs, 1e9, 0.0)
-        start = [0.1 * EPSILON * direction[0], 0.0, 0.1 * EPSILON / RADIUS * direction[2]]
-        disc = planar_body(mbs, MASS, share * MASS * RADIUS**2, [0.0] * 3, start)
-        add_ring_friction(mbs, master, disc, **RING | {"contact_points": points})
-        step = factor * INTERVALS["RK44"] * EPSILON / FRICTION * MASS * min(1.0, share)
-        left = np.max(np.abs(velocities(mbs, disc, SOLVERS.RK44, step, 400)[0][-20:])) / max(start)
-        assert left < 1e-6 if at_rest else left > 1.5
-
-
 @pytest.mark.parametrize("points", [2, 3])
 def test_a_disc_that_pivots_about_a_point_has_the_limit_of_that_point(points):
     """The point rests, loaded by less than its share, while the others slip with 100·ε."""
@@ -306,24 +289,3 @@ def test_a_damper_of_the_limit_takes_no_less_power_than_friction_and_as_much_in_
         assert slip_potential_of_contact(*slip, angle, contact) ** 2 == pytest.approx(
             slip @ damper @ slip, rel=1e-8
         )
-
-
-@pytest.mark.parametrize(("points", "spin"), [(CONTINUOUS, 1.0), (24, 0.9)])
-def test_a_disc_that_creeps_about_its_own_circle_chatters_little_at_half_of_the_limit(points, spin):
-    """m = J/R² = μN/ε = 1, so that the limit of RK44 is its interval; a constant load holds the creep up."""
-    contact, creep = (1.0, points, 1.0, 1.0, NONE_HELD, 1.0), np.array([1.0, 0.0, spin])
-    creep *= 0.5 / slip_potential_of_contact(*creep, 0.0, contact)
-    load = np.array(friction_of_slip(*creep, 0.0, contact))
-    chatter = {}
-    for share in (0.5, 1.02):
-        step, slip, apart = share * INTERVALS["RK44"], creep * [1.001, 1.0, 0.999], []
-        for _ in range(600):
-            slopes = []
-            for part in (0.0, 0.5, 0.5, 1.0):
-                place = slip + part * step * slopes[-1] if slopes else slip
-                slopes.append(np.array(friction_of_slip(*place, 0.0, contact)) - load)
-            slip = slip + step / 6.0 * (np.array([1.0, 2.0, 2.0, 1.0]) @ slopes)
-            apart.append(np.max(np.abs(slip - creep)) / 0.5)
-        chatter[share] = max(apart[300:])
-    assert 0.01 < chatter[0.5] < 0.07
-    assert chatter[1.02] > 0.25
