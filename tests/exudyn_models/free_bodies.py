@@ -29,13 +29,56 @@ def rotor(mbs: Any, inertia: float, speed: float) -> Any:
     return node
 
 
-def run_explicitly(mbs: Any, end: float, steps: int = 6000) -> None:
+def settings_of(end: float, steps: int, start: float = 0.0, newton: float | None = None) -> Any:
+    """Return settings of a quiet run without files; ``newton`` is the residual of implicit solvers."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, steps, 0
-    options.solverType = exu.DynamicSolverType.RK67
+    options.startTime, options.endTime, options.numberOfSteps, options.verboseMode = start, end, steps, 0
+    if newton is not None:
+        options.newton.relativeTolerance = options.newton.absoluteTolerance = newton
+    return settings
+
+
+def run_explicitly(mbs: Any, end: float, steps: int = 6000) -> None:
+    settings = settings_of(end, steps)
+    settings.timeIntegration.solverType = exu.DynamicSolverType.RK67
     assert exu.MainSolverExplicit().SolveSystem(mbs, settings)
+
+
+def new_model() -> Any:
+    return exu.SystemContainer().AddSystem()
+
+
+def coordinate(mbs: Any, node: Any, place: int = 0) -> Any:
+    """Add a marker on one coordinate of a node."""
+    return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
+
+
+def drive(mbs: Any, node: Any, load: Any) -> None:
+    """Add a load, a number or a function of time, on the first coordinate of a node."""
+    marker = coordinate(mbs, node)
+    if callable(load):
+        mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, loadUserFunction=lambda mbs, t, _: load(t)))
+    else:
+        mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=load))
+
+
+def rate_of(mbs: Any, node: Any) -> float:
+    """Return the rate of the only coordinate of a node."""
+    return float(np.squeeze(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t)))
+
+
+def all_states(mbs: Any) -> np.ndarray:
+    return np.hstack((mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()))
+
+
+def felt_accelerations(mbs: Any, node: Any) -> Any:
+    """Add a sensor of the second derivatives of a node's coordinates."""
+    kind = exu.OutputVariableType.Coordinates_tt
+    return mbs.AddSensor(
+        items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False)
+    )
 
 
 def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -72,13 +72,6 @@ def test_a_parabola_of_pressure_may_touch_zero(instance):
     instance("clutch", inner_radius=0.05, pressure_mean=0.25, pressure_outer=0.0).started()
 
 
-def test_the_name_of_a_unit_ends_with_fmu(tmp_path, capsys):
-    output = tmp_path / "clutch.zip"
-    assert cli.status(["export-fmu", "clutch", "--output", str(output)]) == 2
-    assert capsys.readouterr().err == f"output = '{output}': the name of a unit must end with .fmu\n"
-    assert not output.exists()
-
-
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", MODELS)
 def test_the_description_tells_the_range_of_each_variable(unit, name, fmi):

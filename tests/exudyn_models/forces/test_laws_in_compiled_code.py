@@ -2,12 +2,10 @@
 
 import math
 
-import exudyn as exu
 import numba
 import numpy as np
 import pytest
-from free_bodies import rotor
-from pairs_of_bodies import DISC, KINDS, MASTER, PAIRS, body
+from pairs_of_bodies import KINDS, PAIRS, bodies_of
 
 from exudyn_models import add_ring_friction
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
@@ -33,11 +31,7 @@ LAW_BY_NUMBA = {name: numba.njit(function) for name, function in LAW.items()}
 
 
 def added(kinds, **law):
-    mbs = exu.SystemContainer().AddSystem()
-    nodes = [
-        None if kind is None else body(mbs, kind, *data)
-        for kind, data in zip(kinds, (MASTER, DISC), strict=True)
-    ]
+    mbs, nodes = bodies_of(kinds)
     return mbs, add_ring_friction(mbs, *nodes, **RING | law)
 
 
@@ -51,23 +45,18 @@ def forces(kinds, **law):
 
 
 @pytest.mark.parametrize("kinds", [*PAIRS, *ON_GROUND], ids=str)
-def test_a_law_that_always_returns_the_same_is_that_number(kinds):
-    expected = forces(kinds)
-    assert np.abs(expected).max() > 0.01
+def test_a_function_gives_the_force_of_its_number_and_one_of_numba_that_of_python(kinds):
+    constant = forces(kinds)
+    assert np.abs(constant).max() > 0.01
     for law in (
         {"friction_coefficient": lambda slip_speed: 0.3},
         {"normal_load": lambda time, relative_spin: 2.0},
         {"friction_coefficient": [[0.0, 0.3], [1.0, 0.3], [2.0, 0.3]]},
         {"normal_load": TWO_BY_NUMBA},
     ):
-        np.testing.assert_allclose(forces(kinds, **law), expected, rtol=1e-14, atol=1e-17)
-
-
-@pytest.mark.parametrize("kinds", [*PAIRS, *ON_GROUND], ids=str)
-def test_a_function_of_numba_gives_the_force_of_that_of_python(kinds):
+        np.testing.assert_allclose(forces(kinds, **law), constant, rtol=1e-14, atol=1e-17)
     by_python, by_numba = forces(kinds, **LAW), forces(kinds, **LAW_BY_NUMBA)
     np.testing.assert_allclose(by_numba, by_python, rtol=1e-14, atol=1e-17)
-    constant = forces(kinds)
     assert np.abs(by_python - constant).max() > 0.1 * np.abs(constant).max()
 
 
@@ -112,16 +101,6 @@ def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, functi
         force(mbs, 0.7, 0, *state)
     with pytest.raises(ValueError, match=r"normal_load\(time = 0.25 s\) = -1 N: it must be >= 0"):
         force(mbs, 0.25, 0, *state)
-
-
-def test_what_numba_cannot_compile_is_refused_at_the_door():
-    mbs = exu.SystemContainer().AddSystem()
-    with pytest.raises(
-        ValueError, match="normal_load is a function for numba, which can't compile it for floats"
-    ):
-        add_ring_friction(
-            mbs, None, rotor(mbs, 1.0, 0.0), **RING | {"normal_load": numba.njit(lambda time: mbs.unknown)}
-        )
 
 
 def test_a_table_outlives_what_it_was_made_from():

@@ -9,14 +9,13 @@ import pytest
 import reference_model
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG11
-from compare.studies.engines.clutch_scale.units import CLUTCH, Scale
+from compare.studies.engines.clutch_scale.units import Scale
 from exudyn_models import simulate, simulate_with_native_contact
 from exudyn_models.paper.models.build import build
-from exudyn_models.paper.nondimensional import Units
 from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.turning_axes import Axes
 from exudyn_models.solver import solver_run as solving
-from exudyn_models.solver.solver_run import StepCount, solve
+from exudyn_models.solver.solver_run import solve
 from reference_model import SimulationError
 
 RING = replace(FIG11, polar_inertia=0.0072, damping=0.1, friction_force=0.09, offset=0.1)
@@ -73,14 +72,6 @@ def test_the_regularisation_is_told_in_metres_per_second():
     assert other.solution.regularisation == pytest.approx(1e-7 * speed * scale.length / scale.time)
 
 
-def test_the_start_of_a_clutch_ends_in_the_equilibrium_as_the_paper_s_does():
-    pin = CLUTCH.system(FIG5)
-    start = CLUTCH.states([0.1, 0.0, 0.0275, 0.0])
-    times = [0.0, 60.0 * CLUTCH.time]
-    exact = reference_model.simulate(pin, start, times).at_end
-    np.testing.assert_allclose(simulate(pin, start, times).at_end[:2], exact[:2], atol=2e-4 * pin.offset)
-
-
 def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
     omega, stiff = 300.0, 1.7e5  # the spring's own frequency is above ω, and does not matter either
     pin = reference_model.PinOnDisc(
@@ -113,17 +104,6 @@ def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
     seen = axes.fixed_steps(turning)
     np.testing.assert_allclose(seen.states[-1], fixed.states[-1], rtol=0.0, atol=2e-11)
     np.testing.assert_allclose(seen.accelerations[-1], fixed.accelerations[-1], rtol=0.0, atol=2e-11)
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_units_make_length_time_and_mass_of_order_one(name):
-    system, start = CASES[name]
-    units = Units.of(system, np.array(start))
-    small = units.of_system(system)
-    assert small.mass == 1.0
-    assert max(small.natural_frequency, abs(small.disc_speed)) == pytest.approx(1.0)
-    assert max(np.abs(np.array(start) / units.of_states(len(start)))[:2]) <= 1.0
-    assert small.friction_force <= 1.0 + 1e-12
 
 
 def test_only_what_is_asked_for_is_kept_and_the_phases_are_the_same(monkeypatch):
@@ -160,16 +140,6 @@ def test_a_run_of_far_too_many_steps_says_so_early(end, monkeypatch):
     monkeypatch.setattr(solving, "LOOK_BACK", 500)
     with pytest.raises(SimulationError, match=r"steps ahead .*simulate it in parts"):
         simulate(FIG5, [1.3, 0.0, 0.0, -1.3], [0.0, end])
-
-
-def test_steps_are_counted_and_judged_by_their_pace():
-    count = StepCount(end=100.0)
-    count.steps = solving.MOST_STEPS
-    assert "more than 5,000,000 steps" in count.count(1.0)
-    slow = StepCount(end=1e9, seconds=2.0)
-    said = [slow.count(1e-3 * i) for i in range(1, solving.LOOK_BACK + 1)]
-    assert not any(said[:-1])
-    assert "steps ahead after 20,000 at 40 s after the start" in said[-1]
 
 
 def test_the_built_in_contact_follows_the_units_too():

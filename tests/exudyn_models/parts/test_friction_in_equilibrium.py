@@ -1,17 +1,19 @@
 """Static and eigenvalue analysis, and Newton's iteration, of a disc on springs over a master that turns."""
 
-from itertools import pairwise
-from typing import Any
-
-import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import coordinates, planar_body, rotor, spatial_body
+from free_bodies import (
+    coordinate,
+    coordinates,
+    items,
+    new_model,
+    planar_body,
+    rotor,
+    settings_of,
+    spatial_body,
+)
 
 from exudyn_models import add_ring_friction
-
-items: Any = exudyn.itemInterface
 
 MASS, STIFFNESS, DAMPING, OFFSET, SPEED = 2.0, 1.3, 0.1, 0.1, 1.5
 KINDS = {
@@ -33,7 +35,7 @@ def falling(radius):
 
 def supported_disc(kind, place, contact, spin=0.0, held=False):
     """A disc on springs to (X₀, 0, 0) at rest in ``place`` over a master disc; its other motions have springs too."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     master = rotor(mbs, 1e30, SPEED)
     if kind == "planar":
         disc = planar_body(mbs, MASS, 0.02, [*place, 0.0], [0.0, 0.0, spin])
@@ -44,13 +46,10 @@ def supported_disc(kind, place, contact, spin=0.0, held=False):
     reference = mbs.GetNodeParameter(disc, "referenceCoordinates")
     relaxed = [OFFSET] + [0.0] * (len(reference) - 1)
     springs = [(disc, i, relaxed[i] - reference[i]) for i in range(len(reference))]
-    for node, coordinate, offset in [*springs, (master, 0, 0.0)] if held else springs:
+    for node, axis, offset in [*springs, (master, 0, 0.0)] if held else springs:
         mbs.AddObject(
             items.ObjectConnectorCoordinateSpringDamper(
-                markerNumbers=[
-                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0)),
-                    mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)),
-                ],
+                markerNumbers=[coordinate(mbs, ground), coordinate(mbs, node, axis)],
                 stiffness=STIFFNESS,
                 damping=DAMPING if node == disc else 0.0,
                 offset=offset,
@@ -84,8 +83,7 @@ def test_static_solver_finds_the_self_centred_equilibrium(kind, factors, contact
     # All of a ring that turns with the master slips alike, as a pin does. A static run keeps the initial velocities.
     mbs, disc, _ = supported_disc(kind, [0.08, 0.03], contact | factors, spin, held=True)
     mbs.Assemble()
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
+    settings = settings_of(1.0, 1)
     options = settings.staticSolver
     options.verboseMode = 0
     options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, 1e-13
@@ -122,39 +120,3 @@ def test_eigenvalues_are_those_of_the_linearised_pin(kind, factors):
     # The others belong to the springs alone and to the master.
     errors = np.abs(np.asarray(found)[:, None] - expected).min(axis=0)
     np.testing.assert_allclose(errors, 0.0, atol=1e-9)
-
-
-@pytest.mark.parametrize("solver", ["GeneralizedAlpha", "TrapezoidalIndex2"])
-@pytest.mark.parametrize("kind", KINDS)
-def test_newtons_iteration_converges_quadratically_at_large_steps(kind, solver):
-    contact = {
-        "contact_radius": 0.05,
-        "friction_coefficient": coefficient,
-        "normal_load": lambda radius: 0.5 * falling(radius),
-    }
-    mbs, *_ = supported_disc(kind, [0.3, 0.0], contact)
-    mbs.Assemble()
-    iterates: dict[float, list[Any]] = {}
-
-    def record(mbs, t, *details):
-        iterates.setdefault(t, []).append(mbs.systemData.GetODE2Coordinates().copy())
-        return True
-
-    mbs.SetPreNewtonResidualUserFunction(record)
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = 10.0, 20, 0  # 16 steps in a period
-    options.adaptiveStep = False
-    options.newton.useModifiedNewton = False
-    options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-10, 1e-12
-    mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver))
-    assert mbs.sys["dynamicSolver"].it.newtonStepsCount <= 4 * 20
-    orders = []
-    for states in iterates.values():
-        steps = [float(np.abs(after - before).max()) for before, after in pairwise(states)]
-        steps = [step for step in steps if step > 1e-14]  # the others are rounding
-        if len(steps) >= 3:
-            orders.append(np.log(steps[-1] / steps[-2]) / np.log(steps[-2] / steps[-3]))
-    assert len(orders) > 5
-    assert min(orders) > 1.7, orders

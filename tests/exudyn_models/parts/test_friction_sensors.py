@@ -1,17 +1,12 @@
 """What a clutch does, as its sensors tell it: slip in rad/s, the share of its capacity, its mode."""
 
-from typing import Any
-
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import rotor
-from pairs_of_bodies import DISC, MASTER, body
+from free_bodies import drive, new_model, rotor, settings_of
+from pairs_of_bodies import bodies_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
-
-items: Any = exudyn.itemInterface
 
 INERTIA, RADIUS, LOAD, EPSILON = 0.02, 0.12, 100.0, 5e-4
 CAPACITY = 0.3 * LOAD * RADIUS
@@ -21,20 +16,14 @@ QUANTITIES = ("relative_spin", "capacity_share", "mode")
 
 def told(torque, end, spin=0.0, step=1e-3, **contact):
     """Return times and what the sensors of a brake tell of a rotor under a torque in N m, a function of time."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     disc = rotor(mbs, INERTIA, spin)
-    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=0))
-    load = items.LoadCoordinate(
-        markerNumber=marker, load=0.0, loadUserFunction=lambda mbs, t, load: torque(t)
-    )
-    mbs.AddLoad(load)
+    drive(mbs, disc, torque)
     brake = add_ring_friction(mbs, None, disc, **RING | contact)
     sensors = [brake.add_sensor(name) for name in QUANTITIES]
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
+    settings = settings_of(end, round(end / step))
     settings.solution.sensors.writePeriod = 0.0
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, round(end / step), 0
     options.absoluteTolerance, options.relativeTolerance = 1e-9, 0.0
     solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
     stored = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
@@ -104,27 +93,10 @@ def test_a_clutch_without_load_is_open():
 
 
 def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
-    mbs = exu.SystemContainer().AddSystem()
-    nodes = [body(mbs, kind, *data) for kind, data in (("planar", MASTER), ("Tait-Bryan", DISC))]
+    mbs, nodes = bodies_of(("planar", "Tait-Bryan"))
     friction = add_ring_friction(mbs, *nodes, **RING)
     spin, share, mode = (friction.add_sensor(name) for name in QUANTITIES)
     mbs.Assemble()
     assert mbs.GetSensorValues(spin) < -2.5
     assert mbs.GetSensorValues(share) == 1.0
     assert mbs.GetSensorValues(mode) == -1.0
-
-
-@pytest.mark.parametrize("quantity", ["capacity_share", "mode"])
-def test_a_load_may_not_depend_on_what_it_makes(quantity):
-    mbs = exu.SystemContainer().AddSystem()
-    sensors = []
-    brake = add_ring_friction(
-        mbs,
-        None,
-        rotor(mbs, INERTIA, 1.0),
-        **RING | {"normal_load": lambda time: 1.0 + float(mbs.GetSensorValues(sensors[0]))},
-    )
-    sensors.append(brake.add_sensor(quantity))
-    mbs.Assemble()
-    with pytest.raises(Exception, match=f"depends on the sensor '{quantity}' of the same contact"):
-        mbs.GetSensorValues(sensors[0])

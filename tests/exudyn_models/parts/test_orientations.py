@@ -1,19 +1,16 @@
 """Contacts of bodies however their axes lie: the same motion, or a refusal where it would be wrong."""
 
 from itertools import permutations, product
-from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import exudyn.utilities
 import numpy as np
 import pytest
-from free_bodies import rotor
+from free_bodies import items, new_model, rotor, settings_of
 
 from exudyn_models import add_native_friction, add_radial_support, add_ring_friction, solve_dynamic
 from exudyn_models.solver.linear_matrices import singular_mass
 
-items: Any = exudyn.itemInterface
 NODES = pytest.mark.parametrize(
     "node", [exu.NodeType.RotationEulerParameters, exu.NodeType.RotationRotationVector], ids=str
 )
@@ -42,7 +39,7 @@ def ball(mbs, node, axes, mass, inertia, *motion):
 
 def motion(node, master_axes, disc_axes, points):
     """Return positions, velocities and angular velocities of both bodies at 0.1 s, in the master's first axes."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     master = [0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0]
     disc = [0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0]
     bodies = [
@@ -53,11 +50,7 @@ def motion(node, master_axes, disc_axes, points):
         )
     ]
     add_ring_friction(mbs, *bodies, **POINTS | {"contact_points": points})
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    run = settings.timeIntegration
-    run.endTime, run.numberOfSteps, run.verboseMode = 0.1, 20, 0
-    run.newton.relativeTolerance = run.newton.absoluteTolerance = 1e-12
+    settings = settings_of(0.1, 20, newton=1e-12)
     solve_dynamic(mbs, settings, exu.DynamicSolverType.TrapezoidalIndex2)
     kinds = exu.OutputVariableType
     quantities = kinds.Position, kinds.Velocity, kinds.AngularVelocity
@@ -66,18 +59,27 @@ def motion(node, master_axes, disc_axes, points):
     )
 
 
+def sample_of_orientations():
+    """Every orientation of either body, also with the other turned back, and some of both."""
+    some = np.random.default_rng(1).integers(len(AXES), size=(24, 2))
+    still = np.eye(3)
+    for axes in AXES:
+        yield from ((axes, still), (still, axes), (axes, axes.T))
+    yield from ((AXES[i], AXES[j]) for i, j in some)
+
+
 @pytest.mark.parametrize("points", [None, 4])
 @NODES
 def test_all_orientations_of_both_bodies_give_the_same_motion(node, points):
     expected = motion(node, np.eye(3), np.eye(3), points)
-    found = [motion(node, *axes, points) for axes in product(AXES, AXES)]
-    np.testing.assert_allclose(found, np.broadcast_to(expected, (576, 18)), rtol=0.0, atol=1e-12)
+    for axes in sample_of_orientations():
+        np.testing.assert_allclose(motion(node, *axes, points), expected, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("inertia", [0.5, 0.0])
 def test_only_a_body_without_inertia_is_said_to_have_none_in_any_orientation(inertia):
     for axes in AXES:
-        mbs = exu.SystemContainer().AddSystem()
+        mbs = new_model()
         ball(mbs, exu.NodeType.RotationEulerParameters, axes, 1.0, inertia, *np.zeros((3, 3)))
         mbs.Assemble()
         assert singular_mass(mbs) == "" if inertia else "coordinate 6 of node 0" in singular_mass(mbs)
@@ -89,7 +91,7 @@ def test_only_a_body_without_inertia_is_said_to_have_none_in_any_orientation(ine
     [{"referencePosition": [0.1, 0.0, 0.0]}, {"referenceRotation": ACROSS}, {"referenceRotation": REVERSED}],
 )
 def test_a_rotor_or_a_ground_off_the_global_z_axis_and_a_mass_that_slides_are_refused(add, moved):
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     disc, node, slide = mbs.AddNode(items.NodeRigidBody2D()), *[mbs.AddNode(items.Node1D()) for _ in range(2)]
     mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, **moved))
     mbs.AddObject(items.ObjectMass1D(nodeNumber=slide, mass=1.0))
@@ -107,7 +109,7 @@ def test_a_rotor_or_a_ground_off_the_global_z_axis_and_a_mass_that_slides_are_re
 @pytest.mark.parametrize("is_master", [False, True])
 @NODES
 def test_a_body_that_spins_across_the_axis_of_the_contact_is_refused(node, is_master):
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     body = ball(mbs, node, np.eye(3), 1.0, 0.1, np.zeros(3), np.zeros(3), [50.0, 0.0, 1.0])
     bodies = (body, rotor(mbs, 1.0, 0.0)) if is_master else (None, body)
     with pytest.raises(ValueError, match=r"_node 0 spins about \[50.0, 0.0, 1.0\] at the start"):

@@ -1,23 +1,18 @@
 """Friction that heats a capacity, and a coefficient that fades with its temperature."""
 
-from typing import Any
-
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
+from free_bodies import items, new_model, rate_of, rotor, settings_of
 
 from exudyn_models import add_energy_balance, add_ring_friction, add_thermal_node, solve_dynamic
-
-items: Any = exudyn.itemInterface
 
 INERTIA, SPEED, LOAD, RADIUS, MU, FADE, CAPACITY = 0.5, 50.0, 800.0, 0.1, 0.3, 5e-3, 8.0
 
 
 def brake(coefficient, conductance=0.0):
-    mbs = exu.SystemContainer().AddSystem()
-    wheel = mbs.AddNode(items.Node1D(initialVelocities=[SPEED]))
-    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=wheel, inertia=INERTIA))
+    mbs = new_model()
+    wheel = rotor(mbs, INERTIA, SPEED)
     thermal = add_thermal_node(mbs, heat_capacity=CAPACITY, conductance=conductance, surroundings=20.0)
     friction = add_ring_friction(
         mbs,
@@ -37,15 +32,7 @@ def fading(temperature):
 
 
 def run(mbs, end=0.5, steps=500, solver=exu.DynamicSolverType.RK67, go_on=False):
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = end, steps, 0
-    solve_dynamic(mbs, settings, solver, updateInitialValues=go_on)
-
-
-def speed_of(mbs, wheel):
-    return float(mbs.GetNodeOutput(wheel, exu.OutputVariableType.Coordinates_t))
+    solve_dynamic(mbs, settings_of(end, steps), solver, updateInitialValues=go_on)
 
 
 def by_hand(t):
@@ -60,7 +47,7 @@ def test_a_brake_that_fades_slows_down_by_the_closed_form(solver, accuracy):
     mbs, wheel, friction, thermal = brake(fading)
     assert not friction.compiled
     run(mbs, solver=getattr(exu.DynamicSolverType, solver), steps=2000)
-    assert speed_of(mbs, wheel) == pytest.approx(by_hand(0.5), rel=accuracy)
+    assert rate_of(mbs, wheel) == pytest.approx(by_hand(0.5), rel=accuracy)
     warming = INERTIA * (SPEED**2 - by_hand(0.5) ** 2) / 2.0 / CAPACITY
     assert thermal.temperature(mbs) == pytest.approx(20.0 + warming, rel=accuracy)
 
@@ -90,7 +77,7 @@ def test_the_balance_of_energy_counts_the_capacity_in_place_of_friction():
 
 
 def test_what_is_hot_cools_down_by_the_exponential_function():
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
     thermal = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0, surroundings=20.0, start=80.0)
     run(mbs, end=1.0, steps=100)
@@ -102,54 +89,17 @@ def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
         lambda temperature, slip_speed: 0.0 * slip_speed + fading(temperature)
     )
     run(mbs, end=0.25, go_on=True)
-    assert speed_of(mbs, wheel) == pytest.approx(by_hand(0.25), rel=1e-10)
+    assert rate_of(mbs, wheel) == pytest.approx(by_hand(0.25), rel=1e-10)
     friction.change(friction_coefficient=lambda temperature: 0.0)
     run(mbs, end=0.25)
-    assert speed_of(mbs, wheel) == pytest.approx(by_hand(0.25), rel=1e-10)
+    assert rate_of(mbs, wheel) == pytest.approx(by_hand(0.25), rel=1e-10)
     assert thermal.temperature(mbs) > 30.0
 
 
 def test_another_source_heats_it_too():
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
     thermal = add_thermal_node(mbs, heat_capacity=8.0)
     thermal.heated_by(lambda mbs, t: 3.0 + t)
     run(mbs, end=1.0, steps=10)
     assert thermal.temperature(mbs) == pytest.approx(20.0 + 3.5 / 8.0, rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"heat_capacity": 0.0}, "heat_capacity = 0 J/K: it must be > 0"),
-        ({"conductance": -1.0}, "conductance = -1 W/K: it must be >= 0"),
-        ({"surroundings": "cold"}, "surroundings = 'cold': it must be a number"),
-        ({"start": float("nan")}, "start = nan: it must be finite"),
-    ],
-)
-def test_what_is_no_thermal_node_is_refused(wrong, message):
-    with pytest.raises(ValueError, match=message):
-        add_thermal_node(exu.SystemContainer().AddSystem(), **{"heat_capacity": 1.0} | wrong)
-
-
-def test_a_coefficient_that_needs_a_temperature_is_refused_without_a_thermal_node():
-    mbs = exu.SystemContainer().AddSystem()
-    wheel = mbs.AddNode(items.Node1D())
-    with pytest.raises(ValueError, match="friction_coefficient takes `temperature`"):
-        add_ring_friction(
-            mbs,
-            None,
-            wheel,
-            contact_radius=RADIUS,
-            friction_coefficient=fading,
-            normal_load=LOAD,
-            regularisation=1e-1,
-        )
-
-
-def test_a_contact_takes_no_number_for_a_thermal_node():
-    mbs = exu.SystemContainer().AddSystem()
-    wheel = mbs.AddNode(items.Node1D())
-    options = {"contact_radius": RADIUS, "friction_coefficient": MU, "normal_load": LOAD}
-    with pytest.raises(ValueError, match=r"thermal_node = 3: it must be what add_thermal_node returned"):
-        add_ring_friction(mbs, None, wheel, **options, regularisation=1e-2, thermal_node=3)

@@ -1,40 +1,29 @@
+"""Runs of solve_dynamic: they go on, and what goes wrong in them comes out with its time and its cause."""
+
 import math
-from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import pytest
-from free_bodies import coordinates, planar_body, rotor
+from free_bodies import coordinate, coordinates, items, new_model, planar_body, rotor, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
 from reference_model.trajectory import SimulationError
 
-items: Any = exudyn.itemInterface
 SOLVERS = exu.DynamicSolverType
 
 
 def settings(solver=SOLVERS.RK44, start=0.0, end=1.0, steps=100):
-    result = exu.SimulationSettings()
-    result.solution.file.write = False
-    options = result.timeIntegration
-    options.startTime, options.endTime, options.numberOfSteps, options.verboseMode = start, end, steps, 0
-    options.solverType, options.adaptiveStep = solver, False
+    result = settings_of(end, steps, start)
+    result.timeIntegration.solverType, result.timeIntegration.adaptiveStep = solver, False
     return result
 
 
 def clutch(load=2.0):
     """A disc on the axis of a rotor: its spin grows with R·μN/J = 0.05·load."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     master, disc = rotor(mbs, 1.0, 20.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    add_ring_friction(
-        mbs,
-        master,
-        disc,
-        contact_radius=0.1,
-        friction_coefficient=0.5,
-        normal_load=load,
-        regularisation=5e-3,
-    )
+    law = {"contact_radius": 0.1, "friction_coefficient": 0.5, "regularisation": 5e-3}
+    add_ring_friction(mbs, master, disc, normal_load=load, **law)
     return mbs, disc
 
 
@@ -43,10 +32,7 @@ def add_coordinate_force(mbs, node, force):
     ground = mbs.AddNode(items.NodePointGround())
     mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamper(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=number, coordinate=0))
-                for number in (ground, node)
-            ],
+            markerNumbers=[coordinate(mbs, ground), coordinate(mbs, node)],
             springForceUserFunction=lambda mbs, t, item, u, v, stiffness, damping, offset: force(t, u),
         )
     )
@@ -68,11 +54,8 @@ def test_a_run_that_is_sound_goes_through_and_can_go_on(solver, given):
 def test_an_explicit_solver_is_refused_where_the_model_has_constraints(solver):
     mbs, disc = clutch()
     ground = mbs.AddNode(items.NodePointGround())
-    for coordinate in (0, 1):
-        numbers = [
-            mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
-            for node, place in ((ground, 0), (disc, coordinate))
-        ]
+    for place in (0, 1):
+        numbers = [coordinate(mbs, ground), coordinate(mbs, disc, place)]
         mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=numbers))
     with pytest.raises(
         ValueError, match=f"solverType = {solver.name}: it is explicit and would ignore 2 constraint"
@@ -82,26 +65,20 @@ def test_an_explicit_solver_is_refused_where_the_model_has_constraints(solver):
     assert coordinates(mbs, disc)[1] == pytest.approx([0.0, 0.0, 0.1])
 
 
-def test_a_state_that_is_not_finite_ends_the_run_and_tells_when():
+def test_a_state_that_is_not_finite_or_a_step_that_does_not_converge_ends_the_run_and_tells_when():
     mbs, disc = clutch()
     add_coordinate_force(mbs, disc, lambda t, u: math.nan if t > 0.503 else u)
     mbs.Assemble()
     assert mbs.SolveDynamic(settings(SOLVERS.RK44, 0.25))  # Exudyn itself finds nothing in that
-    with pytest.raises(
-        SimulationError, match=r"RK44 failed 0\.255 s after the start: the state is not finite any more"
-    ):
+    told = r"RK44 failed 0\.255 s after the start: the state is not finite any more"
+    with pytest.raises(SimulationError, match=told):
         solve_dynamic(mbs, settings(SOLVERS.RK44, 0.25, 1.25, 200))
-
-
-def test_a_step_that_does_not_converge_is_told_with_its_time():
-    mbs, disc = clutch()
-    add_coordinate_force(mbs, disc, lambda t, u: math.nan if t > 0.503 else u)
     with pytest.raises(SimulationError, match=r"GeneralizedAlpha failed 0\.5 s after the start: .*Newton"):
         solve_dynamic(mbs, settings(), SOLVERS.GeneralizedAlpha)
 
 
 def test_a_body_without_mass_is_told():
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     node = rotor(mbs, 0.0, 1.0)
     add_coordinate_force(mbs, node, lambda t, u: 0.0)
     for solver in (SOLVERS.RK44, SOLVERS.GeneralizedAlpha):
@@ -114,22 +91,16 @@ def test_a_body_without_mass_is_told():
         solve_dynamic(mbs, settings(), SOLVERS.RK44)
 
 
-def test_an_error_of_a_load_arrives_with_its_text_and_its_cause():
-    mbs, _ = clutch(lambda time: 0.5 - time)
-    with pytest.raises(
-        exu.ExudynError, match=r"normal_load\(time = 0\.\d* s\) = -\S* N: it must be"
-    ) as raised:
-        solve_dynamic(mbs, settings())
-    assert isinstance(raised.value.__cause__, ValueError)
-
-
-def test_an_interrupt_within_a_user_function_comes_out_of_the_run():
+def test_an_error_of_a_load_arrives_with_its_text_and_its_cause_and_an_interrupt_as_itself():
     def interrupted(time):
         raise KeyboardInterrupt
 
-    mbs, _ = clutch(interrupted)
+    message = r"normal_load\(time = 0\.\d* s\) = -\S* N: it must be"
+    with pytest.raises(exu.ExudynError, match=message) as raised:
+        solve_dynamic(clutch(lambda time: 0.5 - time)[0], settings())
+    assert isinstance(raised.value.__cause__, ValueError)
     with pytest.raises(KeyboardInterrupt):
-        solve_dynamic(mbs, settings())
+        solve_dynamic(clutch(interrupted)[0], settings())
 
 
 @pytest.mark.parametrize("stops", [False, True])

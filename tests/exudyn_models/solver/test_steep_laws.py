@@ -1,16 +1,12 @@
 """Implicit steps across a peak of friction: a load below static friction comes to rest and is held."""
 
-from typing import Any
-
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import rotor
+from free_bodies import drive, new_model, rate_of, rotor, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
 
-items: Any = exudyn.itemInterface
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha], ids=str)
 
@@ -23,19 +19,16 @@ LAWS = {
 
 def speed_after_a_stop(solver, first, load=27.0, epsilon=1e-3, adaptive=True, **law):
     """Return the speed in rad/s of a rotor that friction stops, and a load (N m) would turn back, after 0.15 s."""
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     wheel = rotor(mbs, 0.5, first)
-    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=wheel, coordinate=0))
-    mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=-load))
+    drive(mbs, wheel, -load)
     add_ring_friction(
         mbs, None, wheel, contact_radius=LEVER, normal_load=NORMAL, regularisation=epsilon, **law
     )
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    run = settings.timeIntegration
-    run.endTime, run.numberOfSteps, run.adaptiveStep, run.verboseMode = 0.15, 150, adaptive, 0
+    settings = settings_of(0.15, 150)
+    settings.timeIntegration.adaptiveStep = adaptive
     solve_dynamic(mbs, settings, solver)
-    return float(mbs.GetNodeOutput(wheel, exu.OutputVariableType.Coordinates_t))
+    return rate_of(mbs, wheel)
 
 
 @IMPLICIT

@@ -1,0 +1,205 @@
+"""What no part can be is refused in a sentence: the parameter, its value, and what is allowed."""
+
+import math
+
+import exudyn as exu
+import numba
+import pytest
+from free_bodies import items, new_model, planar_body, rotor
+
+from exudyn_models import (
+    add_energy_balance,
+    add_native_friction,
+    add_radial_support,
+    add_ring_friction,
+    add_thermal_node,
+    spring_energy,
+)
+
+LAW = {"friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 1e-3}
+POINTS = LAW | {"contact_radius": 0.12, "contact_points": 3}
+RING = add_ring_friction, POINTS
+ANNULUS = add_ring_friction, LAW | {"inner_radius": 0.08, "outer_radius": 0.12}
+NATIVE = add_native_friction, POINTS | {"reach": 1.0}
+SUPPORT = add_radial_support, {"stiffness": 1.0}
+UNKNOWN = object()
+KINDS = "NodeRigidBody2D, NodeRigidBodyRotVecLG, NodeRigidBodyRxyz or NodeRigidBodyEP"
+BY_NAME = "a function must take any of time, radius, slip_speed, relative_spin by these names"
+
+WRONG = [
+    (RING, {"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
+    (RING, {"friction_coefficient": "steel"}, "= 'steel': it must be a number"),
+    (RING, {"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
+    (RING, {"normal_load": math.nan}, "normal_load = nan"),
+    (RING, {"contact_radius": -0.1}, "contact_radius = -0.1 m"),
+    (RING, {"contact_radius": None}, "contact_radius = None: it must be a number"),
+    (RING, {"contact_points": 0}, "contact_points = 0"),
+    (RING, {"contact_points": 2.5}, "contact_points = 2.5"),
+    (RING, {"regularisation": 0.0}, "regularisation = 0 m/s"),
+    (RING, {"held": 4}, "held = 4: it must be from 1 to the number of points, 3"),
+    (RING, {"held": 0}, "held = 0: it must be from 1 to the number of points, 3"),
+    (RING, {"held": 1, "contact_points": None}, "held = 1: it must be from 1"),
+    (RING, {"static_ratio": 0.9}, "static_ratio = 0.9: it must be >= 1, static over"),
+    (RING, {"static_ratio": math.nan}, "static_ratio = nan"),
+    (RING, {"plates": 0}, "plates = 0: it must be a whole number >= 1"),
+    (RING, {"plates": 1.5}, "plates = 1.5: it must be a whole number >= 1"),
+    (RING, {"friction_coefficient": [0.3, 0.2]}, "it must be two or more rows"),
+    (RING, {"friction_coefficient": [[0.0, 0.3]]}, "two or more rows"),
+    (RING, {"friction_coefficient": [[0.0, 0.3], [1.0]]}, "two or more rows"),
+    (RING, {"friction_coefficient": [[0.1, 0.3], [1.0, 0.2]]}, "the first at 0 m/s"),
+    (RING, {"friction_coefficient": [[0.0, 0.3], [1.0, -0.2]]}, "must be finite and >= 0"),
+    (RING, {"friction_coefficient": [[0.0, 0.3], [0.0, 0.2]]}, "must grow from row to row"),
+    (RING, {"normal_load": [[0.0, 0.3], [1.0, 0.2]]}, "normal_load = .*: it must be a number"),
+    (RING, {"normal_load": lambda t: 1.0}, f"normal_load takes `t`: {BY_NAME}"),
+    (RING, {"friction_coefficient": lambda time, speed: 1.0}, "takes `speed`"),
+    (RING, {"normal_load": lambda *arguments: 1.0}, r"takes `\*arguments`"),
+    (RING, {"normal_load": lambda **options: 1.0}, r"takes `\*\*options`"),
+    (RING, {"normal_load": lambda time, /: 1.0}, "takes `time`: .* by these names"),
+    (RING, {"friction_coefficient": math.sin}, "friction_coefficient takes `x`"),
+    (RING, {"normal_load": max}, "= <built-in function max>: its arguments can't be seen"),
+    (
+        RING,
+        {"normal_load": numba.njit(lambda time: UNKNOWN.a)},
+        "normal_load is a function for numba, which can't",
+    ),
+    (RING, {"friction_coefficient": lambda temperature: 0.1}, "takes `temperature`"),
+    (RING, {"thermal_node": 3}, "thermal_node = 3: it must be what add_thermal_node returned"),
+    (RING, {"pressure": "wear"}, "pressure = 'wear': it must be left out but for an annulus"),
+    (ANNULUS, {"inner_radius": -0.1}, "inner_radius = -0.1 m: it must be >= 0"),
+    (ANNULUS, {"inner_radius": None}, "inner_radius = None: it must be a number"),
+    (ANNULUS, {"outer_radius": 0.08}, "outer_radius = 0.08 m: it must be > inner_radius = 0.08 m"),
+    (ANNULUS, {"outer_radius": math.inf}, "outer_radius = inf"),
+    (ANNULUS, {"contact_radius": 0.1}, "= 0.1: it must be left out for an annulus"),
+    (ANNULUS, {"contact_points": 6}, "= 6: it must be left out for an annulus"),
+    (ANNULUS, {"regularisation": -1.0}, "regularisation = -1 m/s"),
+    (ANNULUS, {"pressure": "even"}, "pressure = 'even': it must be 'uniform', 'wear' or a func"),
+    (ANNULUS, {"pressure": lambda r: r - 0.1}, r"pressure\(0.08 m\) = -0.02: it must be >= 0"),
+    (ANNULUS, {"pressure": lambda r: 0.0}, "it must be a smooth function, > 0 somewhere"),
+    (ANNULUS, {"pressure": lambda r: 1.0 + (r < 0.1)}, "misses it by 0.2 of its largest share"),
+    (ANNULUS, {"pressure": lambda r: math.nan}, r"pressure\(0.08 m\) = nan"),
+    (NATIVE, {"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
+    (NATIVE, {"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
+    (NATIVE, {"contact_radius": -0.1}, "contact_radius = -0.1 m"),
+    (NATIVE, {"contact_points": 2.5}, "contact_points = 2.5"),
+    (NATIVE, {"contact_points": None}, "contact_points = None"),
+    (NATIVE, {"regularisation": 0.0}, "regularisation = 0 m/s"),
+    (NATIVE, {"reach": 0.0}, "reach = 0 m: it must be > 0"),
+    (NATIVE, {"reach": math.nan}, "reach = nan"),
+    (SUPPORT, {"stiffness": -1.0}, "stiffness = -1 N/m: it must be >= 0"),
+    (SUPPORT, {"damping": math.nan}, "damping = nan: it must be finite"),
+    (SUPPORT, {"hardening": -2.0}, "hardening = -2 N/m³: it must be >= 0"),
+    (SUPPORT, {"stop_gap": -0.1}, "stop_gap = -0.1 m: it must be >= 0"),
+    (SUPPORT, {"stop_stiffness": math.inf}, "stop_stiffness = inf: it must be finite"),
+    (SUPPORT, {"stop_stiffness": "stiff"}, "stop_stiffness = 'stiff': it must be a number"),
+    (SUPPORT, {"offset": 0.1}, "offset = 0.1: it must be two numbers, x and y in m"),
+    (SUPPORT, {"offset": (0.0,) * 3}, r"offset = \(0.0, 0.0, 0.0\): it must be two numbers"),
+    (SUPPORT, {"offset": (0.0, math.nan)}, r"offset\[1\] = nan: it must be finite"),
+]
+
+
+@pytest.mark.parametrize(("part", "change", "message"), WRONG)
+def test_arguments_of_a_part_between_two_bodies(part, change, message):
+    mbs, (add, right) = new_model(), part
+    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    with pytest.raises(ValueError, match=message):
+        add(mbs, master, disc, **right | change)
+    add(mbs, master, disc, **right)
+
+
+@pytest.mark.parametrize(
+    ("add", "wrong", "message"),
+    [
+        (add_thermal_node, {"heat_capacity": 0.0}, "heat_capacity = 0 J/K: it must be > 0"),
+        (add_thermal_node, {"conductance": -1.0}, "conductance = -1 W/K: it must be >= 0"),
+        (add_thermal_node, {"surroundings": "cold"}, "surroundings = 'cold': it must be a number"),
+        (add_thermal_node, {"start": math.nan}, "start = nan: it must be finite"),
+        (add_energy_balance, {"unit": 0.0}, r"unit = 0 J: it must be > 0"),
+        (add_energy_balance, {"unit": math.nan}, r"unit = nan: it must be finite"),
+        (
+            add_energy_balance,
+            {"gains": {"brake": 0}, "losses": {"brake": 0}},
+            r"'brake' is among gains and losses",
+        ),
+    ],
+)
+def test_arguments_of_a_part_of_the_model(add, wrong, message):
+    right = {"heat_capacity": 1.0} if add is add_thermal_node else {"gains": {}, "losses": {}}
+    with pytest.raises(ValueError, match=message):
+        add(new_model(), **right | wrong)
+
+
+PARTS = {
+    "friction": (*RING, "master_node", f"Node1D, {KINDS}$"),
+    "native friction": (*NATIVE, "master_node", "Node1D or NodeRigidBody2D"),
+    "support": (*SUPPORT, "base_node", f"Node1D, {KINDS}$"),
+}
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("is_disc", [False, True])
+def test_nodes(part, is_disc):
+    add, right, master_name, kinds = PARTS[part]
+    mbs = new_model()
+    nodes = [rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)]
+    name = "disc_node" if is_disc else master_name
+    mass = mbs.AddObject(items.ObjectMassPoint(nodeNumber=mbs.AddNode(items.NodePoint())))
+    refused = {
+        exu.NodeIndex(7): "7 is none of the 3 nodes of this model",
+        exu.NodeIndex(): "-1 is none of the 3 nodes of this model",
+        exu.ObjectIndex(7): "7 is none of the 3 objects of this model",
+        exu.MarkerIndex(1): "= 1 is of type MarkerIndex: it must be a NodeIndex",
+        1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
+        "disc": "= 'disc' is of type str: it must be a NodeIndex or the ObjectIndex of a body",
+        mass: "",
+    }
+    if not is_disc:
+        refused[exu.NodeIndex(2)] = f"2 is a NodePoint: it must be a {kinds}"
+    elif part != "native friction":
+        refused[None] = "= None is of type NoneType"
+    for index, message in refused.items():
+        pair = [nodes[0], index] if is_disc else [index, nodes[1]]
+        with pytest.raises(ValueError, match=f"^{name} {message}"):
+            add(mbs, *pair, **right)
+    for same in (nodes[1], exu.ObjectIndex(1)):
+        with pytest.raises(ValueError, match=f"disc_node 1 is the {master_name} too"):
+            add(mbs, nodes[1], same, **right)
+
+
+@pytest.mark.parametrize("what", ["body", "ground", "joint", "friction", "spring with a function"])
+def test_objects_without_potential_energy(what):
+    mbs = new_model()
+    node, ground = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3), mbs.AddObject(items.ObjectGround())
+    markers = [
+        mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=ground)),
+        mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)),
+    ]
+    springs = {"markerNumbers": markers, "stiffness": [1.0, 1.0, 0.0]}
+    joint = items.ObjectJointSpherical(markerNumbers=markers, constrainedAxes=[1, 1, 0])
+    pulling = items.CartesianSpringDamper(**springs, springForceUserFunction=lambda *arguments: [0.0] * 3)
+    wrong = {
+        "body": lambda: 0,
+        "ground": lambda: ground,
+        "joint": lambda: mbs.AddObject(joint),
+        "friction": lambda: add_ring_friction(mbs, None, node, **POINTS).item,
+        "spring with a function": lambda: mbs.AddObject(pulling),
+    }[what]()
+    right = mbs.AddObject(items.CartesianSpringDamper(**springs))
+    balance = {"gains": {}, "losses": {"none": lambda mbs, t: 0.0}}
+    for number, message in (
+        (wrong, rf"spring_energy of object {int(wrong)}: this \w+ tells no potential energy"),
+        (99, r"spring_energy\(99\): it must be the ObjectIndex of an object of this"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            add_energy_balance(mbs, **balance, stored=[spring_energy(right), spring_energy(number)])
+    add_energy_balance(mbs, **balance, stored=[spring_energy(right)])
+
+
+def test_names_of_sensors():
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    for part, known in (
+        (add_ring_friction(mbs, None, disc, **POINTS), "transmitted_moment, .*, heat"),
+        (add_radial_support(mbs, None, disc, stiffness=1.0), "deflection, force"),
+    ):
+        with pytest.raises(ValueError, match=f"quantity = 'warmth': it must be one of {known}"):
+            part.add_sensor("warmth")
