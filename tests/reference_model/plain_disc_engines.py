@@ -4,7 +4,6 @@ import cmath
 
 import numpy as np
 from plain_slip import slide
-from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
 from reference_model import plain
@@ -29,35 +28,6 @@ def slide_disc(disc, state, times, contact=None, **options):
     # Steps small enough that the kinks of points and the logarithm of the ring, where U = R|S|, do no harm.
     friction = plain.by_law(disc.friction_force, contact_of(disc, contact))
     return slide(disc, state, times, friction, **{"max_step": 0.01} | options).y.T
-
-
-def smoothed_disc(disc, state, times, epsilon):
-    """States of a disc on points under the law v/√(v²+ε²); slip is an unknown, so that creep keeps its digits."""
-    n, omega = disc.contact_points, disc.disc_speed
-    ring = disc.contact_radius * np.exp(2j * np.pi * np.arange(n) / n)
-
-    def rates(_, y):
-        z, u, w = complex(y[0], y[1]), complex(y[3], y[4]), y[5]
-        arms = ring * cmath.exp(1j * y[2])
-        slip = u + 1j * w * arms
-        friction = -disc.friction_force / n * slip / np.sqrt(abs(slip) ** 2 + epsilon**2)
-        v = u + 1j * omega * z
-        support, shaft = forces_of_support(disc, z, v, w + omega)
-        a = (support + friction.sum()) / disc.mass - 1j * omega * v
-        moment = shaft + (arms.conj() * friction).imag.sum()
-        return v.real, v.imag, w + omega, a.real, a.imag, moment / disc.polar_inertia
-
-    z = complex(state[0], state[1])
-    u = complex(state[3], state[4]) - 1j * omega * z
-    start = [*state[:3], u.real, u.imag, state[5] - omega]
-    run = solve_ivp(
-        rates, (times[0], times[-1]), start, method="Radau", t_eval=times, rtol=1e-7,
-        atol=[1e-11] * 3 + [1e-4 * epsilon] * 3,
-    )  # fmt: skip
-    assert run.success, run.message
-    z, u = run.y[0] + 1j * run.y[1], run.y[3] + 1j * run.y[4]
-    v = u + 1j * omega * z
-    return np.column_stack((run.y[:3].T, v.real, v.imag, run.y[5] + omega))
 
 
 def just_released_disc(disc, stick, delay):

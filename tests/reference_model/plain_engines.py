@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from plain_slip import slide
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from reference_model import plain
@@ -107,39 +106,6 @@ def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", 
     """Trajectory under any friction law, judged as one of ``pin``."""
     run = slide(pin, state, times, of_vector(friction), method=method, rtol=tolerance, atol=tolerance * 1e-2)
     return as_trajectory(pin, times, run.y.T, regularisation)
-
-
-def regularised(pin, slip_speed):
-    return lambda slip: -pin.friction_force * slip / np.sqrt(slip @ slip + slip_speed**2)
-
-
-def creep(pin, state, times, slip_speed):
-    """States under the smoothed law, with the slip as an unknown of its own, so that creep keeps its digits."""
-    omega = pin.disc_speed
-    turn = np.array([[0.0, -omega], [omega, 0.0]])
-
-    def slip_rates(_, unknowns):
-        position, slip = unknowns[:2], unknowns[2:]
-        velocity = slip + turn @ position
-        force = support_force(pin, [*position, *velocity]) + regularised(pin, slip_speed)(slip)
-        return np.concatenate((velocity, force / pin.mass - turn @ velocity))
-
-    def jacobian(_, unknowns):
-        slip = unknowns[2:]
-        smooth = math.hypot(*slip, slip_speed)
-        friction = pin.friction_force * (np.eye(2) / smooth - np.outer(slip, slip) / smooth**3)
-        support = pin.damping / pin.mass * np.eye(2) + turn
-        by_position = -pin.stiffness / pin.mass * np.eye(2) - support @ turn
-        return np.block([[turn, np.eye(2)], [by_position, -support - friction / pin.mass]])
-
-    start = np.concatenate((state[:2], slip_velocity(pin, state)))
-    run = solve_ivp(
-        slip_rates, (times[0], times[-1]), start,
-        method="Radau", t_eval=times, jac=jacobian, rtol=1e-8,
-        atol=[1e-11, 1e-11, 1e-5 * slip_speed, 1e-5 * slip_speed],
-    )  # fmt: skip
-    assert run.success, run.message
-    return np.column_stack((run.y[:2].T, run.y[2:].T + run.y[:2].T @ turn.T))
 
 
 def in_units(pin, mass, length, time):

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import LARGE
 from hypothesis import given
 from hypothesis import strategies as st
 from plain_engines import support_force
@@ -54,14 +53,6 @@ def test_force_is_that_of_spring_hardening_and_stop(pin, x, y):
 
 
 @given(supports, coordinates, coordinates)
-def test_force_pulls_towards_the_centre_and_not_about_it(pin, x, y):
-    z = complex(x, y)
-    force = Support.of(pin).force(z)
-    assert (force * (z - pin.offset).conjugate()).real <= 0.0
-    assert abs((force * (z - pin.offset).conjugate()).imag) < 1e-15 * (1.0 + abs(force))
-
-
-@given(supports, coordinates, coordinates)
 def test_force_is_the_gradient_of_the_energy_and_stiffness_that_of_the_force(pin, x, y):
     support, z, h = Support.of(pin), complex(x, y), 1e-5
     if abs(abs(z - pin.offset) - pin.stop_gap) < 2.0 * h:  # no derivative there
@@ -76,13 +67,6 @@ def test_force_is_the_gradient_of_the_energy_and_stiffness_that_of_the_force(pin
     columns = [(support.force(z + s) - support.force(z - s)) / (2.0 * h) for s in steps]
     expected = -np.array([[column.real, column.imag] for column in columns]).T
     assert support.stiffness_matrix(z) == pytest.approx(expected, abs=h**2 * 2500.0 + 1e-9)
-
-
-def test_on_the_axis_of_the_springs_stiffness_is_that_of_the_spring_and_of_a_stop_without_a_gap():
-    for pin in SUPPORTS:
-        stop = pin.stop_stiffness if pin.stop_gap == 0.0 else 0.0
-        expected = (pin.stiffness + stop) * np.eye(2)
-        assert Support.of(pin).stiffness_matrix(complex(pin.offset)) == pytest.approx(expected)
 
 
 def test_where_the_stop_begins_there_is_no_stiffness():
@@ -242,10 +226,3 @@ def test_every_function_of_a_system_is_known_to_take_any_support_or_to_refuse_it
     assert found == GENERAL | REFUSING | CHECKED_ELSEWHERE
     # Both modules have characteristic_coefficients, and a plane of boundaries is a class.
     assert len(OF_A_PIN) + len(OF_A_DISC) == len(REFUSING) + 2
-
-
-def test_disc_that_does_not_spin_is_a_pin_with_the_same_support():
-    disc = replace(LARGE, hardening=3.0, stop_gap=0.2, stop_stiffness=4.0)
-    pin = disc_formulas.pin_of(disc)
-    assert Support.of(pin) == Support.of(disc)
-    assert (pin.mass, pin.friction_force) == (disc.mass, disc.friction_force)

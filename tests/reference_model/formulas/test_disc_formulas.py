@@ -94,23 +94,6 @@ DISCS = [
 
 @pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
 @pytest.mark.parametrize("disc", DISCS)
-def test_corrected_26_holds_line_by_line_at_the_steady_state_of_23(disc, share):
-    disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
-    (equilibrium,) = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
-    distance, alpha, theta = angles_of(disc, equilibrium)
-    assert formulas.squared_distance(disc, alpha) == pytest.approx(distance**2, rel=1e-12)
-    difference = 1.0 - disc.shaft_speed / disc.disc_speed
-    assert formulas.speed_difference_at(disc, distance, alpha) == pytest.approx(difference, rel=1e-12)
-    # An arccos near 1 has the rounding of 1 over its own size.
-    assert formulas.polar_angle(disc, distance, alpha) == pytest.approx(
-        theta, abs=1e-15 / abs(math.sin(theta))
-    )
-    place = formulas.place_of(disc, distance, alpha, theta)
-    assert place == pytest.approx((equilibrium.x, equilibrium.y, equilibrium.spin), rel=1e-13, abs=1e-15)
-
-
-@pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
-@pytest.mark.parametrize("disc", DISCS)
 def test_places_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, share):
     disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
     found = formulas.places_by_26(disc)
@@ -174,17 +157,6 @@ def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
     assert (nearest.radius, nearest.spin) == pytest.approx((radius, spin), rel=1e-12)
 
 
-@pytest.mark.parametrize("alpha", [0.3, 1.2])
-def test_whirl_at_a_ratio_balances_the_forces_of_23(alpha):
-    load, radius, spin = formulas.whirl_at(FIG11, alpha, ThreeTermRing(0.12))
-    slip_y = (1.0 - 1.5) * radius  # k = 1, centre on the x axis
-    force_x, force_y, moment = eq_23(replace(FIG11, friction_force=load))(0.0, slip_y, 1.5 - spin, 0.0)
-    assert force_x == 0.0
-    assert force_y == pytest.approx(0.5 * radius, rel=ROUNDING)
-    assert moment == pytest.approx(0.015 * (spin - 1.25), rel=ROUNDING)
-    assert math.tan(alpha) == pytest.approx(0.12 * (1.5 - spin) / abs(slip_y), rel=ROUNDING)
-
-
 def test_whirl_of_hardly_any_size_takes_the_onset_load():
     for law in (Ring, ThreeTermRing):
         load = formulas.whirl_at(FIG11, math.pi / 2.0 - 1e-7, law(0.12)).load
@@ -233,14 +205,6 @@ def test_friction_holds_the_forces_inside_of_its_limit_surface(torque_share):
     )
     assert held.friction_force == pytest.approx(bound.fun, rel=1e-6)
     assert replace(held, friction_force=0.4) == formulas.pin_of(disc)
-
-
-def test_sticking_radius_of_a_disc_is_that_of_a_pin_with_less_friction():
-    disc = replace(FIG8, friction_force=0.3)
-    free = replace(disc, shaft_speed=0.8)
-    assert formulas.held_pin(free) == formulas.pin_of(free)
-    radii = [pin_formulas.sticking_radius(formulas.held_pin(d)) for d in (free, disc)]
-    assert radii[1] < radii[0]
 
 
 def test_disc_whose_shaft_asks_for_too_large_a_moment_never_sticks():

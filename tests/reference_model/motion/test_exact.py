@@ -8,7 +8,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from plain_engines import (
-    creep,
     error_bound,
     growth,
     just_released,
@@ -24,7 +23,6 @@ from reference_model import PinOnDisc, SimulationError, simulate
 from reference_model.formulas import pin as formulas
 from reference_model.motion import stepper as stepping
 from reference_model.motion.exact import simulate_with
-from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.motion.stepper import Thresholds
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -68,29 +66,6 @@ def assert_phases_fit(trajectory):
 # ---------------------------------------------------------------- slip
 
 
-@pytest.mark.parametrize("start", [[0.9, 0.0, 0.0, 0.9], [0.7, 0.1, 0.0, 0.5], [1.2, 0.0, 0.0, 1.0]])
-def test_slip_agrees_with_the_polar_form_10_after_a_hundred_seconds(start):
-    times = np.linspace(0.0, 100.0, 101)
-    polar = simulate_polar_form(FIG_5, np.array(start), times)
-    trajectory = simulate(FIG_5, start, times)
-    assert kinds(trajectory) == ["slip"]
-    assert np.abs(trajectory.at_end - polar[-1]).max() < 1e-9
-    tight = simulate(FIG_5, start, times, tolerance=1e-13)
-    # Both at their tightest: 3e-14 a step in a thousand steps, of which the phase forgets nothing.
-    assert np.abs(tight.states - polar).max() < 1e-11
-
-
-@pytest.mark.parametrize(("method", "tolerance"), [("DOP853", 3e-14), ("Radau", 1e-11), ("LSODA", 1e-13)])
-@pytest.mark.parametrize("pin", [FIG_5, HEAVY, replace(HEAVY, disc_speed=-2.2, offset=-0.15)])
-def test_slip_agrees_with_eq_1_under_other_integrators(pin, method, tolerance):
-    turn = math.copysign(1.0, pin.disc_speed)
-    start = np.array([0.9, 0.1, 0.0, 0.9 * turn])
-    times = np.linspace(0.0, 3.0, 7)
-    plain = slide(pin, start, times, method=method, rtol=tolerance, atol=tolerance).y.T
-    trajectory = simulate(pin, start, times, tolerance=1e-13)
-    assert np.abs(trajectory.states - plain).max() < error_bound(pin, 3.0, 10.0 * tolerance)
-
-
 @pytest.mark.parametrize("offset", [0.0, 0.1])
 @pytest.mark.parametrize("damping", [0.0, 0.3, 2.0 * math.sqrt(6.0), 9.0])  # the third is critical
 @pytest.mark.parametrize("disc_speed", [0.0, 1.5])
@@ -115,12 +90,6 @@ def test_without_friction_the_pin_is_a_damped_oscillator(disc_speed, damping, of
     # Errors of the oscillator do not grow: 1e-9 of a size below 1, in each of 20·1.5 units of time at most.
     assert np.abs(trajectory.states - expected).max() < 1e-9 * 30
     assert kinds(trajectory) == ["slip"]
-
-
-def test_without_any_force_the_pin_goes_straight_on():
-    pin = PinOnDisc(mass=3.0, stiffness=0.0, damping=0.0, friction_force=0.0, disc_speed=1.0)
-    trajectory = simulate(pin, [1.0, 2.0, 0.5, -0.25], [0.0, 8.0])
-    assert trajectory.at_end == pytest.approx([5.0, 0.0, 0.5, -0.25], abs=1e-9 * 8)
 
 
 # ---------------------------------------------------------------- a disc at rest
@@ -170,31 +139,6 @@ def test_pin_that_turns_exactly_where_friction_just_holds_it_stops_there():
     assert trajectory.at_end == pytest.approx([-0.25, 0.0, 0.0, 0.0], abs=1e-8)
     assert kinds(trajectory) == ["slip", "stick"]
     assert trajectory.phases[1].start == pytest.approx(math.pi, abs=1e-8)
-
-
-@pytest.mark.parametrize(("mass", "friction_force", "velocity"), [(2.0, 0.5, 3 + 4j), (1e-3, 2e-5, -1e-4j)])
-def test_free_pin_stops_after_its_momentum_over_friction(mass, friction_force, velocity):
-    pin = PinOnDisc(mass=mass, stiffness=0.0, damping=0.0, friction_force=friction_force, disc_speed=0.0)
-    stop = abs(velocity) * mass / friction_force
-    place = 1.0 - 0.5j + velocity * stop / 2.0
-    times = np.linspace(3.0, 3.0 + 2.0 * stop, 41)
-    trajectory = simulate(pin, [1.0, -0.5, velocity.real, velocity.imag], times)
-    assert kinds(trajectory) == ["slip", "stick"]
-    assert trajectory.phases[1].start - 3.0 == pytest.approx(stop, rel=1e-9)
-    assert trajectory.at_end == pytest.approx([place.real, place.imag, 0.0, 0.0], abs=1e-9 * abs(place))
-    speed = abs(velocity) * np.clip(1.0 - (times - 3.0) / stop, 0.0, None)
-    found = np.hypot(*trajectory.states[:, 2:].T)
-    assert found == pytest.approx(speed, abs=1e-9 * abs(velocity))
-
-
-def test_pin_slides_to_rest_on_a_turning_disc_without_support_like_a_coin_in_the_frame_at_rest():
-    # No springs, no dampers, ω = 0 seen from nowhere else: friction alone, against eq. 1 integrated plainly.
-    pin = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=0.3, disc_speed=0.8)
-    start, times = np.array([0.5, 0.0, 0.2, -0.3]), np.linspace(0.0, 1.0, 11)
-    trajectory = simulate(pin, start, times, tolerance=1e-12)
-    assert kinds(trajectory) == ["slip"]
-    plain = slide(pin, start, times).y.T
-    assert np.abs(trajectory.states - plain).max() < error_bound(pin, 1.0, 1e-12)
 
 
 # ---------------------------------------------------------------- stick
@@ -261,11 +205,6 @@ def test_phases_of_fig_5_follow_each_other_and_friction_holds_in_each_stick_phas
         assert forces[-1] == pytest.approx(pin.friction_force, rel=1e-11)
 
 
-def test_stuck_pin_at_a_single_time_sticks_and_a_sliding_one_slips():
-    assert kinds(simulate(FIG_6, stuck_state(FIG_6, 0.01, 0.0), [2.0])) == ["stick"]
-    assert kinds(simulate(FIG_6, TO_WHIRL, [2.0])) == ["slip"]
-
-
 def test_start_at_the_very_moment_of_release_slips():
     pin, radius, angle = FIG_6, 1.1 * formulas.sticking_radius(FIG_6), 4.0
     held = stuck_state(pin, radius * math.cos(angle), radius * math.sin(angle))
@@ -320,17 +259,6 @@ def test_holding_force_that_just_exceeds_its_limit_lets_go_for_a_moment_in_each_
     assert event_times(trajectory) == pytest.approx(event_times(tight), abs=1e-8)
 
 
-@pytest.mark.parametrize("excess", [1e-6, 1e-3, 1e-2])
-def test_motion_through_a_momentary_release_is_the_limit_of_smoothed_friction(excess):
-    pin, start, _ = grazing_pin(excess)
-    times = np.linspace(0.0, 3.0, 16)
-    exact = simulate(pin, start, times)
-    errors = [np.abs(exact.states - creep(pin, start, times, epsilon)).max() for epsilon in (4e-8, 1e-8)]
-    # The smoothed law creeps in proportion to ε, by ε·pull/√(μN² − pull²), but for logarithms where pull = μN.
-    assert errors[0] < 4e-6
-    assert errors[1] < 0.35 * errors[0]
-
-
 # ---------------------------------------------------------------- slip that turns
 
 
@@ -382,15 +310,6 @@ def test_slip_on_a_turning_disc_reverses_head_on_and_goes_on_along_the_pull(pin,
     )
 
 
-def test_pin_swings_through_the_axis_where_nothing_is_special_but_the_coordinates():
-    start = np.array([0.3, 0.0, -0.5, 0.0])
-    pin = replace(FIG_5, friction_force=0.05, disc_speed=0.4)
-    times = np.linspace(0.0, 1.5, 16)
-    trajectory = simulate(pin, start, times, tolerance=1e-12)
-    assert trajectory.states[:, 0].min() < 0.0 < trajectory.states[:, 0].max()
-    assert np.abs(trajectory.states - slide(pin, start, times).y.T).max() < error_bound(pin, 1.5, 1e-12)
-
-
 # ---------------------------------------------------------------- Fig. 5: event times, thresholds, cost
 
 FIG_5_TIMES = np.linspace(0.0, 400.0, 4001)
@@ -401,16 +320,6 @@ def fig_5(request):
     """Start and trajectories of one of the runs of Fig. 5 at the default tolerance and at 1e-13."""
     start = request.param
     return start, simulate(FIG_5, start, FIG_5_TIMES), simulate(FIG_5, start, FIG_5_TIMES, tolerance=1e-13)
-
-
-def test_fig_5_costs_few_evaluations_and_ends_within_1e_8_of_the_tight_run(fig_5):
-    start, trajectory, tight = fig_5
-    most = {"to_equilibrium": 10_000, "to_whirl": 30_000}
-    assert (
-        trajectory.solution.evaluations <= most["to_equilibrium" if start is TO_EQUILIBRIUM else "to_whirl"]
-    )
-    assert np.abs(trajectory.at_end - tight.at_end).max() < 1e-8
-    assert np.abs(trajectory.states - tight.states).max() < 1e-8
 
 
 def test_fig_5_ends_in_the_equilibrium_from_one_start_and_whirls_from_the_other(fig_5):
@@ -433,14 +342,6 @@ def test_stick_and_release_times_do_not_depend_on_any_threshold(fig_5, threshold
     assert np.abs(event_times(changed) - event_times(trajectory)).max() < 1e-8
     assert np.abs(event_times(changed) - event_times(tight)).max() < 1e-8
     assert np.abs(changed.at_end - trajectory.at_end).max() < 1e-8
-
-
-def test_thresholds_and_tolerance_do_have_an_effect_below_that(fig_5):
-    # Were the events the same to all digits, the tests above would not have reached the thresholds.
-    start, trajectory, tight = fig_5
-    halved = simulate_with(replace(Thresholds(), slow_slip=0.25), FIG_5, start, FIG_5_TIMES)
-    assert np.abs(event_times(halved) - event_times(trajectory)).max() > 1e-14
-    assert np.abs(event_times(tight) - event_times(trajectory)).max() > 1e-14
 
 
 @pytest.mark.parametrize("slipping", [1e-3, 0.03, 1.0])
@@ -496,18 +397,6 @@ def test_motion_does_not_depend_on_the_times_that_are_asked_for(start):
     assert np.abs(some.states - tight.states).max() < 1e-8  # between the steps as good as at their ends
 
 
-def test_position_of_every_sample_belongs_to_the_velocities_before():
-    # Simpson's rule is wrong by h⁵ where slip is smooth, and by a jump of 2μN/m at most in one step where it ends.
-    times = np.linspace(0.0, 12.0, 12_001)
-    trajectory = simulate(FIG_5, TO_WHIRL, times)
-    x, v = trajectory.states[:, :2], trajectory.states[:, 2:]
-    h = times[1]
-    moved = h / 3.0 * (v[:-2:2] + 4.0 * v[1:-1:2] + v[2::2])
-    errors = np.abs(x[2::2] - x[:-2:2] - moved).max(axis=1)
-    assert errors.max() < h**2 * 2.0 * FIG_5.friction_force
-    assert np.sum(errors > 1e-11) <= len(trajectory.phases) - 1
-
-
 @pytest.mark.parametrize("shift", [-7.25, 1.0, 1e4])
 def test_shifted_times_give_the_same_motion(shift):
     times = np.linspace(0.0, 20.0, 81)
@@ -519,27 +408,12 @@ def test_shifted_times_give_the_same_motion(shift):
     assert later.phases[0].start == shift
 
 
-def test_motion_continued_from_its_own_end_is_the_motion_in_one_piece():
-    for split in (2.0, 5.0, 11.0, 11.2):  # in slip, in stick, in slow slip, in stick
-        whole = simulate(FIG_5, TO_WHIRL, [0.0, split, 20.0], tolerance=1e-12)
-        rest = simulate(FIG_5, whole.states[1], [split, 20.0], tolerance=1e-12)
-        assert np.abs(rest.at_end - whole.at_end).max() < error_bound(FIG_5, 20.0 - split, 1e-12)
-
-
 # ---------------------------------------------------------------- giving up
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_places_keep_to_the_tolerance_on_a_disc_that_turns_much_faster_than_the_springs():
     # An error of velocity, a share of ω·L, would be one of place 57 times as large as a share of L.
-    pin = PinOnDisc(
-        mass=1.0,
-        stiffness=1.0,
-        damping=0.11150754,
-        friction_force=0.06107226,
-        disc_speed=-57.613787,
-        offset=0.0,
-    )
+    pin = replace(FIG_5, damping=0.11150754, friction_force=0.06107226, disc_speed=-57.613787, offset=0.0)
     start, times = [39.56501, 51.794526, -31.507546, 74.691881], np.linspace(0.0, 100.0, 101)
     usual, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
     assert np.abs(usual.states - tight.states)[:, :2].max() < 1e-9 * tight.radius.max()
@@ -548,7 +422,8 @@ def test_places_keep_to_the_tolerance_on_a_disc_that_turns_much_faster_than_the_
 def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
     pin = replace(FIG_5)
     object.__setattr__(pin, "mass", 1e-300)  # which is refused where a pin is made
-    with pytest.raises(SimulationError, match="not finite"):
+    overflows = pytest.warns(RuntimeWarning, match="overflow|invalid value")
+    with overflows, pytest.raises(SimulationError, match="not finite"):
         simulate(pin, [1.0, 0.0, 0.0, 0.0], [0.0, 1.0])
 
 

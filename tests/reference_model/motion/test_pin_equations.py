@@ -31,12 +31,6 @@ def test_slip_acceleration_is_that_of_eq_1_seen_from_the_disc(state, pin):
     assert motion.pull(z, w) - motion.friction * w / abs(w) == pytest.approx(seen_from_disc, abs=1e-13)
 
 
-def test_constants_are_those_of_the_pin_per_mass():
-    motion = SlipMotion.of(HEAVY)
-    assert (motion.damping, motion.friction, motion.disc_speed) == (0.7 / 2.3, 0.4 / 2.3, -2.2)
-    assert (motion.support.stiffness, motion.support.offset) == (pytest.approx(5.1 / 2.3, rel=4e-16), -0.15)
-
-
 @pytest.mark.parametrize("pin", [replace(FIG_5, offset=0.0), replace(HEAVY, offset=0.0)])
 def test_polar_form_stays_on_the_whirl_of_11(pin):
     radius, k = whirl_radius(pin), math.copysign(pin.natural_frequency, pin.disc_speed)

@@ -104,7 +104,3 @@ def test_a_curve_that_winds_without_end_is_given_up():
 
     with pytest.raises(ContinuationError, match="the curve"):
         dividing_curves(spiral, LOW, HIGH, 8)
-
-
-def test_where_the_sign_is_the_same_everywhere_there_is_no_curve():
-    assert dividing_curves(lambda p: 1.0, LOW, HIGH, 4) == ()

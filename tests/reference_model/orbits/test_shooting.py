@@ -70,23 +70,6 @@ def test_whirl_with_an_offset_is_periodic_and_has_a_multiplier_of_one(pin):
     assert orbit.system == pin
 
 
-@pytest.mark.parametrize("pin", [FIG_5, FIG_6])
-def test_mean_of_the_orbit_is_that_of_a_long_simulation_over_whole_periods(pin):
-    orbit = whirl_orbit(pin)
-    times = np.linspace(0.0, 5.0 * orbit.period, 5 * 64 + 1)
-    mean = simulate(pin, orbit.state, times, tolerance=1e-12).states[:-1, :2].mean(axis=0)
-    # 64 samples a period leave the harmonics from the 64th on.
-    assert orbit.mean == pytest.approx(mean, abs=1e-10)
-
-
-def test_whirl_on_a_disc_that_turns_the_other_way_is_mirrored():
-    orbit, mirrored = whirl_orbit(FIG_6), whirl_orbit(replace(FIG_6, disc_speed=-1.2))
-    mirror = np.array([1.0, -1.0, 1.0, -1.0])
-    assert mirrored.state == pytest.approx(mirror * orbit.state, abs=ROUNDING * 10)
-    assert mirrored.period == pytest.approx(orbit.period, rel=ROUNDING)
-    assert mirrored.mean == pytest.approx(mirror[:2] * orbit.mean, abs=ROUNDING * 10)
-
-
 @pytest.mark.parametrize("disc_speed", [1.3, 1.5, 2.0, 3.0, -1.5])
 def test_error_of_the_first_order_mean_falls_like_the_third_power_of_the_offset(disc_speed):
     pin = replace(FIG_6, disc_speed=disc_speed)
@@ -133,25 +116,6 @@ def test_two_whirls_exist_just_above_the_fold_and_none_just_below(fold):
     for orbit in (fold, outer, inner):
         with pytest.raises(RuntimeError, match=r"no whirl near the guess for friction_force"):
             whirl_orbit(below, guess=orbit, tolerance=1e-9)
-
-
-def test_load_near_the_fold_grows_with_the_square_of_the_distance_from_it(fold):
-    x, load = float(fold.state[0]), fold.system.friction_force
-    more = [
-        whirl_orbit(FIG_6, guess=fold, at_crossing=x + step, samples=2).system.friction_force - load
-        for step in (-0.01, 0.01, -0.02, 0.02)
-    ]
-    # Even part: fourth order is left, smaller by about (0.02/x)².
-    assert (more[2] + more[3]) / (more[0] + more[1]) == pytest.approx(4.0, rel=0.02)
-
-
-def test_pin_leaves_the_neighbourhood_of_the_last_whirl_below_the_fold_and_stays_above(fold):
-    radius = {}
-    for factor in (0.97, 1.03):
-        pin = replace(FIG_6, friction_force=factor * fold.system.friction_force)
-        start = [*fold.state[:2], *fold.state[2:]] if factor < 1.0 else [0.75, 0.0, 0.0, 0.72]
-        radius[factor] = simulate(pin, start, np.linspace(0.0, 300.0, 301)).radius[-50:].max()
-    assert radius[0.97] < 0.1 < 0.6 < radius[1.03]
 
 
 def test_branch_beyond_the_fold_leads_to_orbits_with_stick_phases(fold):
@@ -208,11 +172,6 @@ def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame
     # Differences over 3e-4 of the size of a law that is steep near U = W.
     assert found == pytest.approx(multipliers, abs=1e-8)
     assert orbit.stable == whirl.stable
-
-
-def test_the_approximation_23_makes_a_stable_whirl_of_one_that_is_not():
-    ring, approximate = whirls(FIG11)[0], whirls(FIG11, ThreeTermRing(0.12))[0]
-    assert (ring.stable, approximate.stable) == (False, True)
 
 
 def test_whirl_of_a_disc_with_an_offset_is_periodic_but_for_its_angle():
@@ -305,15 +264,6 @@ def test_disc_that_no_shaft_brakes_whirls_like_the_pin():
     assert sorted(others, key=abs) == pytest.approx(sorted(pins.multipliers, key=abs), abs=1e-6)
 
 
-def test_last_whirl_of_a_disc_that_no_shaft_brakes_is_that_of_the_pin(fold):
-    last = last_whirl(
-        unbraked(FIG_6),
-        guess=whirl_orbit(unbraked(replace(FIG_6, friction_force=0.08)), tolerance=1e-10, samples=2),
-        tolerance=1e-10,
-    )
-    assert last.system.friction_force == pytest.approx(fold.system.friction_force, abs=2e-10)
-
-
 # ---------------------------------------------------------------- the modulated cycle
 
 
@@ -366,15 +316,6 @@ def test_modulated_cycle_has_two_multipliers_of_one_and_is_stable(cycle):
     assert cycle.carrier == pytest.approx(FIG11.natural_frequency, rel=0.005)
 
 
-def test_modulated_cycle_in_a_mirror_turns_the_other_way(cycle):
-    mirror = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])  # y = 0 and vx = 0
-    guess = replace(cycle, state=mirror * cycle.state, turn=-cycle.turn)
-    mirrored = modulated_cycle(MIRRORED, guess, tolerance=CYCLE, samples=64)
-    assert mirrored.state == pytest.approx(mirror * cycle.state, abs=1e-10)
-    assert mirrored.turn == pytest.approx(-cycle.turn, rel=1e-10)
-    assert mirrored.carrier < 0.0
-
-
 def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle):
     load = 0.02247
     held = modulated_cycle(replace(FIG11, friction_force=load), cycle, tolerance=1e-7, samples=64)
@@ -385,18 +326,6 @@ def test_modulated_cycle_of_another_load_is_found_at_a_given_crossing_too(cycle)
 
 
 # ---------------------------------------------------------------- refusals
-
-
-def test_no_orbit_of_a_disc_on_single_points_is_sought(cycle):
-    six = replace(FIG11, contact_points=6)
-    for seek in (whirl_orbit, functools.partial(modulated_cycle, guess=cycle)):
-        with pytest.raises(ValueError, match=r"contact_points = 6: periodic orbits"):
-            seek(six)
-
-
-def test_no_modulated_cycle_is_sought_with_an_offset(cycle):
-    with pytest.raises(ValueError, match=r"offset = 0\.01 m: a modulated cycle"):
-        modulated_cycle(replace(FIG11, offset=0.01), cycle)
 
 
 @pytest.mark.parametrize("until", [1.0, 200.0])
@@ -430,29 +359,10 @@ def test_what_shooting_cannot_start_from_is_refused(change, message):
         whirl_orbit(FIG11, **change)
 
 
-def test_the_orbit_of_a_pin_is_no_guess_for_a_disc(cycle):
-    pin = replace(FIG_6, offset=0.0)
-    with pytest.raises(ValueError, match=r"shape \(4,\): DiscOnDisc takes 6 numbers"):
-        whirl_orbit(FIG11, guess=whirls(pin)[0])
-    with pytest.raises(ValueError, match="guess = None: it must be of Orbit or Trajectory"):
-        modulated_cycle(FIG11, None)
-
-
-def test_no_whirl_of_a_disc_is_sought_below_its_least_load():
-    with pytest.raises(ValueError, match=r"friction_force = 0\.018 N: a whirl exists only above 0\.020"):
-        whirl_orbit(replace(FIG11, friction_force=0.018))
-
-
 @pytest.mark.parametrize("load", [0.05, 0.078])
 def test_shooting_says_where_it_stopped_if_there_is_no_orbit(load):
     with pytest.raises(RuntimeError, match=r"no whirl near the guess .*disc_speed = 1\.2 rad/s.*nearby load"):
         whirl_orbit(replace(FIG_6, friction_force=load), tolerance=1e-9)
-
-
-@pytest.mark.parametrize("disc_speed", [1.0, 0.9, -0.5])
-def test_no_whirl_is_sought_below_the_natural_frequency(disc_speed):
-    with pytest.raises(ValueError, match=rf"disc_speed = {disc_speed:g} rad/s: the whirl exists only"):
-        whirl_orbit(replace(FIG_6, disc_speed=disc_speed))
 
 
 def test_orbits_of_another_engine_are_found_with_its_simulate():

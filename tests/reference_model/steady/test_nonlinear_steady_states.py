@@ -9,21 +9,17 @@ import pytest
 from disc_equations import mirrored, points_on_ring, rates, rates_in_turning_axes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from plain_engines import coulomb, in_units, support_force
+from plain_engines import coulomb, support_force
 from plain_engines import rates as rates_of_pin
 from scipy.optimize import brentq
 from test_stability import assert_same_eigenvalues, derivative
-from test_systems import refusal
 
 from compare.claims.paper_parameters import FIG8, FIG11
 from reference_model import (
     PinOnDisc,
-    modulated_cycle,
     onset_load,
     self_centred_equilibria,
     simulate,
-    smallest_load_with_whirl,
-    whirl_branch,
     whirl_orbit,
     whirls,
     why_no_equilibrium,
@@ -32,7 +28,7 @@ from reference_model import (
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas import pin as formulas
-from reference_model.formulas.disc import held_pin, pin_of, polar_angle, semicircle_residual
+from reference_model.formulas.disc import pin_of, polar_angle, semicircle_residual
 from reference_model.steady.lyapunov_coefficient import polar_rates
 from reference_model.steady.stability import jacobian_without_angle, sliding_jacobian, turning_frame_jacobian
 from reference_model.support import Support
@@ -86,14 +82,6 @@ def test_pin_rests_in_its_equilibrium_on_the_semicircle_4(base, support):
     assert found.stable
 
 
-def test_pin_comes_to_rest_in_the_equilibrium_of_its_nonlinear_support():
-    pin = replace(FIG_5, hardening=30.0, stop_gap=0.04, stop_stiffness=2.0, damping=0.3)
-    (found,) = self_centred_equilibria(pin)
-    end = simulate(pin, [0.1, 0.0, 0.0, 0.0], [0.0, 200.0]).at_end
-    # The slowest mode decays like exp(−0.15t).
-    assert end == pytest.approx(found.state, abs=1e-9)
-
-
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_equilibrium_exists_up_to_the_force_of_the_support_at_the_offset(support):
     pin = replace(FIG_5, **support)
@@ -106,27 +94,6 @@ def test_equilibrium_exists_up_to_the_force_of_the_support_at_the_offset(support
     exactly = replace(pin, friction_force=formulas.largest_load_with_equilibrium(pin))
     assert self_centred_equilibria(exactly) == ()
     assert why_no_equilibrium(exactly).endswith("the pin sticks on the axis")
-
-
-def test_where_the_stop_just_begins_an_equilibrium_has_no_eigenvalues():
-    pin = replace(FIG_5, friction_force=0.0625, stop_gap=0.0625, stop_stiffness=1.0)
-    assert refusal(self_centred_equilibria, pin).startswith("deflection = stop_gap")
-
-
-def test_without_friction_the_centre_of_a_hardening_support_is_the_equilibrium():
-    (found,) = self_centred_equilibria(replace(FIG_5, friction_force=0.0, stiffness=0.0, hardening=2.0))
-    assert (found.x, found.y) == (pytest.approx(0.1, rel=1e-15), 0.0)
-    assert not found.stable  # not by its eigenvalues: for small deflections there is no stiffness
-    stop = replace(FIG_5, friction_force=0.0, stiffness=0.0, stop_gap=0.1, stop_stiffness=2.0)
-    assert self_centred_equilibria(stop) == ()  # every place within the gap is as good
-    assert "without springs" in why_no_equilibrium(stop)
-
-
-def test_a_stop_alone_holds_the_pin_against_friction():
-    pin = replace(FIG_5, stiffness=0.0, stop_gap=0.05, stop_stiffness=3.0)
-    (found,) = self_centred_equilibria(pin)
-    assert math.hypot(found.x - 0.1, found.y) == pytest.approx(0.05 + 0.09 / 3.0, rel=1e-14)
-    assert np.abs(rates_of_pin(pin, found.state, coulomb(pin))).max() < 1e-14
 
 
 # ---------------------------------------------------------------- the pin's whirl
@@ -206,20 +173,6 @@ def formulas_turning(pin):
     return formulas.circling_speed(pin, radius)
 
 
-@pytest.mark.parametrize("pin", [WHIRLING[0], WHIRLING[2], WHIRLING[5]])
-def test_pin_goes_on_in_its_whirl_and_comes_back_to_it(pin):
-    (found,) = whirls(pin)
-    assert found.stable
-    times = np.linspace(0.0, 50.0, 51)
-    trajectory = simulate(pin, found.state, times, tolerance=1e-12)
-    expected = found.radius * np.exp(1j * found.frequency * times)
-    assert np.abs(trajectory.states[:, 0] + 1j * trajectory.states[:, 1] - expected).max() < 1e-9
-    # Far enough away to feel the support's nonlinearity, and long enough for the slowest mode.
-    slowest = -found.eigenvalues[1].real
-    late = simulate(pin, 1.2 * found.state, [0.0, 20.0 / slowest], tolerance=1e-11)
-    assert math.hypot(*late.at_end[:2]) == pytest.approx(found.radius, rel=1e-7)
-
-
 @pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
 def test_where_the_support_would_turn_the_pin_faster_than_the_disc_turns_it_ends_by_sticking(support):
     pin = centred(replace(FIG_5, friction_force=0.3), **support)
@@ -249,15 +202,6 @@ def test_without_damping_the_circle_grows_until_the_support_turns_the_pin_as_fas
     assert abs(stuck - carried) < 0.1 * carried
 
 
-def test_loads_between_a_weak_spring_and_a_stop_have_the_whirls_of_either():
-    pin = centred(FIG_5, stop_gap=0.5, stop_stiffness=1.0)
-    below, above = replace(pin, friction_force=0.049), replace(pin, friction_force=0.09)
-    assert whirls(below)[0].radius == pytest.approx(0.49, rel=1e-13)  # the stop is out of reach
-    assert 0.5 < whirls(above)[0].radius < 0.9
-    at_gap = replace(pin, damping=0.125, friction_force=0.0625)
-    assert refusal(whirls, at_gap).startswith("deflection = stop_gap = 0.5 m")
-
-
 # ---------------------------------------------------------------- a stop without a gap is a spring
 
 
@@ -275,19 +219,6 @@ def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
         for found, expected in zip(whirls(stop), whirls(disc), strict=True):
             assert found.state == pytest.approx(expected.state, rel=1e-10)
             assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues, tolerance=1e-10)
-
-
-def test_pin_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring():
-    stop = replace(FIG_5, stiffness=0.4, stop_stiffness=0.6)
-    times = np.linspace(0.0, 30.0, 31)
-    plain, other = (simulate(pin, [0.1, 0.0, 0.03, 0.0], times, tolerance=1e-12) for pin in (FIG_5, stop))
-    assert len(plain.phases) == len(other.phases) > 4
-    assert np.abs(plain.states - other.states).max() < 1e-9
-    found, expected = (self_centred_equilibria(pin)[0] for pin in (stop, FIG_5))
-    assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues)
-    found, expected = (whirls(replace(pin, offset=0.0))[0] for pin in (stop, FIG_5))
-    assert found.radius == pytest.approx(expected.radius, rel=1e-13)
-    assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues)
 
 
 # ---------------------------------------------------------------- the disc
@@ -384,16 +315,6 @@ def test_disc_has_the_whirls_that_a_search_over_radii_finds(support, load):
         )
 
 
-def test_search_over_radii_finds_whirls_at_most_of_these_loads():
-    counts = [
-        len(whirls(replace(FIG11, friction_force=load, **support)))
-        for load in (0.02, 0.0225, 0.026, 0.05, 0.09, 0.2)
-        for support in OF_A_DISC
-    ]
-    assert {0, 1} <= set(counts)
-    assert sum(counts) >= 9
-
-
 @pytest.mark.parametrize("support", OF_A_DISC)
 def test_eigenvalues_of_the_disc_s_whirl_are_those_of_eq_19(support):
     disc = replace(FIG11, friction_force=0.05, **support)
@@ -413,24 +334,6 @@ def test_eigenvalues_of_the_disc_s_whirl_are_those_of_eq_19(support):
     assert_same_eigenvalues(found.eigenvalues[1:], expected, tolerance=2e-5)
 
 
-def test_disc_goes_on_in_its_whirl_on_a_nonlinear_support():
-    disc = replace(FIG11, friction_force=0.05, **OF_A_DISC[2])
-    (found,) = whirls(disc)
-    assert found.stable
-    times = np.linspace(0.0, 40.0, 41)
-    trajectory = simulate(disc, found.state, times, tolerance=1e-12)
-    assert trajectory.radius == pytest.approx(np.full(41, found.radius), rel=1e-9)
-    assert trajectory.states[:, 5] == pytest.approx(np.full(41, found.spin), rel=1e-9)
-
-
-def test_disc_that_does_not_spin_against_the_master_disc_has_the_whirl_of_the_pin():
-    disc = replace(FIG11, shaft_speed=FIG11.disc_speed, friction_force=0.05, **OF_A_DISC[2])
-    pin = pin_of(disc)
-    found, expected = whirls(disc)[0], whirls(pin)[0]
-    assert found.radius == pytest.approx(expected.radius, rel=1e-12)
-    assert found.frequency == pytest.approx(expected.frequency, rel=1e-12)
-
-
 def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
     assert onset_load(replace(FIG11, **OF_A_DISC[2])) == onset_load(FIG11)
     # Just above it the whirl is small, and hardly knows of them: its square grows with the load's excess.
@@ -442,31 +345,7 @@ def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
     assert hard[-1].radius == pytest.approx(linear[-1].radius, rel=0.05)
 
 
-@pytest.mark.parametrize("missing", [{"damping": 0.0}, {"friction_force": 0.0}])
-def test_disc_without_damping_or_friction_has_no_whirl(missing):
-    disc = replace(FIG11, **OF_A_DISC[0] | missing)
-    assert whirls(disc) == ()
-    assert next(iter(missing)) in why_no_whirl(disc)
-
-
-def test_pin_that_stands_for_a_stuck_disc_has_its_support():
-    disc = replace(FIG8, **OF_A_DISC[2])
-    assert Support.of(held_pin(disc)) == Support.of(disc)
-    assert refusal(smallest_load_with_whirl, replace(disc, offset=0.0)).endswith("for a linear support")
-
-
 # ---------------------------------------------------------------- orbits by shooting
-
-
-@pytest.mark.parametrize("support", SUPPORTS[:3])
-def test_orbit_without_offset_is_the_whirl_with_the_multipliers_of_its_eigenvalues(support):
-    pin = centred(replace(FIG_5, disc_speed=4.0, damping=0.3, friction_force=0.2), **support)
-    (expected,) = whirls(pin)
-    orbit = whirl_orbit(pin)
-    assert orbit.frequency == pytest.approx(expected.frequency, rel=1e-9)
-    assert orbit.state == pytest.approx(expected.state, abs=1e-9)
-    multipliers = [cmath.exp(value * orbit.period) for value in expected.eigenvalues]
-    assert_same_eigenvalues(orbit.multipliers, multipliers, tolerance=1e-7)
 
 
 @pytest.mark.parametrize("support", [{"hardening": 3.0}, {"stop_gap": 0.51, "stop_stiffness": 5.0}])
@@ -484,38 +363,3 @@ def test_orbit_with_an_offset_is_where_a_long_simulation_ends(support):
     assert nearest < 2.0 * math.pi / 256 * np.abs(orbit.state).max()
     radius = np.hypot(*simulate(pin, end.at_end, orbit.trajectory.times).states[:, :2].T)
     assert radius.max() == pytest.approx(orbit.trajectory.radius.max(), rel=1e-4)
-
-
-def test_branch_of_whirls_goes_on_over_the_stop():
-    pin = centred(replace(FIG_5, disc_speed=4.0), stop_gap=0.5, stop_stiffness=2.0)
-    crossed = set()
-    for orbit in whirl_branch(whirl_orbit(pin), 0.45, samples=16):
-        (expected,) = whirls(orbit.system)
-        assert orbit.state[0] == pytest.approx(expected.radius, rel=1e-8)
-        crossed.add(expected.radius > 0.5)
-    assert crossed == {True, False}
-
-
-def test_modulated_cycle_of_a_disc_on_a_hardening_support_is_where_a_simulation_ends():
-    disc = replace(FIG11, hardening=20.0)
-    assert not whirls(disc)[0].stable
-    settled = simulate(disc, [0.02, 0.0, 0.0, 0.0, 0.0, 1.3], np.linspace(0.0, 1100.0, 11001))
-    assert len(settled.phases) == 1
-    cycle = modulated_cycle(disc, settled, samples=256)
-    assert np.ptp(cycle.trajectory.radius) == pytest.approx(
-        np.ptp(settled.radius[-2000:]), rel=5e-3
-    )  # 0.1 s apart
-    # The carrier is faster than k, by the hardening's part of the centripetal force.
-    hardening = math.sqrt(1.0 + 20.0 * np.mean(cycle.trajectory.radius**2))
-    assert cycle.carrier - 1.0 == pytest.approx(hardening - 1.0, rel=0.5)
-    assert cycle.carrier > 1.001
-
-
-def test_steady_motions_are_the_same_in_any_units():
-    pin = replace(FIG_5, hardening=30.0, stop_gap=0.04, stop_stiffness=2.0, disc_speed=4.0)
-    other = in_units(pin, 1e3, 1e-2, 1e-4)
-    found, expected = self_centred_equilibria(other)[0], self_centred_equilibria(pin)[0]
-    assert [found.x, found.y] == pytest.approx([1e-2 * expected.x, 1e-2 * expected.y], rel=1e-12)
-    found, expected = whirls(replace(other, offset=0.0))[0], whirls(replace(pin, offset=0.0))[0]
-    assert found.radius == pytest.approx(1e-2 * expected.radius, rel=1e-12)
-    assert_same_eigenvalues(found.eigenvalues, [1e4 * value for value in expected.eigenvalues])

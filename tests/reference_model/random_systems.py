@@ -1,0 +1,177 @@
+"""Random systems of every kind, and their motions under a smooth friction law, written down once more here."""
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from disc_equations import disc_in_units
+from plain_engines import in_units
+from scipy.integrate import odeint
+from scipy.special import ellipe, ellipkm1
+
+from reference_model import DiscOnDisc, PinOnDisc, simulate
+
+CONTACTS = ("pin", "ring", "points")
+SUPPORTS = ("linear", "hardening", "stop", "both")
+COURSES = ("dragged", "fast", "to and fro", "creeping", "thrown")
+SYSTEMS = 2 * len(CONTACTS) * len(SUPPORTS) * len(COURSES)
+TIMES = np.linspace(0.0, 40.0, 81)
+
+
+@dataclass(frozen=True)
+class RandomMotion:
+    """A system of order one in SI units, where its motion starts, and what kind of motion that is meant to be."""
+
+    seed: int
+    system: PinOnDisc | DiscOnDisc
+    start: np.ndarray
+
+    @classmethod
+    def of(cls, seed):
+        """Return a motion: contact, support and course take all combinations in turn, the rest is random."""
+        rng = np.random.default_rng(seed)
+        support, course = SUPPORTS[seed // 3 % 4], COURSES[seed // 12 % 5]
+        offset = rng.choice((-1.0, 1.0)) * rng.uniform(0.1, 0.2)
+        values = {
+            "mass": 1.0,
+            "stiffness": 1.0,
+            "damping": rng.uniform(0.02, 0.15),
+            "friction_force": abs(offset) * rng.uniform(0.9, 1.3),
+            "disc_speed": rng.choice((-1.0, 1.0)) * rng.uniform(0.6, 0.9),
+            "offset": offset,
+            "hardening": rng.uniform(1.0, 8.0) if support in ("hardening", "both") else 0.0,
+            "stop_gap": rng.uniform(0.1, 0.3),
+            "stop_stiffness": rng.uniform(2.0, 20.0) if support in ("stop", "both") else 0.0,
+        }
+        shaft = {
+            "polar_inertia": rng.uniform(0.01, 0.05),
+            "contact_radius": rng.uniform(0.08, 0.25),
+            "shaft_damping": rng.uniform(0.002, 0.01),
+            "shaft_speed": values["disc_speed"] * rng.uniform(0.8, 1.2),
+            "contact_points": int(rng.integers(3, 7)) if CONTACTS[seed % 3] == "points" else None,
+        }
+        z = 0.3 * complex(*rng.uniform(-1.0, 1.0, 2))
+        slip, spin = 0.1 * complex(*rng.normal(size=2)), 0.3 * rng.normal()
+        if course == "fast":
+            z = offset + 0.05 * complex(*rng.normal(size=2))
+            values["disc_speed"] *= 2.0
+            values["friction_force"] *= 0.9
+            shaft["shaft_speed"] *= 1.7
+        elif course == "to and fro":
+            values |= {"disc_speed": 0.0, "friction_force": rng.uniform(0.01, 0.05)}
+            slip, spin, shaft["shaft_speed"] = 0j, 0.0, 0.0
+        elif course == "creeping":
+            values |= {"offset": 0.0, "damping": rng.uniform(2.0, 3.0)}
+            values["disc_speed"] *= 0.5
+            spin, shaft["shaft_damping"] = 0.0, 0.0
+        elif course == "thrown":
+            values |= {"disc_speed": 0.0, "stiffness": 0.0}
+            slip, spin = complex(*rng.normal(size=2)), 3.0 * rng.normal()
+        elif rng.random() < 0.5:
+            slip, spin = 0j, 0.0
+        v = slip + 1j * values["disc_speed"] * z
+        start = [z.real, z.imag, rng.uniform(-3.0, 3.0), v.real, v.imag, spin + values["disc_speed"]]
+        if CONTACTS[seed % 3] == "pin":
+            return cls(seed, PinOnDisc(**values), np.array(start)[[0, 1, 3, 4]])
+        return cls(seed, DiscOnDisc(**values, **shaft), np.array(start))
+
+    def simulated(self, tolerance=1e-9):
+        """Return the reference's trajectory and its states at ``TIMES``, scaled back from units of random sizes."""
+        mass, length, time = 10.0 ** np.random.default_rng((self.seed, 1)).uniform(-3.0, 3.0, 3)
+        change = in_units if isinstance(self.system, PinOnDisc) else disc_in_units
+        half = len(self.start) // 2
+        scales = np.array([length, length, 1.0][:half] + [length / time, length / time, 1.0 / time][:half])
+        run = simulate(
+            change(self.system, mass, length, time), self.start * scales, TIMES * time, tolerance=tolerance
+        )
+        return run, run.states / scales
+
+
+def friction_of_points(disc, epsilon):
+    """Return force and moment of points with the smooth law v/√(v² + ε²), of slip of the centre, spin and angle."""
+    n, R = disc.contact_points, disc.contact_radius
+    around = [R * cmath.exp(2j * math.pi * i / n) for i in range(n)]
+    share = disc.friction_force / n
+
+    def friction(u, w, angle):
+        turn, force, moment = cmath.exp(1j * angle), 0j, 0.0
+        for place in around:
+            arm = turn * place
+            slip = u + 1j * w * arm
+            own = -share * slip / math.sqrt(slip.real**2 + slip.imag**2 + epsilon**2)
+            force += own
+            moment += (arm.conjugate() * own).imag
+        return force, moment
+
+    return friction
+
+
+def friction_of_ring(disc, epsilon):
+    """Return the mean of the same over the ring: the derivatives of the mean of √(A − B·cos χ) by U and W.
+
+    With A = U² + W² + ε² and B = 2UW.
+    """
+    R, load = disc.contact_radius, disc.friction_force
+
+    def friction(u, w, _):
+        U, W = abs(u), R * w
+        A, B = U**2 + W**2 + epsilon**2, 2.0 * U * abs(W)
+        root, rest = math.sqrt(A + B), (A - B) / (A + B)
+        inverse = 2.0 / math.pi * ellipkm1(rest) / root  # mean of 1/√(A − B·cos χ)
+        if B < 1e-3 * A:
+            cosine = B / (4.0 * A**1.5) * (1.0 + 15.0 / 32.0 * (B / A) ** 2)
+        else:  # mean of cos χ/√(A − B·cos χ)
+            cosine = (A * inverse - 2.0 / math.pi * ellipe(1.0 - rest) * root) / B
+        along = inverse * U - cosine * abs(W)
+        return -load * along * (u / U if U > 0.0 else 0.0), -load * R * (
+            inverse * W - cosine * math.copysign(U, W)
+        )
+
+    return friction
+
+
+def friction_of_pin(pin, epsilon):
+    """Return the force of the same law in one point."""
+    return lambda u, *_: (-pin.friction_force * u / math.sqrt(u.real**2 + u.imag**2 + epsilon**2), 0.0)
+
+
+def smooth_motion(system, start, epsilon):
+    """Return states by LSODA with friction v/√(v² + ε²); slip is an unknown, so that creep keeps its digits."""
+    omega, C, beta, m = system.disc_speed, system.stiffness, system.damping, system.mass
+    disc = isinstance(system, DiscOnDisc)
+    law = friction_of_pin if not disc else friction_of_points if system.contact_points else friction_of_ring
+    friction = law(system, epsilon)
+
+    def rates(_, unknowns):
+        x, y, ux, uy, *turning = unknowns.tolist()
+        z, u = complex(x, y), complex(ux, uy)
+        v = u + 1j * omega * z
+        bent = z - system.offset
+        d = abs(bent)
+        stop = system.stop_stiffness * max(1.0 - system.stop_gap / d, 0.0) if d > 0.0 else 0.0
+        angle, w = turning if disc else (0.0, 0.0)
+        force, moment = friction(u, w, angle)
+        a = (force - (C + system.hardening * d**2 + stop) * bent - beta * v) / m - 1j * omega * v
+        if not disc:
+            return [v.real, v.imag, a.real, a.imag]
+        shaft = system.shaft_damping * (system.shaft_speed - omega - w)
+        return [v.real, v.imag, a.real, a.imag, w + omega, (moment + shaft) / system.polar_inertia]
+
+    half = len(start) // 2
+    z, v = complex(*start[:2]), complex(*start[half : half + 2])
+    u = v - 1j * omega * z
+    unknowns = [z.real, z.imag, u.real, u.imag, *([start[2], start[5] - omega] if disc else [])]
+    slip = 1e-5 * epsilon
+    found, report = odeint(
+        rates, unknowns, TIMES, tfirst=True, rtol=1e-11, atol=[1e-13, 1e-13, slip, slip, 1e-13, slip][: len(start)],
+        mxstep=200_000, full_output=True,
+    )  # fmt: skip
+    assert report["message"] == "Integration successful.", report["message"]
+    z, u = found[:, 0] + 1j * found[:, 1], found[:, 2] + 1j * found[:, 3]
+    v = u + 1j * omega * z
+    columns = [z.real, z.imag, v.real, v.imag]
+    if disc:
+        columns[2:2] = [found[:, 4]]
+        columns.append(found[:, 5] + omega)
+    return np.column_stack(columns)
