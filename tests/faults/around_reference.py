@@ -46,6 +46,11 @@ def in_single_precision(trajectory: Trajectory) -> FloatArray:
     return trajectory.states.astype(np.float32).astype(float)
 
 
+def one_sample_late(trajectory: Trajectory) -> FloatArray:
+    """Return every state one sample late, the first one twice."""
+    return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
+
+
 def with_angle_wrapped(trajectory: Trajectory) -> FloatArray:
     """Return angles between −π and π."""
     states = trajectory.states.copy()

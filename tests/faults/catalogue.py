@@ -12,6 +12,7 @@ from faults.around_reference import (
     from_rest,
     half_a_pitch_on,
     in_single_precision,
+    one_sample_late,
     output_late,
     phases_late,
     three_terms,
@@ -190,6 +191,7 @@ NUMERICS: tuple[Fault, ...] = (
         "step-10-times-too-large", "The classic fourth-order method with steps of 0.1 s.", order=4, step=0.1
     ),
     spoilt("single-precision", "States have 24 bits.", in_single_precision),
+    spoilt("one-sample-late", "Every state is that of the sample before.", one_sample_late),
     _fault("output-late", "Every state but the first is of 1e-7 s before its time.", output_late),
     _fault("phases-late", "Phases begin and end 1 ms after the states say so.", phases_late),
     spoilt("angle-wrapped", "Angles are brought between −π and π.", with_angle_wrapped),

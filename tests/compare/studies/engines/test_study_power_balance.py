@@ -54,7 +54,7 @@ def gaining(system, initial_state, times, *, tolerance=1e-9):
 
 FAULTS = GROSS | {
     "intact": engine_named("intact"),
-    "viscous below 1e-3 m/s": fault("regularised-100-times-too-wide"),
+    "viscous below 1e-3 m/s": made(slip_width=1e-3),
     "friction 1 % off": altered(friction_force=1.01),
     "damping 1 % off": altered(damping=1.01),
     "mass 1 % off": altered(mass=1.01),

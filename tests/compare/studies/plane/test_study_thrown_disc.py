@@ -39,8 +39,6 @@ class TestThrownDisc(StudyTests):
             "moment-of-wrong-sign",
             "uncoupled-slip-and-spin",
             "expansion-for-ring",
-            "diameter-for-radius",
-            "load-shared-twice",
             "one-point-too-few",
         )
     } | {
@@ -55,8 +53,6 @@ class TestThrownDisc(StudyTests):
         "moment-of-wrong-sign": (SEES, SEES, LEFT_OUT),
         "uncoupled-slip-and-spin": (SEES, BLIND, LEFT_OUT),
         "expansion-for-ring": (SEES, BLIND, LEFT_OUT),
-        "diameter-for-radius": (SEES, SEES, LEFT_OUT),
-        "load-shared-twice": (BLIND, SEES, LEFT_OUT),
         # As long as a disc only slides or only spins, friction does not depend on their number.
         "one-point-too-few": (LEFT_OUT, BLIND, LEFT_OUT),
         "friction 0.01 % off": (SEES, SEES, LEFT_OUT),
