@@ -1,4 +1,4 @@
-"""Static and eigenvalue analysis, and Newton's iteration, of a disc on springs over a master that turns."""
+"""Static analysis of a disc on springs over a master that turns: the self-centred equilibrium (eq. 3 and 4)."""
 
 import numpy as np
 import pytest
@@ -90,33 +90,3 @@ def test_static_solver_finds_the_self_centred_equilibrium(kind, factors, contact
     mbs.SolveStatic(settings)
     np.testing.assert_allclose(coordinates(mbs, disc)[0][:2], PLACE, rtol=0.0, atol=1e-12)
     assert mbs.sys["staticSolver"].it.newtonStepsCount <= 8
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("factors", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
-def test_eigenvalues_are_those_of_the_linearised_pin(kind, factors):
-    # m r̈ = −βṙ − C(r − X0) − μ(v)N(ρ)·e, e = u/v, u = ṙ − ω×r: d(F e) = F(1 − e⊗e)/v·du + e(F_v e·du + F_ρ e_ρ·dr).
-    turn = SPEED * np.array([[0.0, -1.0], [1.0, 0.0]])
-    slip = -turn @ PLACE
-    speed = np.hypot(*slip)
-    direction, outward = slip / speed, PLACE / RADIUS
-    by_slip = FRICTION * (np.eye(2) - np.outer(direction, direction)) / speed
-    by_place = -by_slip @ turn
-    if factors is FUNCTIONS:
-        steep = FRICTION / coefficient(speed) * (0.2 - coefficient(speed)) / 0.3  # F_v = N·dμ/dv
-        fall = -FRICTION * 2.0 * RADIUS / LENGTH**2 * falling(RADIUS)  # F_ρ = μ·dN/dρ
-        along = np.outer(direction, direction)
-        by_slip = by_slip + steep * along
-        by_place = by_place - steep * along @ turn + fall * np.outer(direction, outward)
-    matrix = np.zeros((4, 4))
-    matrix[:2, 2:] = np.eye(2)
-    matrix[2:, :2] = -(STIFFNESS * np.eye(2) + by_place) / MASS
-    matrix[2:, 2:] = -(DAMPING * np.eye(2) + by_slip) / MASS
-    expected = np.linalg.eigvals(matrix)
-
-    mbs, *_ = supported_disc(kind, PLACE, factors | {"contact_radius": 0.0})
-    mbs.Assemble()
-    found, _ = mbs.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
-    # The others belong to the springs alone and to the master.
-    errors = np.abs(np.asarray(found)[:, None] - expected).min(axis=0)
-    np.testing.assert_allclose(errors, 0.0, atol=1e-9)
