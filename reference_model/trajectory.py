@@ -16,6 +16,41 @@ class SimulationError(RuntimeError):
     """An engine gave up or returned numbers that are not finite; the message says when and what to change."""
 
 
+MOST_STEPS = 5_000_000
+"""Some minutes' work; a motion that takes more is hardly meant."""
+
+LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
+"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
+
+
+@dataclass
+class StepCount:
+    """Counts the steps of a motion from the time 0 to ``end``, in any unit of time.
+
+    This is bookkeeping, no physics: every engine gives up at the same number of steps.
+    """
+
+    end: float
+    steps: int = 0
+    _looked_back: tuple[float, int] = (0.0, 0)
+
+    def look_from(self, t: float) -> None:
+        """Judge the pace from the time ``t`` on: what went before, or comes now, is slow for a short while only."""
+        self._looked_back = t, self.steps
+
+    def count(self, t: float) -> str:
+        """Count one more step, to the time ``t``; return what is wrong if there are, or will be, too many."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            return f"more than {MOST_STEPS:,} steps"
+        since, counted = self._looked_back
+        if self.steps == counted + LOOK_BACK:
+            self.look_from(t)
+            if (self.end - t) * LOOK_BACK > MOST_AHEAD * (t - since):
+                return f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}"
+        return ""
+
+
 @dataclass(frozen=True)
 class Phase:
     """A span of time in which the contact slips or sticks.

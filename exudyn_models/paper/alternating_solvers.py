@@ -18,8 +18,9 @@ from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.scales import time_scale
 from exudyn_models.paper.turning_axes import FIXED, Axes
 from exudyn_models.parts.ring_friction import add_ring_friction
-from exudyn_models.solver.solver_run import FIRST_STEP, LOOK_BACK, StepCount, Steps, solve
+from exudyn_models.solver.solver_run import FIRST_STEP, StepCount, Steps, solve
 from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.trajectory import LOOK_BACK
 
 CREEP_NEWTON_TOLERANCE = 1e-6
 """Residual of Newton's iteration while creeping, relative to μN (and μN·R, where that is less).
@@ -110,7 +111,7 @@ def solve_in_turns(
 
     """
     motion = _Turns(
-        contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds)
+        contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds=seconds)
     )
     start, part, creep_began, first_step = 0.0, None, 0.0, FIRST_STEP
     while not motion.recording.finished:

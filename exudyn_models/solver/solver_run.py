@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from exudyn_models.solver.model import Model
 from exudyn_models.solver.repeated_steps import restored_accelerations, user_function
+from reference_model import trajectory
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -56,49 +57,29 @@ class Steps:
 NOT_FINITE = "the state is not finite any more"
 """Where Exudyn itself would go on and report success."""
 
-MOST_STEPS = 5_000_000
-"""Some minutes' work; a motion that takes more is hardly meant."""
-
-LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
-
 FIRST_STEP = 1e-6
 """Of DOPRI5, in units of time of the model; it finds the size of the others by itself."""
 
 
 @dataclass
-class StepCount:
+class StepCount(trajectory.StepCount):
     """Counts the steps of a motion from 0 to ``end``, of whose units of time each is ``seconds`` s."""
 
-    end: float
     seconds: float = 1.0
-    steps: int = 0
-    _looked_back: tuple[float, int] = (0.0, 0)
-
-    def look_from(self, t: float) -> None:
-        """Judge the pace from the time ``t`` on: what went before, or comes now, is slow for a short while only."""
-        self._looked_back = t, self.steps
 
     def expect(self, start: float, steps: float) -> None:
         """Raise ``SimulationError`` if ``steps`` from the time ``start`` on are too many to begin with."""
-        if steps > MOST_AHEAD:
-            raise SimulationError(self._too_many(f"more than {MOST_AHEAD:,} steps ahead", start))
+        if steps > trajectory.MOST_AHEAD:
+            raise SimulationError(self._sentence(f"more than {trajectory.MOST_AHEAD:,} steps ahead", start))
 
     def count(self, t: float) -> str:
-        """Count one step more, to the time ``t``; return what is wrong if there are, or will be, too many."""
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            return self._too_many(f"more than {MOST_STEPS:,} steps", t)
-        since, counted = self._looked_back
-        if self.steps == counted + LOOK_BACK:
-            self.look_from(t)
-            if (self.end - t) * LOOK_BACK > MOST_AHEAD * (t - since):
-                return self._too_many(f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}", t)
-        return ""
+        """Count one more step, to the time ``t``; return a sentence if there are, or will be, too many."""
+        too_many = super().count(t)
+        return self._sentence(too_many, t) if too_many else ""
 
-    def _too_many(self, steps: str, t: float) -> str:
+    def _sentence(self, too_many: str, t: float) -> str:
         return (
-            f"{steps} at {t * self.seconds:g} s after the start: the parameters are very stiff, or the motion is "
+            f"{too_many} at {t * self.seconds:g} s after the start: the parameters are very stiff, or the motion is "
             "very long; simulate it in parts, or with a larger tolerance or regularisation"
         )
 

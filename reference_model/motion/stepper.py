@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple, NoReturn
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolution
@@ -14,18 +14,11 @@ from scipy.optimize import brentq, minimize_scalar
 from reference_model.numerics.collocation import Radau, RatesAt, Scales
 from reference_model.numerics.explicit import TIGHTEST, Explicit, Rates, Tolerated
 from reference_model.systems import FloatArray
-from reference_model.trajectory import SimulationError
+from reference_model.trajectory import SimulationError, StepCount
 
 Kind = Literal["slip", "pivot", "stick"]
 Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
-
-MOST_STEPS = 5_000_000
-"""Some minutes' work; a motion that takes more is hardly meant."""
-
-LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
-
 
 STABLE = 3.0
 """Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
@@ -124,16 +117,20 @@ class Run:
     motion: FloatArray = field(init=False)
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
-    steps: int = 0
     patience: int = PATIENCE
     recorded: int = 0  # of the times
-    _looked_back: float = 0.0
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
         share = self.thresholds.safety * min(1.0, self.springs / SLOW_SPRINGS)
         self.local_tolerance = max(share * self.tolerance, TIGHTEST)
         self.end = float(self.times[-1])
+        self._count = StepCount(self.end)
+
+    @property
+    def steps(self) -> int:
+        """Number of steps taken."""
+        return self._count.steps
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
         """Begin a phase of this kind, unless it is under way."""
@@ -155,19 +152,11 @@ class Run:
 
     def count_step(self, since: float) -> None:
         """Count one step more, from ``since``; raise ``SimulationError`` if there are, or will be, too many."""
-        self.steps += 1
-        if self.steps > MOST_STEPS:
-            self._give_up(f"more than {MOST_STEPS:,} steps", since)
-        if self.steps % LOOK_BACK == 0:
-            passed, self._looked_back = since - self._looked_back, since
-            if (self.end - since) * LOOK_BACK > MOST_AHEAD * passed:
-                self._give_up(f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}", since)
-
-    def _give_up(self, steps: str, since: float) -> NoReturn:
-        raise SimulationError(
-            f"{steps} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is very "
-            "long; simulate it in parts, or with a larger tolerance"
-        )
+        if too_many := self._count.count(since):
+            raise SimulationError(
+                f"{too_many} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is "
+                "very long; simulate it in parts, or with a larger tolerance"
+            )
 
     def pending(self, t: float) -> bool:
         """Tell whether a time that was asked for lies before or at ``t``."""

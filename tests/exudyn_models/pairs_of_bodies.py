@@ -13,8 +13,6 @@ from free_bodies import (
     planar_body,
     rate_of,
     rotor,
-    run_explicitly,
-    settings_of,
     spatial_body,
     spatial_energy,
     spatial_momenta,
@@ -99,19 +97,3 @@ def assert_jacobian_is_that_of_exudyn(mbs, item, accuracy=1e-7):
         np.testing.assert_allclose(found, numerical, rtol=0.0, atol=accuracy * scale, err_msg=what)
         largest = max(largest, np.abs(numerical).max())
     assert largest > 1e-4
-
-
-def assert_implicit_order_is_two(build):
-    """Follow the model that ``build`` returns, with its nodes, for 0.2 s; the last one is that of the disc."""
-    ends = []
-    for steps in (None, 20, 40, 80):
-        mbs, nodes = build()
-        mbs.Assemble()
-        if steps is None:
-            run_explicitly(mbs, 0.2, 400)
-        else:
-            assert exu.MainSolverImplicitSecondOrder().SolveSystem(mbs, settings_of(0.2, steps))
-        ends.append(spatial_momenta(mbs, nodes[-1], 1.0, [0.0] * 3))
-    errors = [np.abs(end - ends[0]).max() for end in ends[1:]]
-    orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    np.testing.assert_allclose(orders, 2.0, atol=0.1, err_msg=str(errors))

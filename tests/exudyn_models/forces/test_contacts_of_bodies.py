@@ -11,7 +11,6 @@ from pairs_of_bodies import (
     MASTER,
     PAIRS,
     SPATIAL,
-    assert_implicit_order_is_two,
     assert_jacobian_is_that_of_exudyn,
     bodies_of,
     conserved,
@@ -195,26 +194,6 @@ def test_a_spatial_disc_in_the_plane_moves_as_a_planar_one(master, node, contact
         q, v = coordinates(mbs, nodes[1])
         ends.append([q[[0, 1, -1]], v[[0, 1, -1]]])
     np.testing.assert_allclose(ends[1], ends[0], rtol=0.0, atol=1e-13)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("contact", ["ring", "points", "annulus", "creeping ring", "functions"])
-def test_the_ground_acts_as_a_rotor_that_nothing_can_turn(kind, contact):
-    ends = []
-    for master in (None, "rotor"):
-        heavy = (1.0, [0.0, 0.0, 1e18], [0.0] * 6, [0.0] * 6)
-        mbs, nodes = bodies_of((master, kind), (heavy, DISC))
-        add_ring_friction(mbs, *nodes, **RING | CONTACTS[contact])
-        mbs.Assemble()
-        run_explicitly(mbs, 0.1, 100)
-        ends.append(np.hstack(coordinates(mbs, nodes[1])))
-    assert np.abs(ends[0]).max() > 0.1
-    np.testing.assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-13)
-
-
-@pytest.mark.parametrize("kinds", [("rotation vector", "Tait-Bryan"), ("Tait-Bryan", "rotation vector")])
-def test_the_implicit_solver_converges_to_the_explicit_one_with_order_two(kinds):
-    assert_implicit_order_is_two(lambda: pair_of(kinds, "points")[:2])
 
 
 def test_a_body_by_its_object_is_its_node():

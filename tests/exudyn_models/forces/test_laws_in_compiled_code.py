@@ -73,16 +73,6 @@ def test_a_contact_says_whether_python_is_asked():
         assert friction.compiled
 
 
-def test_outer_names_of_a_function_of_python_are_read_when_it_is_called():
-    strength = 1.0
-    mbs, friction = added(("planar", "planar"), normal_load=lambda time: strength)
-    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
-    state = np.random.default_rng(2).normal(size=(2, 6)).tolist()
-    once = np.array(force(mbs, 0.0, 0, *state))
-    strength = 3.0
-    np.testing.assert_allclose(force(mbs, 0.0, 0, *state), 3.0 * once, rtol=1e-14)
-
-
 @numba.njit
 def out_of_range(time):
     if time > 0.5:

@@ -53,16 +53,6 @@ def expected_spins(impulse):
     )
 
 
-@pytest.mark.parametrize("points", [None, 6])
-@pytest.mark.parametrize("coefficient", [MU, lambda slip_speed: MU], ids=["number", "function"])
-def test_a_load_that_grows_with_time_brakes_a_disc_as_its_impulse(points, coefficient):
-    load = {"normal_load": lambda time: LOAD * (1.0 + math.sin(5.0 * time))}
-    mbs, *bodies, _ = spinning_disc(contact_points=points, friction_coefficient=coefficient, **load)
-    mbs.Assemble()
-    run_explicitly(mbs, 2.0, 400)
-    assert spins(mbs, *bodies) == expected_spins(MU * LOAD * (2.0 + (1.0 - math.cos(10.0)) / 5.0))
-
-
 @pytest.mark.parametrize("radius", [0.0, RADIUS])
 def test_load_and_coefficient_can_be_changed_between_two_runs(radius):
     # A pin is a disc without spin on a rotor at rest that slides through its axis: its momentum takes the impulse.
@@ -99,20 +89,6 @@ def test_a_change_that_is_refused_leaves_the_friction_as_it_was():
         friction.change(friction_coefficient=2.0 * MU, normal_load=-1.0)
     run_explicitly(mbs, 1.0, 100)
     assert spins(mbs, *bodies) == expected_spins(MU * LOAD)
-
-
-def test_two_contacts_between_the_same_bodies_add_up_and_keep_their_own_loads_and_heat():
-    mbs, master, disc, first = spinning_disc()
-    second = add_ring_friction(mbs, master, disc, **CONTACT | {"normal_load": lambda time: 2.0 * LOAD * time})
-    heats = [friction.add_sensor("heat") for friction in (first, second)]
-    mbs.Assemble()
-    run_explicitly(mbs, 1.0, 100)
-    assert spins(mbs, master, disc) == expected_spins(2.0 * MU * LOAD)
-    # W = R·S and S = S₀ + κ(t + t²), κ = RATE·μN: the heats are −∫μN·W and −∫2μN·t·W.
-    start, growth = SPIN - MASTER_SPIN, RATE * MU * LOAD
-    expected = [start + growth * (1.0 / 2.0 + 1.0 / 3.0), start + 2.0 * growth * (1.0 / 3.0 + 1.0 / 4.0)]
-    found = [float(mbs.GetSensorValues(heat)) for heat in heats]
-    np.testing.assert_allclose(found, -MU * LOAD * RADIUS * np.array(expected), rtol=1e-11)
 
 
 class Ramp:

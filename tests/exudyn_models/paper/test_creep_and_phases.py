@@ -10,10 +10,10 @@ from compare.studies.pin.sticking_domain.parameters import pin_at
 from compare.studies.toolkit.sticking import safest_angle, stuck
 from exudyn_models import simulate
 from exudyn_models.forces.friction_laws import point_regularisation
-from exudyn_models.paper.creep import WHOLE, RegularisedContact
+from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.phase_detection import detected_phases
 from exudyn_models.solver.solver_run import Steps
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import PinOnDisc
 
 EPSILON = 1e-6
 PIN = replace(FIG5, disc_speed=0.0, offset=0.0)
@@ -38,18 +38,6 @@ def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
         expected = (ratios[0] - ratios[1]) / 2e-6
         found = RegularisedContact(system, EPSILON).slip_ratio_rates(state, acceleration)
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
-
-
-@pytest.mark.parametrize("system", SYSTEMS)
-def test_a_contact_at_rest_creeps_as_a_whole_and_one_that_slips_does_not(system):
-    x, y, omega = 0.3, -0.2, system.disc_speed
-    at_rest = [x, y, -omega * y, omega * x]
-    if isinstance(system, DiscOnDisc):
-        at_rest = [x, y, 0.4, -omega * y, omega * x, omega]
-    assert RegularisedContact(system, EPSILON).creeping(at_rest) == WHOLE
-    fast = np.array(at_rest)
-    fast[system.state_size // 2] += 1.01 * EPSILON
-    assert RegularisedContact(system, EPSILON).creeping(fast.tolist()) is None
 
 
 def test_a_point_about_which_the_disc_turns_creeps_alone():

@@ -4,8 +4,8 @@ import exudyn as exu
 import exudyn.utilities
 import numpy as np
 import pytest
-from free_bodies import new_model, settings_of, spatial_momenta
-from pairs_of_bodies import DISC, EULER, bodies_of, conserved, momenta_and_energy
+from free_bodies import new_model, settings_of
+from pairs_of_bodies import EULER, bodies_of, conserved, momenta_and_energy
 
 from exudyn_models import (
     add_energy_balance,
@@ -46,21 +46,6 @@ def test_momentum_is_kept_to_rounding_and_angular_momentum_and_energy_to_second_
         leaks.append(np.max(np.abs(balance.residual)))
     for errors in (drifts, leaks):
         assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
-
-
-@FRICTION
-def test_a_body_with_euler_parameters_moves_as_one_with_angles(friction):
-    # Both by the same implicit solver: what differs falls with the square of its step.
-    differences = []
-    for steps in (50, 100):
-        ends = []
-        for kind in (EULER, "Tait-Bryan"):
-            mbs, nodes, _ = model((kind, kind), friction)
-            solve_dynamic(mbs, settings_of(0.2, steps, newton=1e-12), exu.DynamicSolverType.GeneralizedAlpha)
-            ends.append(spatial_momenta(mbs, nodes[1], 1.0, DISC[1]))
-        differences.append(np.abs(ends[0] - ends[1]).max())
-    assert differences[1] < 1e-5
-    assert np.log2(differences[0] / differences[1]) == pytest.approx(2.0, abs=0.2)
 
 
 def test_the_default_body_of_exudyn_goes_by_its_number_and_its_sensors_tell_its_motion():

@@ -12,7 +12,6 @@ from pairs_of_bodies import (
     MASTER,
     PAIRS,
     SPATIAL,
-    assert_implicit_order_is_two,
     assert_jacobian_is_that_of_exudyn,
     bodies_of,
     conserved,
@@ -85,21 +84,6 @@ def test_bodies_in_the_plane_move_as_planar_ones(kinds, law):
     np.testing.assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-13)
 
 
-@pytest.mark.parametrize("kind", ["planar", *SPATIAL])
-@pytest.mark.parametrize(
-    "law", [{"hardening": 0.0}, {"hardening": 0.0, "stop_gap": 9.0, "stop_stiffness": 1.0}, {}]
-)
-def test_the_ground_is_a_body_that_nothing_moves(kind, law):
-    heavy, ends = (1.0, [0.0, 0.0, 1e30], [0.0] * 6, [0.0] * 6), []
-    for base in (None, "rotor"):
-        mbs, nodes, support = supported((base, kind), (heavy, DISC), **SUPPORT | law)
-        shown = [support.add_sensor(name) for name in ("deflection", "force", "stored_energy", "power")]
-        mbs.Assemble()
-        run_explicitly(mbs, 1.0, 200)
-        ends.append(np.hstack([in_plane(mbs, nodes[1]), *(mbs.GetSensorValues(one) for one in shown)]))
-    np.testing.assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-13)
-
-
 @pytest.mark.parametrize("gap", [0.2, 0.7])
 def test_sensors_show_the_law(gap):
     mbs = new_model()
@@ -152,8 +136,3 @@ def test_a_mass_swings_through_the_hardening_spring_as_the_elliptic_function():
     run_explicitly(mbs, end, 2000)
     expected = amplitude * ellipj(rate * end, parameter)[1] * direction
     np.testing.assert_allclose(in_plane(mbs, disc)[:2], [expected.real, expected.imag], atol=1e-10)
-
-
-@pytest.mark.parametrize("kinds", [(None, "planar"), ("rotor", "planar"), ("Tait-Bryan", "rotation vector")])
-def test_the_implicit_solver_converges_to_the_explicit_one_with_order_two(kinds):
-    assert_implicit_order_is_two(lambda: supported(kinds, **SUPPORT)[:2])

@@ -14,16 +14,8 @@ def brake(coefficient, conductance=0.0):
     mbs = new_model()
     wheel = rotor(mbs, INERTIA, SPEED)
     thermal = add_thermal_node(mbs, heat_capacity=CAPACITY, conductance=conductance, surroundings=20.0)
-    friction = add_ring_friction(
-        mbs,
-        None,
-        wheel,
-        contact_radius=RADIUS,
-        friction_coefficient=coefficient,
-        normal_load=LOAD,
-        regularisation=1e-1,
-        thermal_node=thermal,
-    )
+    law = {"contact_radius": RADIUS, "friction_coefficient": coefficient, "normal_load": LOAD}
+    friction = add_ring_friction(mbs, None, wheel, **law, regularisation=1e-1, thermal_node=thermal)
     return mbs, wheel, friction, thermal
 
 
@@ -76,14 +68,6 @@ def test_the_balance_of_energy_counts_the_capacity_in_place_of_friction():
     assert np.max(np.abs(balance.residual)) < 1e-10 * balance.turnover
 
 
-def test_what_is_hot_cools_down_by_the_exponential_function():
-    mbs = new_model()
-    mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
-    thermal = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0, surroundings=20.0, start=80.0)
-    run(mbs, end=1.0, steps=100)
-    assert thermal.temperature(mbs) == pytest.approx(20.0 + 60.0 * np.exp(-0.5), rel=1e-12)
-
-
 def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
     mbs, wheel, friction, thermal = brake(
         lambda temperature, slip_speed: 0.0 * slip_speed + fading(temperature)
@@ -96,10 +80,12 @@ def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
     assert thermal.temperature(mbs) > 30.0
 
 
-def test_another_source_heats_it_too():
+def test_what_is_hot_cools_down_by_the_exponential_function_and_another_source_heats_it():
     mbs = new_model()
     mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
-    thermal = add_thermal_node(mbs, heat_capacity=8.0)
-    thermal.heated_by(lambda mbs, t: 3.0 + t)
-    run(mbs, end=1.0, steps=10)
-    assert thermal.temperature(mbs) == pytest.approx(20.0 + 3.5 / 8.0, rel=1e-13)
+    hot = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0, surroundings=20.0, start=80.0)
+    heated = add_thermal_node(mbs, heat_capacity=8.0)
+    heated.heated_by(lambda mbs, t: 3.0 + t)
+    run(mbs, end=1.0, steps=100)
+    assert hot.temperature(mbs) == pytest.approx(20.0 + 60.0 * np.exp(-0.5), rel=1e-12)
+    assert heated.temperature(mbs) == pytest.approx(20.0 + 3.5 / 8.0, rel=1e-13)

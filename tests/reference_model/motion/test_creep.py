@@ -20,7 +20,7 @@ HARDENING = PinOnDisc(
 @pytest.fixture
 def few_steps(monkeypatch):
     """Let a motion that takes very many steps fail, rather than take very long."""
-    monkeypatch.setattr(stepping, "MOST_STEPS", 3_000)
+    monkeypatch.setattr("reference_model.trajectory.MOST_STEPS", 3_000)
 
 
 @pytest.mark.usefixtures("few_steps")

@@ -21,7 +21,6 @@ from plain_slip import slide
 
 from reference_model import PinOnDisc, SimulationError, simulate
 from reference_model.formulas import pin as formulas
-from reference_model.motion import stepper as stepping
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 
@@ -428,13 +427,13 @@ def test_motion_beyond_the_range_of_floats_is_an_error_and_no_result():
 
 
 def test_a_motion_of_too_many_steps_is_refused_with_its_time(monkeypatch):
-    monkeypatch.setattr(stepping, "MOST_STEPS", 50)
+    monkeypatch.setattr("reference_model.trajectory.MOST_STEPS", 50)
     with pytest.raises(SimulationError, match=r"more than 50 steps up to t = \d+"):
         simulate(FIG_5, TO_WHIRL, [0.0, 400.0])
 
 
 def test_a_motion_that_would_take_far_too_many_steps_is_given_up_early(monkeypatch):
-    monkeypatch.setattr(stepping, "LOOK_BACK", 200)
+    monkeypatch.setattr("reference_model.trajectory.LOOK_BACK", 200)
     for start in (TO_WHIRL, [0.1, 0.0, 1e-9, 0.15]):
         with pytest.raises(
             SimulationError, match=r"more than 20,000,000 steps ahead after 200 up to t = \d+"

@@ -1,0 +1,67 @@
+"""What no motion of the paper's systems can start from is refused in a sentence."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compare.claims.paper_parameters import FIG5, FIG11
+from exudyn_models import eigenvalues, simulate, simulate_fixed_step, simulate_with_native_contact
+
+POINTS = replace(FIG11, contact_points=4)
+STARTS = {FIG5: [1.3, 0.0, 0.0, -1.3], FIG11: [0.05, 0.0, 0.4, 0.0, 0.05, 1.3]}
+STARTS[POINTS] = STARTS[FIG11]
+SHARED = [
+    (FIG5, {"initial_state": [0.0, 0.0, 0.0]}, "initial_state has shape"),
+    (FIG5, {"initial_state": [0.0, np.nan, 0.0, 0.0]}, r"initial_state\[1\] = nan"),
+    (POINTS, {"initial_state": [0.0] * 4}, "DiscOnDisc takes 6 numbers"),
+    (POINTS, {"initial_state": [0.0, 0.0, np.inf, 0.0, 0.0, 0.0]}, r"initial_state\[2\] = inf"),
+    (FIG5, {"times": [1.0, 0.0]}, "times must increase"),
+    (FIG5, {"times": []}, "at least one time"),
+]
+WRONG = [
+    *(
+        (engine, *row)
+        for row in SHARED
+        for engine in (simulate, simulate_fixed_step, simulate_with_native_contact)
+    ),
+    (simulate, FIG5, {"tolerance": 0.0}, "tolerance = 0"),
+    (simulate, FIG5, {"regularisation": 0.0}, "regularisation = 0 m/s"),
+    (simulate, FIG11, {"regularisation": -1e-6}, "regularisation = -1e-06 m/s"),
+    (simulate, FIG5, {"regularisation": np.inf}, "regularisation = inf"),
+    (simulate, FIG11, {"solver": "magic"}, "solver = 'magic': it must be 'explicit' or 'implicit'"),
+    (
+        simulate_fixed_step,
+        FIG5,
+        {"integrator": "Euler"},
+        "integrator = 'Euler': it must be one of RK44, RK67",
+    ),
+    (simulate_fixed_step, FIG5, {"step": 0.0}, "step = 0 s: it must be > 0"),
+    (simulate_fixed_step, FIG5, {"step": np.nan}, "step = nan"),
+    (simulate_with_native_contact, FIG5, {"tolerance": 0.0}, "tolerance = 0"),
+    (simulate_with_native_contact, FIG11, {}, "contact_points = None: Exudyn's built-in contact has single"),
+]
+
+
+@pytest.mark.parametrize(("engine", "system", "change", "message"), WRONG)
+def test_arguments_of_a_simulation(engine, system, change, message):
+    arguments = {"initial_state": STARTS[system], "times": [0.0, 1.0]}
+    if engine is simulate_fixed_step:
+        arguments["step"] = 0.1
+    with pytest.raises(ValueError, match=message):
+        engine(system, **arguments | change)
+
+
+@pytest.mark.parametrize(
+    ("system", "state", "message"),
+    [
+        (FIG5, [0.0, 0.0, 0.0, 0.0], "at rest, where friction has no derivative"),
+        (FIG11, [0.0, 0.0, 0.0, 0.0, 0.0, FIG11.disc_speed], "at rest, where friction has no derivative"),
+        # Point 0 is where the speeds of the two discs are the same.
+        (POINTS, [0.0, 0.0, 0.0, 0.0, 0.12, FIG11.disc_speed - 1.0], "or a point of it, is at rest"),
+        (FIG11, [0.0, 0.0, 0.0, 0.0], "DiscOnDisc takes 6 numbers"),
+    ],
+)
+def test_eigenvalues_of_a_contact_without_a_derivative(system, state, message):
+    with pytest.raises(ValueError, match=message):
+        eigenvalues(system, state)
