@@ -76,13 +76,6 @@ def test_23_is_the_average_of_three_terms_of_the_expansion_and_not_of_the_two_th
 # ---------------------------------------------------------------- (24) to (26)
 
 
-def angles_of(disc, equilibrium):
-    """A, α and θ of (24) from a state, by plain trigonometry."""
-    radius = math.hypot(equilibrium.x, equilibrium.y)
-    rim = disc.contact_radius * (1.0 - equilibrium.spin / disc.disc_speed)
-    return math.hypot(radius, rim), math.atan2(rim, radius), math.atan2(equilibrium.y, equilibrium.x)
-
-
 DISCS = [
     mirrored(FIG8),
     replace(FIG8, offset=-0.1),

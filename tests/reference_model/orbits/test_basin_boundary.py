@@ -1,6 +1,5 @@
 """The boundary of the basins of Fig. 5: the stable set of a stick–slip orbit."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -175,20 +174,3 @@ def test_an_orbit_without_two_sides_is_refused(saddle):
         boundary_point(cycle, (0.1, 0.0, 0.0, 0.0), (0.2, 0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="must be a StickSlipOrbit"):
         basin_boundary(FIG5, ranges=RANGES)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"components": ("x", "x")}, "they must be two of x, y, vx, vy"),
-        ({"components": ("x", "spin")}, "they must be two of x, y, vx, vy"),
-        ({"ranges": ((0.0, 0.1), (0.2, 0.2))}, r"range of vx = 0\.2 to 0\.2: it must increase"),
-        ({"ranges": ((0.0, math.nan), (0.2, 0.3))}, "range of x = nan: it must be finite"),
-        ({"ranges": ((0.0, 0.1),)}, "two pairs of numbers"),
-        ({"others": (0.0, 0.0)}, "initial_state has shape"),
-        ({"cells": 1}, "cells = 1: it must be a whole number >= 2"),
-    ],
-)
-def test_a_rectangle_that_is_none_is_refused(saddle, options, message):
-    with pytest.raises(ValueError, match=message):
-        basin_boundary(saddle, **({"ranges": RANGES} | options))

@@ -171,39 +171,3 @@ def test_a_modulation_needs_inertia():
     assert min(np.min(curve.parameters[:, 0]) for curve in traced(PLANES[3], "Hopf")) == pytest.approx(
         0.13, abs=0.01
     )
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"disc": replace(FIG11, offset=0.1)}, "offset = 0.1 m"),
-        ({"names": ("disc_speed", "disc_speed")}, "two of mass"),
-        ({"names": ("disc_speed", "contact_points")}, "two of mass"),
-        ({"upper": (1.2, 0.08)}, "disc_speed from 1.3 to 1.2: the range must not be empty"),
-        ({"lower": (0.9, 0.001)}, "disc_speed = 0.9 rad/s: the whirl exists only where"),
-        ({"lower": (-3.0, 0.001)}, "there is no whirl at rest"),
-        ({"lower": (1.3, 0.0)}, "friction_force = 0"),
-        (
-            {"names": ("mass", "stiffness"), "lower": (0.4, 0.5), "upper": (2.0, 1.0)},
-            "natural frequency 1.58",
-        ),
-    ],
-)
-def test_a_plane_without_whirls_is_refused(changes, message):
-    values = {"disc": FIG11, "names": SPEED_LOAD.names, "lower": SPEED_LOAD.lower, "upper": SPEED_LOAD.upper}
-    with pytest.raises(ValueError, match=message):
-        ParameterPlane(**(values | changes))
-
-
-def test_bad_questions_are_refused():
-    with pytest.raises(ValueError, match="kind = 'hopf': it must be one of Hopf, fold, onset"):
-        boundaries(SPEED_LOAD, "hopf")
-    with pytest.raises(ValueError, match="name = 'damping': it must be one of disc_speed and friction_force"):
-        crossings(SPEED_LOAD, "Hopf", "damping", 0.5)
-    with pytest.raises(ValueError, match=r"disc_speed = 4: it must lie between 1\.3 and 3"):
-        crossings(SPEED_LOAD, "Hopf", "disc_speed", 4.0)
-    points = ParameterPlane(
-        replace(FIG11, contact_points=6), SPEED_LOAD.names, SPEED_LOAD.lower, SPEED_LOAD.upper
-    )
-    with pytest.raises(ValueError, match="contact_points = 6"):
-        boundaries(points, "Hopf")

@@ -406,23 +406,6 @@ def test_missing_whirl_is_explained(changes, reason):
         raise AssertionError(why_no_whirl(disc))
 
 
-def test_missing_motions_of_a_pin_are_explained_by_its_formulas():
-    pin = pin_of(FIG8)
-    assert why_no_equilibrium(pin) is None
-    assert "(eq. 5)" in why_no_equilibrium(replace(pin, friction_force=0.2))
-    assert "sticks on the axis" in why_no_equilibrium(replace(pin, friction_force=0.1))
-    assert "natural frequency" in why_no_whirl(replace(pin, offset=0.0))
-    assert why_no_whirl(replace(pin, offset=0.0, disc_speed=1.5)) is None
-
-
-@pytest.mark.parametrize("function", [self_centred_equilibria, whirls, why_no_equilibrium, why_no_whirl])
-def test_bad_input_is_refused(function):
-    with pytest.raises(ValueError, match="contact_points = 6"):
-        function(replace(FIG11, contact_points=6))
-    with pytest.raises(ValueError, match="a pin touches in one point"):
-        function(pin_of(FIG11), Ring(0.1))
-
-
 # ---------------------------------------------------------------- symmetries and units
 
 

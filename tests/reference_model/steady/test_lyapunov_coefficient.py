@@ -78,10 +78,3 @@ def test_the_whirl_is_at_rest_in_polar_coordinates(law):
     (whirl,) = whirls(FIG11, law)
     state = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, FIG11.disc_speed - whirl.spin])
     assert polar_rates(FIG11, law)(state) == pytest.approx(np.zeros(4), abs=1e-15)
-
-
-def test_a_whirl_with_real_eigenvalues_next_to_the_axis_is_refused():
-    disc = replace(FIG11, friction_force=0.0206)  # just above the onset
-    (whirl,) = whirls(disc)
-    with pytest.raises(ValueError, match="no pair is next to the imaginary axis"):
-        growth_by_amplitude(disc, whirl.state)

@@ -1,10 +1,12 @@
 """What the studies share: parameters in words, turns about the axis, eigenvalues from simulations."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from compare.claims.error_estimates import TIGHTEST
 from compare.claims.linearised_flow import matched, measured_eigenvalues, rotated
 from compare.claims.paper_parameters import FIG5, FIG8, FIG9, FIG11
 from compare.claims.parameters import parameters_of
@@ -67,3 +69,25 @@ def test_eigenvalues_of_a_disc_are_measured_within_their_error(name, figure):
     measured, error = measured_eigenvalues(engine, disc, motion.state, duration=1.0, frame_speed=frame)
     assert len(measured) == 5
     assert np.max(np.abs(matched(measured, expected) - expected)) < error < 1e-5
+
+
+def test_eigenvalues_of_an_exact_linear_flow_are_uncertain_by_the_tolerance():
+    """Errors below the tolerance need not show in any difference, so they count although this engine makes none."""
+    (rest,) = self_centred_equilibria(FIG5)
+    slow, fast, duration = -0.1, -2.0, 1.5
+    rates = np.array([slow, slow, fast, fast])
+
+    def simulate_many(tasks, *, tolerance):
+        return [
+            SimpleNamespace(at_end=rest.state + np.exp(rates * times[-1]) * (state - rest.state))
+            for _, state, times in tasks
+        ]
+
+    engine = SimpleNamespace(simulate_many=simulate_many)
+    found, error = measured_eigenvalues(engine, FIG5, rest.state, duration=duration)
+    assert sorted(found.real) == pytest.approx(sorted(rates), abs=1e-9)
+    # A deviation of 0.004 of the slip, in m/s or in m, is left as exp(fast·duration) of itself.
+    slip = FIG5.disc_speed * np.hypot(rest.x, rest.y)
+    smallest = 4e-3 * min(slip, slip / FIG5.disc_speed)
+    within_tolerance = 10.0 * TIGHTEST * np.abs(rest.state).max() / smallest
+    assert error == pytest.approx(within_tolerance / (np.exp(fast * duration) * duration), rel=0.01)
