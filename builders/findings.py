@@ -167,7 +167,7 @@ def unmeasured(results: Results) -> Iterator[str]:
     found = {study["name"]: study["claims"] for study in results["studies"]} if _is_whole(results) else {}
     for study in studies(found) if found else ():
         claims = [claim_from_json(claim) for claim in found[study.name]]
-        for text in (study.finding, study.paper, *study.figures.values()):
+        for text in (study.prose.finding, study.prose.paper, *study.figures.values()):
             for _, words in parts(text):
                 if words is not None and quote(claims, words) is None:
                     yield f"{study.name}: no claim has {words!r}"

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 NAME = "study.md"
@@ -35,13 +35,28 @@ SECTIONS = {
 
 @dataclass(frozen=True)
 class Prose:
-    """Title, section, what the paper says, what was found, and the caption of each figure."""
+    """The texts of a study.
+
+    Parameters
+    ----------
+    title : str
+        A line.
+    paper : str
+        What the paper says, in a paragraph.
+    section : str
+        Heading under which the overview lists the study with its neighbours.
+    finding : str
+        What the paper leaves open and the study answers, for the first screen; shown while all claims agree.
+    figures : mapping
+        Caption for each figure and animation name.
+
+    """
 
     title: str
-    section: str
-    paper: str
-    finding: str
-    figures: Mapping[str, str]
+    paper: str = ""
+    section: str = ""
+    finding: str = ""
+    figures: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, file: Path, words: Mapping[str, str]) -> Prose:
@@ -68,8 +83,8 @@ class Prose:
             )
         return cls(
             title,
-            SECTIONS[group],
             paper,
+            SECTIONS[group],
             next((body for depth, title, body in others if (depth, title) == ("##", "Finding")), ""),
             {title: body for depth, title, body in others if depth == "###"},
         )

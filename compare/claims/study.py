@@ -143,9 +143,8 @@ def _takes_engine(function: Callable[..., Any]) -> bool:
     return next(iter(inspect.signature(function).parameters), "") == "engine"
 
 
-def nothing_drawn(data: ByEngine) -> Figures:
-    """Draw nothing."""
-    return {}
+PROVIDED = ("figures", "animations", "curves", "tables", "recorded")
+"""What a study may provide in addition to its claims."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,40 +157,16 @@ class Study:
     ----------
     name : str
         As on the command line: "fig03".
-    title : str
-        A line.
-    paper : str
-        What the paper says, in a paragraph.
-    by_hand : callable, optional
-        ``by_hand(engine) -> Findings`` in place of declared claims, where a study makes them by itself.
-    draw : callable
-        ``draw(data: ByEngine) -> Figures``; must cope with a missing engine.
-    theory : callable, optional
-        ``theory() -> Findings``: statements in which no simulation takes part, by hand.
-    curves : callable, optional
-        ``curves() -> Data``: curves of formulas, for the figures.
-    figures : dict
-        Caption for each figure and animation name.
+    prose : Prose
+        Title, what the paper says, finding and captions.
     only : tuple of str
         Names of the engines that the study is about; empty for all.
-    animations : callable, optional
-        ``animations(data) -> {name: GIF}``, ``data`` as in ``draw``; see ``compare.report.animation``.
-    section : str
-        Heading under which the overview lists the study, with its neighbours of the same section.
-    finding : str
-        What the paper leaves open and the study answers, in a sentence or two for the first screen; shown
-        while all claims of the study agree.
     source : str
         Where the parameters come from: a figure, or an assumption in words.
     system : PinOnDisc or DiscOnDisc, optional
         The one whose parameters repeat the measurements.
     seconds : float
         About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
-    tables : callable, optional
-        ``tables() -> (Table, ...)``: what the report shows besides claims and figures, none of it measured.
-    recorded : callable, optional
-        ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart. All make the same
-        claims, in the same order.
     quick : bool
         Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
     contact : bool
@@ -199,50 +174,79 @@ class Study:
         too, its claims leave those out for an engine of which that is true.
     declared : list of Declared
         The claims, in the order of the report.
-
-    The callables are functions of a module (no lambdas), because they are sent to other processes.
+    provided : dict
+        What else the study provides, see ``provides``.
 
     """
 
     name: str
-    title: str
-    paper: str
-    by_hand: Callable[[Engine], Findings] | None = None
-    draw: Callable[[ByEngine], Figures] = nothing_drawn
-    theory: Callable[[], Findings] | None = None
-    curves: Callable[..., Mapping[str, Any]] | None = None
-    figures: Mapping[str, str] = field(default_factory=dict)
-    only: tuple[str, ...] = ()
-    animations: Callable[[ByEngine], dict[str, bytes]] | None = None
-    section: str = ""
-    finding: str = ""
+    prose: Prose
     source: str = ""
     system: System | None = None
     seconds: float = 1.0
-    tables: Callable[[], tuple[Table, ...]] | None = None
-    recorded: Callable[[], tuple[Recorded, ...]] | None = None
+    only: tuple[str, ...] = ()
     quick: bool = False
     contact: bool = False
     declared: list[Declared] = field(default_factory=list)
+    provided: dict[str, Callable[..., Any]] = field(default_factory=dict)
 
     @classmethod
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
         """Return the study whose prose is ``study.md`` beside ``file``, or in the folder above it.
 
-        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes. Where the prose has no
-        captions, a study that draws has one figure, with its own name and title.
+        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
         """
-        prose = Prose.of(Path(file), words or {})
-        figures = prose.figures or ({name: prose.title} if "draw" in more else {})
-        return cls(
-            name=name,
-            title=prose.title,
-            paper=prose.paper,
-            section=prose.section,
-            finding=prose.finding,
-            figures=figures,
-            **more,
+        return cls(name, Prose.of(Path(file), words or {}), **more)
+
+    def provides(self, **functions: Callable[..., Any]) -> None:
+        """Add functions of a module (no lambdas, because they are sent to other processes) under these names.
+
+        =============  ===========================================================================================
+        ``figures``    ``draw(data: ByEngine) -> Figures``; must cope with a missing engine
+        ``animations``  ``animate(data: ByEngine) -> {name: GIF}``, see ``compare.report.animation``
+        ``curves``     ``curves() -> Data``: curves of formulas, for the figures
+        ``tables``     ``tables() -> (Table, ...)``: what the report shows in addition, none of it measured
+        ``recorded``   ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart; all make
+                       the same claims, in the same order
+        =============  ===========================================================================================
+
+        Raises ``TypeError`` for another name.
+        """
+        if unknown := functions.keys() - PROVIDED:
+            raise TypeError(f"{self.name} provides {', '.join(unknown)}: known are {', '.join(PROVIDED)}")
+        self.provided.update(functions)
+
+    @property
+    def title(self) -> str:
+        """The line above the study."""
+        return self.prose.title
+
+    @property
+    def figures(self) -> Mapping[str, str]:
+        """The caption of each figure; a study without captions that draws has one figure with its name and title."""
+        return self.prose.figures or ({self.name: self.title} if "figures" in self.provided else {})
+
+    def draw(self, data: ByEngine) -> Figures:
+        """Return the figures of the data that were found, by name."""
+        figures: Figures = self.provided["figures"](data) if "figures" in self.provided else {}
+        return figures
+
+    def animate(self, data: ByEngine) -> dict[str, bytes]:
+        """Return the animations (GIF) of the data that were found, by name."""
+        animations: dict[str, bytes] = (
+            self.provided["animations"](data) if "animations" in self.provided else {}
         )
+        return animations
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the tables that the report shows in addition to claims and figures."""
+        tables: tuple[Table, ...] = self.provided["tables"]() if "tables" in self.provided else ()
+        return tables
+
+    def recorded(self) -> tuple[Recorded, ...]:
+        """Return what was recorded of engines, no part of a run."""
+        settings: tuple[Recorded, ...] = self.provided["recorded"]() if "recorded" in self.provided else ()
+        return settings
 
     def claim(
         self,
@@ -295,7 +299,7 @@ class Study:
     @property
     def has_theory(self) -> bool:
         """Whether there is anything to find without an engine."""
-        return bool(self.theory or self.curves) or any(not one.of_engine for one in self.declared)
+        return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
     def measure(self, engine: Engine, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims on ``engine``.
@@ -310,15 +314,13 @@ class Study:
             Names of the functions that are to be called, or "function/case" for one of a family; empty for all.
 
         """
-        if self.by_hand is not None:
-            return self.by_hand(engine)
         return self._findings(engine, few or {}, only)
 
     def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
-        found = self._findings(None, few or {}, only) if self.theory is None else self.theory()
-        if self.curves is not None and not only:
-            found.data.update(_arrays(self.curves(**(few or {}).get("curves", {}))))
+        found = self._findings(None, few or {}, only)
+        if "curves" in self.provided and not only:
+            found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
         return found
 
     def _findings(self, engine: Engine | None, few: Few, only: Collection[str]) -> Findings:

@@ -236,9 +236,7 @@ def matrix(run: Run) -> Matrix:
     rows = tuple(row for study in run.studies for row in _rows(run, study))
     used = {column for row in rows for column in row.cells}
     recorded = tuple(
-        RecordedMatrix(study, settings)
-        for study in run.studies
-        if study.recorded is not None and (settings := study.recorded())
+        RecordedMatrix(study, settings) for study in run.studies if (settings := study.recorded())
     )
     columns = tuple(column for column in (THEORY, *run.engines) if column in used)
     return Matrix(columns, run.studies, rows, recorded)

@@ -222,7 +222,9 @@ def _parameter(value: Any) -> str:
 def _is_answered(study: Study, own: Matrix) -> bool:
     """Tell whether the study has a finding, all of its claims agree and all numbers of the finding were measured."""
     return (
-        bool(study.finding) and own.agrees and quotes.MISSING not in quotes.filled(study.finding, own.claims)
+        bool(study.prose.finding)
+        and own.agrees
+        and quotes.MISSING not in quotes.filled(study.prose.finding, own.claims)
     )
 
 

@@ -29,7 +29,7 @@ def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
     """Return the figures and animations of a study as bytes."""
     with paper_style():
         figures = {name: as_svg(figure) for name, figure in study.draw(data).items()} if data else {}
-        animations = dict(study.animations(data)) if data and study.animations is not None else {}
+        animations = study.animate(data) if data else {}
     return Drawing(figures, animations)
 
 

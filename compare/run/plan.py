@@ -85,10 +85,7 @@ def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
 
 
 def _pieces(study: Study) -> Iterator[tuple[str, ...]]:
-    """Yield what can be measured by itself: each claim, or all of a study that makes them by hand."""
-    if study.by_hand is not None:
-        yield ()
-        return
+    """Yield what can be measured by itself: each claim."""
     for part in study.sentences().values():
         yield (part,)
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.prose import Prose
 from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.output.figures import axis, curve, engines_in, new_figure, points
@@ -22,6 +23,26 @@ from compare.report.animation import gif
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 LOADS = np.linspace(0.0, 0.1, 21)
+
+
+class Fake(Study):
+    """A study that finds everything by one function for engines and one for the theory, without declared claims."""
+
+    def measure(self, engine, few=None, only=()):
+        return self.provided["measure"](engine)
+
+    @property
+    def has_theory(self):
+        return "theory" in self.provided
+
+    def measure_theory(self, few=None, only=()):
+        return self.provided["theory"]()
+
+
+def fake(name, title, paper, measure, *, finding="", captions=None, provided=None, **more):
+    """Return a study that ``measure`` measures; ``provided`` are its other functions."""
+    prose = Prose(title, paper, finding=finding, figures=captions or {})
+    return Fake(name, prose, provided={"measure": measure, **(provided or {})}, **more)
 
 
 def straight(system, initial_state, times, *, tolerance=1e-9):
@@ -129,19 +150,17 @@ def animate_verdicts(data):
     return {"fake-motion": gif(figure, update, 8)}
 
 
-VERDICTS = Study(
+VERDICTS = fake(
     name="verdicts",
     title="Fig. 3: self-centring of the pin at low speed",
     paper="Under friction the pin rests at a point of a semicircle over the offset (3), (4), as long as "
     "μN < C·X₀ (5).\n\nWith growing load it moves towards the centre of the disc, `rest(load) < X₀`.",
-    by_hand=measure_verdicts,
-    draw=draw_verdicts,
-    theory=theory_of_verdicts,
-    figures={
+    measure=measure_verdicts,
+    captions={
         "fake-radius": "Radius of the equilibrium over the load: both engines on the formula (3).",
         "fake-motion": "The motion at 0.8 rad/s.",
     },
-    animations=animate_verdicts,
+    provided={"figures": draw_verdicts, "animations": animate_verdicts, "theory": theory_of_verdicts},
 )
 
 
@@ -157,14 +176,8 @@ def measure_agreement_and_count(engine):
     return measure_agreement(engine)
 
 
-def draw_nothing(data):
-    return {}
-
-
-AGREEMENT = Study("agreement", "A claim that holds", "One half.", measure_agreement, draw_nothing, quick=True)
-COUNTED = Study(
-    "counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count, draw_nothing
-)
+AGREEMENT = fake("agreement", "A claim that holds", "One half.", measure_agreement, quick=True)
+COUNTED = fake("counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count)
 
 
 MEASURED = []
@@ -176,21 +189,21 @@ def measure_motion(engine):
     return Findings(data={"end": engine.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0]).at_end})
 
 
-MOTION = Study("motion", "Where a pin is after 1 s", "Somewhere.", measure_motion, draw_nothing)
+MOTION = fake("motion", "Where a pin is after 1 s", "Somewhere.", measure_motion)
 
 
 def measure_too_roughly(engine):
     return Findings((claim("Nothing is shown", engine.name, 2.0, 2.1, 0.5),))
 
 
-INCONCLUSIVE = Study("inconclusive", "A rough claim", "Two.", measure_too_roughly, draw_nothing)
+INCONCLUSIVE = fake("inconclusive", "A rough claim", "Two.", measure_too_roughly)
 
 
 def measure_death(engine):
     os._exit(7)
 
 
-DEATH = Study("death", "A process that dies", "Compiled code may do so.", measure_death, draw_nothing)
+DEATH = fake("death", "A process that dies", "Compiled code may do so.", measure_death)
 
 
 def measure_unending(engine):
@@ -202,7 +215,7 @@ def measure_unending(engine):
     return Findings()
 
 
-UNENDING = Study("unending", "A study that takes too long", "An hour.", measure_unending, draw_nothing)
+UNENDING = fake("unending", "A study that takes too long", "An hour.", measure_unending)
 
 
 PIN, POINTS, RING = (
@@ -235,21 +248,23 @@ def measure_a_ring(engine):
     return Findings((claim(RING, engine.name, 0.0, moved, 0.0),), {"moved": np.array([moved])})
 
 
-PARTLY = Study("partly", "Pin, points and ring", "Zero.", measure_what_is_promised, draw_nothing)
-RING_ONLY = Study("ring-only", "The ring", "Zero.", measure_a_ring, draw_nothing)
+PARTLY = fake("partly", "Pin, points and ring", "Zero.", measure_what_is_promised)
+RING_ONLY = fake("ring-only", "The ring", "Zero.", measure_a_ring)
 
 
 def draw_wrongly(data):
     raise KeyError("radius")
 
 
-UNDRAWABLE = Study("undrawable", "A figure that fails", "None.", measure_agreement, draw_wrongly)
+UNDRAWABLE = fake(
+    "undrawable", "A figure that fails", "None.", measure_agreement, provided={"figures": draw_wrongly}
+)
 
 
 def measure_nothing(engine):
     return None
 
 
-NO_FINDINGS = Study("no-findings", "A mistake in a study", "None.", measure_nothing, draw_nothing)
+NO_FINDINGS = fake("no-findings", "A mistake in a study", "None.", measure_nothing)
 
 ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE, PARTLY, RING_ONLY)

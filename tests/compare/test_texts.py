@@ -76,7 +76,7 @@ def test_equations_of_claims_are_numbers_that_the_paper_has():
 
 def test_parentheses_that_stand_for_an_equation_do_so_in_every_text_of_a_study():
     for study in STUDIES:
-        for text in (study.title, study.paper, study.finding, *study.figures.values()):
+        for text in (study.title, study.prose.paper, study.prose.finding, *study.figures.values()):
             assert all(1 <= number <= EQUATIONS for number in map(int, re.findall(r"\((\d+)\)", text))), text
 
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from compare.claims.study import nothing_drawn
 from compare.engines import one_of
 
 if TYPE_CHECKING:
@@ -30,14 +29,4 @@ def with_claim(studies: Sequence[Study], identity: str) -> Study:
         one_of("claim", identity, (one for one in found if one.startswith(f"{name}/")))
     ]
     alone = replace(declared, each={case: declared.each[case]}) if declared.each else declared
-    return replace(
-        study,
-        declared=[alone],
-        draw=nothing_drawn,
-        figures={},
-        animations=None,
-        curves=None,
-        tables=None,
-        recorded=None,
-        finding="",
-    )
+    return replace(study, prose=replace(study.prose, finding="", figures={}), declared=[alone], provided={})

@@ -118,7 +118,7 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
     return {
         "name": study.name,
         "title": study.title,
-        "finding": filled(study.finding, own.claims),
+        "finding": filled(study.prose.finding, own.claims),
         "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",

@@ -10,7 +10,7 @@ from compare.claims.claim import THEORY, Verdict
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.paper_parameters import FIG5
 from compare.claims.prose import Prose
-from compare.claims.study import Study, nothing_drawn
+from compare.claims.study import Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.report.worst import worst
 from reference_model import simulate
@@ -21,7 +21,7 @@ ENGINE = Engine("exact", simulate)
 
 def study_of(*names):
     """Return a study with the claims of these names, declared in this order."""
-    study = Study("rest", "Rest", "It rests.", system=FIG5, source="Fig. 5")
+    study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
 
     def rests(engine, loads=LOADS):
         off = np.array([[0.0, 1e-4], [3e-3, 0.0]])
@@ -204,12 +204,16 @@ def test_prose_is_read(folder):
 
 
 def test_a_study_without_captions_has_one_figure_with_its_own_name_and_title(folder):
-    def beside(**more):
-        return Study.beside(str(folder / "claims.py"), "title", words={"range": "any"}, **more)
+    def beside(**provided):
+        study = Study.beside(str(folder / "claims.py"), "title", words={"range": "any"})
+        study.provides(**provided)
+        return study
 
-    assert beside(draw=nothing_drawn).figures == {"branches": "A caption."}
+    assert beside().figures == {"branches": "A caption."}
     (folder / "study.md").write_text("# A title\n\nWhat the paper says of {range}.\n", encoding="utf-8")
-    assert beside(draw=nothing_drawn).figures == {"title": "A title"}
+    assert beside(figures=dict).figures == {"title": "A title"}
+    with pytest.raises(TypeError, match="title provides movies: known are figures, animations"):
+        beside(movies=dict)
     assert beside().figures == {}
 
 

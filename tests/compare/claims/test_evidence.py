@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fake_studies import GOOD, claim, draw_nothing, straight
+from fake_studies import GOOD, claim, fake, straight
 
 from compare.claims.claim import BASES, THEORY, Verdict
 from compare.claims.evidence import evidence_of
-from compare.claims.study import Findings, Study
+from compare.claims.study import Findings
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
 from compare.report.matrix import State
 from compare.report.page import summary
@@ -63,7 +63,7 @@ def measured_with_its_own_law(engine):
 
 
 def study_of(measure, **more):
-    return Study("rests", "Rest and whirl", "They are.", measure, draw_nothing, **more)
+    return fake("rests", "Rest and whirl", "They are.", measure, **more)
 
 
 def kinds(folder, study, *of):
@@ -157,7 +157,7 @@ def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
 def reported(tmp_path_factory):
     """Matrix and folder of a report on the reference and Exudyn, with something of every kind."""
     folder = tmp_path_factory.mktemp("evidence")
-    study = study_of(measured_with_its_own_law, theory=theory)
+    study = study_of(measured_with_its_own_law, provided={"theory": theory})
     native_too = replace(exudyn_native, function=straight)
     matrix = write_report(run((study,), (reference, exudyn, native_too), folder=folder / "data"), folder)
     return matrix, folder

@@ -7,6 +7,7 @@ import fake_studies
 import pytest
 
 from compare.claims.measured import Measured
+from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.cli import app as cli
 
@@ -66,7 +67,7 @@ def itself(engine, value):
 
 @pytest.mark.usefixtures("in_this_process")
 def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_path, capsys):
-    study = Study("silent", "A study with nothing to measure", "")
+    study = Study("silent", Prose("A study with nothing to measure"))
     study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--engine", "fake_studies:straight"], (study,)) == 4

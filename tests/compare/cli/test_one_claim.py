@@ -6,11 +6,12 @@ import pytest
 from fake_studies import GOOD
 
 from compare.claims.measured import Measured
+from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.cli.app import status
 from compare.engines import registry
 
-STUDY = Study("declared", "Claims that are declared", "Two.", quick=True)
+STUDY = Study("declared", Prose("Claims that are declared"), quick=True)
 ASKED = []
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from compare.claims.claim import Verdict
 from compare.claims.measured import Measured
+from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.engines.finer_steps import LONGEST, SHORTER, decided
@@ -43,7 +44,7 @@ def swing(engine, tolerance):
 
 
 def study_of(resolution):
-    study = Study("mine", "Mine", "")
+    study = Study("mine", Prose("Mine"))
 
     @study.claim("It swings", resolution=resolution)
     def swings(engine):

@@ -56,7 +56,7 @@ def recorded():
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory):
-    study = replace(AGREEMENT, recorded=recorded)
+    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": recorded})
     result = run((study, VERDICTS), (GOOD, FAILING), folder=tmp_path_factory.mktemp("seen"))
     result.versions["good"] = "3"
     return result
@@ -110,9 +110,8 @@ def test_one_that_was_recorded_too_has_the_grade_of_its_motions(seen):
 
 
 def test_without_recorded_motions_the_coarsest_claim_grades(tmp_path):
-    plain = replace(AGREEMENT, recorded=None)
-    one = run((plain,), (GOOD,), folder=tmp_path)
+    one = run((AGREEMENT,), (GOOD,), folder=tmp_path)
     (good,) = glances(one, matrix(one))
     assert (good.grade, good.cells) == ("exact", ())
-    nothing = Run((plain,), ("good",))
+    nothing = Run((AGREEMENT,), ("good",))
     assert glances(nothing, matrix(nothing))[0].grade == "open"

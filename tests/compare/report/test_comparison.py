@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, measure_verdicts
+from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, fake, measure_verdicts
 
 from compare.claims.study import Findings
 from compare.cli.app import status
@@ -18,9 +18,9 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 PLACES = "the pin comes to rest at the point of eq. (3)"
 
 
-def written(folder, by_hand=measure_verdicts, studies=(), engine=GOOD):
+def written(folder, measure=measure_verdicts, studies=(), engine=GOOD):
     """Return the folder of a report of one study, made by hand, and of ``studies``."""
-    study = replace(VERDICTS, by_hand=by_hand, theory=None, animations=None, figures={})
+    study = fake(VERDICTS.name, VERDICTS.title, "Any.", measure)
     write_report(run((study, *studies), (engine,), folder=folder / "data"), folder)
     return folder
 

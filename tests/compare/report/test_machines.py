@@ -2,12 +2,11 @@
 
 import json
 import xml.etree.ElementTree as ET
-from dataclasses import replace
 
 import jsonschema
 import numpy as np
 import pytest
-from fake_studies import AGREEMENT, GOOD, VERDICTS, claim, measure_verdicts
+from fake_studies import AGREEMENT, GOOD, claim, fake, measure_verdicts
 
 from compare.claims.as_json import claim_from_json
 from compare.claims.study import Findings
@@ -76,7 +75,7 @@ def mixed(engine):
 @pytest.mark.parametrize("large", [0, 10**9], ids=["compressed", "plain"])
 def test_a_table_says_unit_and_place_of_each_number(tmp_path, monkeypatch, large):
     monkeypatch.setattr(arrays, "LARGE", large)
-    study = replace(VERDICTS, name="mixed", by_hand=mixed, theory=None, animations=None, figures={})
+    study = fake("mixed", "Mixed", "Any.", mixed)
     write_report(run((study,), (GOOD,), folder=tmp_path / "data"), tmp_path)
     first, second = read_results(tmp_path / "results.json")["studies"][0]["claims"]
     assert (first["measurement"], second["measurement"]) == (1, 2)

@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from fake_studies import VERDICTS, claim, straight
+from fake_studies import claim, fake, straight
 
 from compare.claims.study import Findings
 from compare.engines import Engine
@@ -72,13 +72,8 @@ def quoted(engine):
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 
-STUDY = replace(
-    VERDICTS,
-    by_hand=quoted,
-    theory=None,
-    draw=lambda data: {},
-    finding="It rests at {place, 2 digits} m.",
-    paper="The radius is {place} m.",
+STUDY = fake(
+    "verdicts", "Verdicts", "The radius is {place} m.", quoted, finding="It rests at {place, 2 digits} m."
 )
 
 
@@ -98,6 +93,6 @@ def test_the_page_links_each_quote_to_its_claim_and_tells_its_error(tmp_path):
 
 
 def test_a_finding_whose_number_was_not_measured_is_none(tmp_path):
-    page = page_of(replace(STUDY, finding="It rests at {nowhere} m."), tmp_path)
+    page = page_of(replace(STUDY, prose=replace(STUDY.prose, finding="It rests at {nowhere} m.")), tmp_path)
     assert "It rests at" not in page
     assert quotes.MISSING not in page

@@ -289,7 +289,7 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
 
 @pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (VERDICTS, False)])
 def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tmp_path, study, shown):
-    study = replace(study, finding="Straight on.")
+    study = replace(study, prose=replace(study.prose, finding="Straight on."))
     engines = (Engine("one", straight, EVERY_KIND), Engine("pins", straight))
     write_report(run((study,), engines, folder=tmp_path / "data"), tmp_path)
     assert ("<li>Straight on." in (tmp_path / "index.html").read_text(encoding="utf-8")) == shown
@@ -304,22 +304,22 @@ GIVEN = {
 
 
 def test_numbers_of_a_finding_are_quoted_from_claims():
-    found = [study for study in STUDIES if study.finding]
+    found = [study for study in STUDIES if study.prose.finding]
     assert {study.name for study in found} >= {"fig11", "stability-map"}
     for study in found:
-        words = "".join(literal for literal, _ in parts(study.finding))
+        words = "".join(literal for literal, _ in parts(study.prose.finding))
         assert re.findall(r"[\d.]*\d (?:%|N|mm|m|s|1/s)(?!\w)", words) == GIVEN.get(study.name, [])
-        assert any(quoted for _, quoted in parts(study.finding))
+        assert any(quoted for _, quoted in parts(study.prose.finding))
 
 
 def test_a_caption_and_a_paragraph_have_no_brace_but_of_a_quote():
     for study in STUDIES:
-        for text in (study.finding, study.paper, *study.figures.values()):
+        for text in (study.prose.finding, study.prose.paper, *study.figures.values()):
             assert all(quoted != "" for _, quoted in parts(text))
 
 
 def test_studies_of_a_section_stand_together():
-    sections = [study.section for study in STUDIES]
+    sections = [study.prose.section for study in STUDIES]
     assert all(sections)
     assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
 
@@ -375,7 +375,7 @@ def recorded():
 def recorded_reported(tmp_path_factory):
     """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
     folder = tmp_path_factory.mktemp("recorded")
-    study = replace(AGREEMENT, recorded=recorded)
+    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": recorded})
     arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]
     return status(arguments, (study,)), folder
 

@@ -9,6 +9,7 @@ import pytest
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
 from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.cli import app as cli
 from compare.cli.trajectory_files import write_csv
@@ -16,7 +17,7 @@ from compare.engines import engines
 from compare.run.plan import planned
 from reference_model import PinOnDisc, simulate
 
-STUDY = Study("planned", "A study of all sorts", "")
+STUDY = Study("planned", Prose("A study of all sorts"))
 START = (0.1, 0.0, 0.03, 0.0)
 MORE = {"unit": "m", "resolution": 1e-6}
 
@@ -131,7 +132,7 @@ def test_a_plan_that_there_is_none_of_is_refused_in_one_sentence(arguments, reas
 
 
 def test_a_study_that_is_about_engines_of_this_project_is_not_left_out_in_silence(tmp_path, capsys):
-    ours = Study("ours", "A study of one engine", "", only=("exudyn",))
+    ours = Study("ours", Prose("A study of one engine"), only=("exudyn",))
     assert cli.status(["plan", "ours", "planned", "--output", str(tmp_path)], (ours, STUDY)) == 0
     assert capsys.readouterr().err == "ours is about exudyn only: nothing is planned\n"
 
@@ -139,7 +140,8 @@ def test_a_study_that_is_about_engines_of_this_project_is_not_left_out_in_silenc
 def test_a_study_that_fails_with_the_answers_of_the_reference_is_told_and_the_others_are_planned(
     tmp_path, capsys
 ):
-    broken = Study("broken", "A study with a mistake", "", by_hand=_broken)
+    broken = Study("broken", Prose("A study with a mistake"))
+    broken.claim("It is measured", resolution=1.0)(_broken)
     assert cli.status(["plan", "--jobs", "1", "--output", str(tmp_path)], (broken, STUDY)) == 1
     said = capsys.readouterr()
     assert said.err.startswith("broken can't be planned: a mistake (test_plan.py:")

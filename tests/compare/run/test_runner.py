@@ -98,7 +98,7 @@ def test_a_figure_that_fails_leaves_the_claims(tmp_path):
 
 
 def test_what_is_no_result_is_said(tmp_path):
-    unsendable = replace(fake.NO_FINDINGS, name="unsendable", by_hand=lambda engine: None)
+    unsendable = replace(fake.NO_FINDINGS, name="unsendable", provided={"measure": lambda engine: None})
     found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
     assert (
         found["no-findings", "good"].reason == "TypeError: the study returned NoneType: it must be Findings"

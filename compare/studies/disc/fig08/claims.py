@@ -52,11 +52,10 @@ STUDY = Study.beside(
     "fig08",
     source=SOURCE,
     system=RING,
-    draw=draw,
-    curves=curves,
     seconds=2.5,
     words={"own": f"{RING.offset:g}"},
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 @functools.lru_cache(maxsize=4)

@@ -29,12 +29,11 @@ STUDY = Study.beside(
     "simulated-map",
     source=f"Fig. 11 with X0 = 0; β, b and the start {START} are ours",
     system=FIG11,
-    draw=draw,
-    curves=curves,
     only=("theory",),  # the plane is simulated by the ensemble of the reference alone
     seconds=2.0,
     words={"side": f"{SIDE}"},
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 @STUDY.claim(

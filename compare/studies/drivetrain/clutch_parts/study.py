@@ -222,11 +222,10 @@ STUDY = Study.beside(
     __file__,
     "clutch-parts",
     source="two rotors with a clutch, an assumption",
-    draw=draw,
-    curves=curves,
     only=("exudyn",),
     seconds=4.0,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 @STUDY.claim(

@@ -60,12 +60,11 @@ STUDY = Study.beside(
     __file__,
     "coupled-clutches",
     source="Modelica.Mechanics.Rotational.Examples.CoupledClutches",
-    draw=draw,
-    curves=curves,
     only=("exudyn", "exudyn-native"),
     contact=True,
     seconds=2.0,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 def _speeds(t: FloatArray) -> FloatArray:

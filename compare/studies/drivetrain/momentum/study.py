@@ -92,10 +92,10 @@ STUDY = Study.beside(
     "drivetrain-momentum",
     words={"combinations": str(len(DRIVETRAINS))},
     source="three bodies by choice, displaced, tilted and moving against each other",
-    draw=draw,
     only=("exudyn",),
     seconds=4.5,
 )
+STUDY.provides(figures=draw)
 
 
 @STUDY.claim(

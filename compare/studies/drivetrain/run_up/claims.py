@@ -44,12 +44,10 @@ STUDY = Study.beside(
     "drivetrain-run-up",
     words={"turns": str(TURNS)},
     source=SOURCE,
-    draw=draw,
-    curves=curves,
-    animations=animations,
     only=("exudyn",),
     seconds=5.0,
 )
+STUDY.provides(figures=draw, animations=animations, curves=curves)
 
 
 @functools.lru_cache(maxsize=1)

@@ -45,10 +45,9 @@ STUDY = Study.beside(
     "clutch-scale",
     source=SOURCE.format("Fig. 5"),
     system=scaled(FIG5),
-    curves=curves,
-    draw=draw,
     seconds=1.5,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 def at_clutch(

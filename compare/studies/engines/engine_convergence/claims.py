@@ -38,9 +38,8 @@ from compare.studies.engines.engine_convergence.theory import (
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(
-    __file__, "engine-convergence", system=FIG5, draw=draw, only=("reference", "exudyn"), seconds=3.0
-)
+STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("reference", "exudyn"), seconds=3.0)
+STUDY.provides(figures=draw)
 
 
 # ---------------------------------------------------------------- in the tolerance

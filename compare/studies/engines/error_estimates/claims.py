@@ -44,9 +44,9 @@ STUDY = Study.beside(
         "most": f"{MOST_OVER_ESTIMATE:g}",
     },
     source=SOURCE,
-    draw=draw,
     seconds=3.5,
 )
+STUDY.provides(figures=draw)
 
 
 @STUDY.claim(

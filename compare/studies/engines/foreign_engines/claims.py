@@ -64,13 +64,10 @@ def curves() -> Data:
 STUDY = Study.beside(
     __file__,
     "foreign-engines",
-    draw=draw,
-    curves=curves,
-    tables=tables,
-    recorded=recorded_settings,
     only=("theory",),
     seconds=1.0,
 )
+STUDY.provides(figures=draw, curves=curves, tables=tables, recorded=recorded_settings)
 
 
 _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)

@@ -21,7 +21,8 @@ from compare.studies.engines.power_balance.pictures import draw
 from reference_model import PowerBalance, Trajectory, power_balance
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "power-balance", draw=draw, seconds=2.5, quick=True, contact=True)
+STUDY = Study.beside(__file__, "power-balance", seconds=2.5, quick=True, contact=True)
+STUDY.provides(figures=draw)
 
 SENTENCE = "What the drive puts in is heat and stored energy: {}"
 

@@ -45,11 +45,11 @@ STUDY = Study.beside(
     __file__,
     "trajectories",
     words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
-    draw=draw,
     seconds=2.0,
     quick=True,
     contact=True,
 )
+STUDY.provides(figures=draw)
 
 INTEGRATED = (
     f"What is missing in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its error from how "

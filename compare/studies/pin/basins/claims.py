@@ -67,10 +67,9 @@ STUDY = Study.beside(
     words={"rectangle": RECTANGLE, "side": f"{SIDE}"},
     source="Fig. 5",
     system=FIG5,
-    draw=draw,
-    curves=curves,
     seconds=4.5,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 @STUDY.claim(

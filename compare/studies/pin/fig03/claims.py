@@ -39,7 +39,8 @@ from reference_model.formulas.pin import equilibrium_position, semicircle_residu
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "fig03", source=SOURCE, system=PIN, draw=draw, curves=curves, seconds=2.0)
+STUDY = Study.beside(__file__, "fig03", source=SOURCE, system=PIN, seconds=2.0)
+STUDY.provides(figures=draw, curves=curves)
 
 DECAYS = "No small deviation from the position of rest grows, whatever the friction force within (5)"
 

@@ -33,7 +33,8 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "fig04", source=SOURCE, draw=draw, curves=curves, seconds=1.5, quick=True)
+STUDY = Study.beside(__file__, "fig04", source=SOURCE, seconds=1.5, quick=True)
+STUDY.provides(figures=draw, curves=curves)
 
 AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
 

@@ -42,9 +42,8 @@ from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(
-    __file__, "fig05", source=SOURCE, system=FIG5, draw=draw, animations=animate, seconds=4.5
-)
+STUDY = Study.beside(__file__, "fig05", source=SOURCE, system=FIG5, seconds=4.5)
+STUDY.provides(figures=draw, animations=animate)
 
 
 @functools.lru_cache(maxsize=8)

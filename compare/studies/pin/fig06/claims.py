@@ -41,10 +41,9 @@ STUDY = Study.beside(
     words={"innermost": f"{INNERMOST:g}"},
     source=SOURCE,
     system=FIG6,
-    draw=draw,
-    curves=curves,
     seconds=3.5,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 
 @STUDY.claim(

@@ -56,10 +56,9 @@ STUDY = Study.beside(
     words={"growing_load": f"{GROWING_LOADS[-1]:g}"},
     source=SOURCE,
     system=CENTRED,
-    draw=draw,
-    curves=curves,
     seconds=3.0,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 SUPPORTS = {"support": tuple(PINS)}
 """The name of the elements that belong to each support."""

@@ -45,10 +45,9 @@ STUDY = Study.beside(
     "sticking-domain",
     source=SOURCE,
     system=PIN,
-    draw=draw,
-    curves=curves,
     seconds=6.0,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m − β²/2m²)"
 

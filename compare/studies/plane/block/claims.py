@@ -56,12 +56,11 @@ STUDY = Study.beside(
     "block",
     source=SOURCE,
     system=BLOCK,
-    draw=draw,
-    curves=curves,
     seconds=1.5,
     quick=True,
     contact=True,
 )
+STUDY.provides(figures=draw, curves=curves)
 
 IN_SPACE = ("place along in m", "place across in m", "velocity along in m/s", "velocity across in m/s")
 

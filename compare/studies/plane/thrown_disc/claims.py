@@ -27,7 +27,8 @@ from compare.studies.plane.thrown_disc.parameters import (
 from compare.studies.plane.thrown_disc.pictures import draw
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, draw=draw, seconds=1.0, quick=True, contact=True)
+STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, seconds=1.0, quick=True, contact=True)
+STUDY.provides(figures=draw)
 
 SEEN = (
     "way along in m",

@@ -80,7 +80,7 @@ class TestStabilityMap(StudyTests):
     def test_the_text_gives_the_numbers_of_the_map(self):
         """What is said to an engineer, from the curves."""
         disc, ring = DISC, LAWS["ring"]
-        text = filled(STUDY.paper, self.found("theory").claims)
+        text = filled(STUDY.prose.paper, self.found("theory").claims)
 
         def borders(plane, name, kind="Hopf", law=ring):
             fixed = next(other for other in PLANES[plane].names if other != name)

@@ -138,11 +138,11 @@ class TestDrivetrainRunUp(WrongPartTests):
         theory = self.found("theory").data
         drawn = {"exudyn": run_up_with({0.9: 5e-4, 0.0: 2e-4}), "theory": theory}
         figures = self.study.draw(drawn)
-        gifs = self.study.animations(drawn)
+        gifs = self.study.animate(drawn)
         assert {*figures, *gifs} == set(self.study.figures)
         assert all(each.startswith(b"GIF89a") for each in gifs.values())
         assert self.study.draw({"theory": theory}) == {}
-        assert self.study.animations({}) == {}
+        assert self.study.animate({}) == {}
         assert set(drawn["exudyn"]) == set(self.found("exudyn").data)
 
 

@@ -10,7 +10,6 @@ import pytest
 import compare.foreign.records
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG11
-from compare.claims.study import nothing_drawn
 from compare.engines import UnsupportedSystemError, engines
 from compare.engines.live import setting
 from compare.foreign.cases import CASES
@@ -272,7 +271,7 @@ def test_figures_show_every_recording():
 
 def test_tables_stand_on_the_page(tmp_path):
     assert STUDY in STUDIES
-    undrawn = replace(STUDY, draw=nothing_drawn, figures={})
+    undrawn = replace(STUDY, provided={"tables": STUDY.provided["tables"]})
     write_report(run((undrawn,), (), folder=tmp_path), tmp_path)
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert page.count('class="evidence words"') == 3

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from compare.claims.claim import Verdict
+from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.studies.toolkit.deviations import Rates, settled
 
@@ -39,7 +40,7 @@ def test_what_is_left_of_a_transient_covers_it_and_no_more_than_twice():
 def test_a_deviation_that_does_not_decay_is_counted_unless_it_is_left_out(slowest, but, verdict):
     values = np.array([[-1.0, slowest, -0.5 + 2j, -0.5 - 2j]], dtype=complex)
     rates = Rates(values, values, np.array([1e-3]))
-    study = Study("rates", "title", "paper", source="ours")
+    study = Study("rates", Prose("title"), source="ours")
     study.claim("All decay")(lambda: rates.decaying(but))
     (claim,) = study.measure_theory().claims
     assert claim.verdict is verdict

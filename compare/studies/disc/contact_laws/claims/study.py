@@ -11,9 +11,8 @@ STUDY = Study.beside(
     __file__,
     "contact-laws",
     source=SOURCE,
-    draw=draw,
-    curves=curves,
     seconds=1.5,
     quick=True,
     contact=True,
 )
+STUDY.provides(figures=draw, curves=curves)

@@ -12,8 +12,7 @@ STUDY = Study.beside(
     "fig09",
     source=SOURCE,
     system=RING,
-    draw=draw,
-    curves=curves,
     seconds=7.0,
     words={"own": f"{RING.offset:g}"},
 )
+STUDY.provides(figures=draw, curves=curves)

@@ -14,8 +14,7 @@ STUDY = Study.beside(
     "fig11",
     source=FROM_THE_CYCLE,
     system=RING,
-    draw=draw,
-    curves=curves,
     seconds=5.0,
     words={"both_stable": f"{BOTH_STABLE:g}", "other_offset": f"{FIG8.offset:g}"},
 )
+STUDY.provides(figures=draw, curves=curves)

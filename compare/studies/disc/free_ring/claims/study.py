@@ -7,4 +7,5 @@ from compare.studies.disc.free_ring.parameters import SOURCE
 from compare.studies.disc.free_ring.pictures import draw
 from compare.studies.disc.free_ring.theory import curves
 
-STUDY = Study.beside(__file__, "free-ring", source=SOURCE, draw=draw, curves=curves, seconds=2.0)
+STUDY = Study.beside(__file__, "free-ring", source=SOURCE, seconds=2.0)
+STUDY.provides(figures=draw, curves=curves)

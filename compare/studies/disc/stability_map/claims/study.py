@@ -24,8 +24,6 @@ STUDY = Study.beside(
     "stability-map",
     source=SOURCE,
     system=DISC,
-    draw=draw,
-    curves=curves,
     seconds=7.5,
     words={
         "borders_of_load": borders("friction_force", "N"),
@@ -35,3 +33,4 @@ STUDY = Study.beside(
         "border_of_inertia": border("lower polar_inertia", "kg m²", 2),
     },
 )
+STUDY.provides(figures=draw, curves=curves)

@@ -17,8 +17,7 @@ STUDY = Study.beside(
         "high": f"{BORDER_TORQUES[-1]:g}",
     },
     source=SOURCE,
-    draw=draw,
-    curves=curves,
     only=("exudyn",),
     seconds=4.0,
 )
+STUDY.provides(figures=draw, curves=curves)

@@ -12,9 +12,8 @@ STUDY = Study.beside(
     "whirl-stability",
     source=SOURCE,
     system=PIN,
-    draw=draw,
-    curves=curves,
     seconds=2.5,
     quick=True,
     contact=True,
 )
+STUDY.provides(figures=draw, curves=curves)
