@@ -18,9 +18,16 @@ RING = Ring(R)
 ISOTROPIC = [Pin(), RING, ThreeTermRing(R), Annulus(0.05, R), Annulus(0.0, R, pressure=lambda r: 1.0 / r)]
 LAWS = [*ISOTROPIC, *(PointsOnRing(R, points) for points in (3, 6, 7))]
 
-laws = pytest.mark.parametrize("law", LAWS, ids=repr)
-isotropic = pytest.mark.parametrize("law", ISOTROPIC, ids=repr)
-on_circle = pytest.mark.parametrize("law", LAWS[1:], ids=repr)
+
+
+def name(law):
+    """Return the name of a law without addresses of functions, which differ between processes."""
+    return f"{type(law).__name__}{' with pressure' if getattr(law, 'pressure', None) else ''}"
+
+
+laws = pytest.mark.parametrize("law", LAWS, ids=name)
+isotropic = pytest.mark.parametrize("law", ISOTROPIC, ids=name)
+on_circle = pytest.mark.parametrize("law", LAWS[1:], ids=name)
 
 
 @st.composite
