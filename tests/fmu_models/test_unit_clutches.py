@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from compare.studies.drivetrain.coupled_clutches import parameters as modelica
+from compare.studies.drivetrain.coupled_clutches import theory as modelica
 from compare.studies.drivetrain.coupled_clutches.theory import exact
 
 INERTIA_A, INERTIA_B = 0.3, 0.2

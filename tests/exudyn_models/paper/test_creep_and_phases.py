@@ -6,7 +6,7 @@ import pytest
 
 import reference_model
 from compare.claims.paper_parameters import FIG5, FIG11
-from compare.studies.pin.sticking_domain.parameters import pin_at
+from compare.studies.pin.sticking_domain.theory import pin_at
 from compare.studies.toolkit.sticking import safest_angle, stuck
 from exudyn_models import simulate
 from exudyn_models.forces.friction_laws import point_regularisation

@@ -19,7 +19,6 @@ ISOTROPIC = [Pin(), RING, ThreeTermRing(R), Annulus(0.05, R), Annulus(0.0, R, pr
 LAWS = [*ISOTROPIC, *(PointsOnRing(R, points) for points in (3, 6, 7))]
 
 
-
 def name(law):
     """Return the name of a law without addresses of functions, which differ between processes."""
     return f"{type(law).__name__}{' with pressure' if getattr(law, 'pressure', None) else ''}"

@@ -5,16 +5,122 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import ROUNDING
+from compare.claims.paper_parameters import FIG11
 from compare.claims.study import Data
-from compare.studies.disc.contact_laws.integrals import average_of_expansion, ring_by_quadrature
-from compare.studies.disc.contact_laws.parameters import INNER, NUMBERS, ZOOMS, R
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Contact, PointsOnRing, Ring, ThreeTermRing
 from reference_model.systems import FloatArray
+
+# --- The discs whose friction is measured, how they move, and the laws that are compared.
+
+DISC = FIG11
+
+SIX = replace(FIG11, contact_points=6)
+
+SOURCE = "Fig. 11; how the disc moves is ours"
+
+SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are ours"
+
+RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
+"""U/W of the motions: not too near to U = W, where friction has no derivative."""
+
+SPEED = 0.3
+"""√(U² + W²) in m/s, ν̄_r of (22)."""
+
+CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
+"""Of these motions: where the disc's centre is in m, direction of its slip and angle of the disc in rad."""
+
+STEP = 2e-3
+"""In s, between the velocities whose differences give the acceleration at the start."""
+
+DIFFERENCES = (
+    (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
+    (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
+)
+"""Weights of the first derivative at the first of five times, of fourth and of third order."""
+
+R = FIG11.contact_radius
+
+COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
+"""U/W at which the closed form is compared with the integral; 1 is among them."""
+
+NUMBERS = (6, 12, 24)
+"""Of points on the ring."""
+
+ZOOMS = 30
+"""Halvings of the range in which the greatest error of points is searched."""
+
+INNER = 2.0 / 3.0 * R
+"""Inner radius of the annulus in m, whose outer one is R."""
+
+RESTING = (INNER, 0.75 * R, R)
+"""Radii of the annulus in m where a point is at rest while its convergence is observed."""
+
+RINGS = (8, 9, 10, 11, 12)
+"""On either side of that radius: as many as leave the error well above rounding."""
+
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)
+"""Of thin annuli, in units of their mean radius."""
+
+
+# --- Friction on a ring of contact as (20) to (22) print it: by quadrature, as a sum of points, by the expansion.
+# Nothing here uses the closed forms of the reference, so that they can be compared with it. ``slip`` is that of the
+# disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. All forces are given as the array
+# (F_x, F_y, M), the forces per newton of μN and the moment per newton metre of μN·R.
+
+EVEN = 16
+"""Angles whose mean is the integral of every trigonometric polynomial up to the order 15."""
+
+
+def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
+    """Return ν_rx, ν_ry and ν̃_r of (21) in m/s at the angles φ + χ in rad, shape (3, ...)."""
+    s, c = np.sin(angle), np.cos(angle)
+    x, y = slip.real + rim * s, slip.imag - rim * c
+    return np.stack((x, y, x * s - y * c))
+
+
+def directions(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
+    """Return −ν_rx/|ν_r|, −ν_ry/|ν_r| and ν̃_r/|ν_r| of (20) at the angles φ + χ in rad, shape (3, ...)."""
+    x, y, along = velocities(slip, rim, angle)
+    speed = np.hypot(x, y)
+    return np.stack((-x, -y, along)) / np.where(speed > 0.0, speed, 1.0)
+
+
+@functools.cache  # several claims ask for the same ones
+def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
+    """Return the integral (20) by adaptive quadrature, and its error."""
+    from scipy.integrate import quad_vec
+
+    # The point that is the nearest to rest is at both ends, so that no range has its kink inside.
+    start = math.atan2(slip.imag, slip.real) - math.copysign(0.5 * math.pi, rim)
+    value, error = quad_vec(
+        lambda angle: directions(slip, rim, angle), start, start + 2.0 * math.pi, epsabs=1e-12, epsrel=0.0
+    )
+    return np.asarray(value) / (2.0 * math.pi), float(error) / (2.0 * math.pi)
+
+
+def sum_of_points(slip: complex, rim: float, angle: float, number: int) -> FloatArray:
+    """Return the mean over points at φ + 2πi/n in place of the integral (20), φ being ``angle`` in rad."""
+    return np.asarray(
+        np.mean(directions(slip, rim, angle + 2.0 * math.pi * np.arange(number) / number), axis=1)
+    )
+
+
+def average_of_expansion(slip: complex, rim: float) -> FloatArray:
+    """Return the integral (20) with three terms of (22) in place of ν̄_r/|ν_r|, exactly."""
+    angle = 2.0 * math.pi * np.arange(EVEN) / EVEN
+    x, y, along = velocities(slip, rim, angle)
+    mean_square = abs(slip) ** 2 + rim**2
+    term = rim * (slip.real * np.sin(angle) - slip.imag * np.cos(angle)) / mean_square
+    inverse_speed = (1.0 - term + 1.5 * term**2) / math.sqrt(mean_square)
+    return np.asarray(np.mean(inverse_speed * np.stack((-x, -y, along)), axis=1))
+
 
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 

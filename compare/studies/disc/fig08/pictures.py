@@ -9,8 +9,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
-from compare.studies.disc.fig08.parameters import RESOLUTION, RING
-from compare.studies.disc.fig08.theory import place_and_spin
+from compare.studies.disc.fig08.theory import RESOLUTION, RING, place_and_spin
 from compare.studies.toolkit.self_centred import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
 

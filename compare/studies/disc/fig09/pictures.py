@@ -19,8 +19,7 @@ from compare.output.figures import (
     new_figure,
     points,
 )
-from compare.studies.disc.fig09.parameters import LARGEST_LOAD, RING
-from compare.studies.disc.fig09.theory import radius_of_pin, spin_of_large_whirl
+from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING, radius_of_pin, spin_of_large_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,5 +1,8 @@
 """A ring thrown on a table at rest: sliding and spinning end together, in a ratio that forgets the start."""
 
-from compare.studies.disc.free_ring.claims import STUDY
+from compare.studies.disc.free_ring.pictures import draw
+from compare.studies.disc.free_ring.study import STUDY
+
+STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

@@ -9,7 +9,7 @@ import numpy as np
 from compare.claims.paper_parameters import FIG11
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
-from compare.studies.disc.simulated_map.parameters import DAMPING, SHAFT_DAMPING
+from compare.studies.disc.simulated_map.study import DAMPING, SHAFT_DAMPING
 from reference_model.systems import FloatArray
 
 DARK = "#3d3d3d"

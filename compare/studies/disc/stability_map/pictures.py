@@ -22,7 +22,7 @@ from compare.output.figures import (
     new_figure,
     points,
 )
-from compare.studies.disc.stability_map.ends import ENDS
+from compare.studies.disc.stability_map.theory import ENDS
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

@@ -5,14 +5,20 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import at_each
 from compare.claims.study import Data
-from compare.studies.disc.stability_map.parameters import DISC, NEAR, STATE_ROUNDING, K, at
+from compare.engines import Simulate
 from compare.studies.toolkit.fig11_planes import KINDS, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
@@ -24,6 +30,79 @@ from reference_model.steady.stability import (
 )
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- The disc whose surroundings are mapped, what is simulated there, and how closely the curves are looked at.
+
+DISC = FIG11
+K = DISC.natural_frequency
+
+SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are ours"
+ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
+
+BOTH_LAWS = "(19), (20), (23)"
+"""Equations of what is claimed of the ring and of (23)."""
+
+LINES = (
+    ("load", "disc_speed", 1.5),
+    ("dampers", "damping", 0.8),
+    ("speeds", "disc_speed", 1.3),
+    ("inertia", "polar_inertia", 0.4),
+)
+"""Lines in planes on which both sides of the Hopf curves of the ring are simulated."""
+
+ASIDE = 0.01
+"""How far from the curves, relative."""
+
+DEVIATION = 0.02
+"""Of the whirl at the start, in units of the distance to where a point of the ring rests."""
+
+FLOW_TOLERANCE = 100 * WORKING
+"""Of the simulations that are subtracted from each other: their differences are small."""
+
+STUCK = 60.0
+"""In s, for which a disc that sticks on the axis is watched: nothing changes there, but for an engine's creep."""
+
+OUTSIDE, BEYOND = 0.003, 0.02
+"""How far from the Hopf curves, relative, the modulated cycle is beside the whirl, and is gone."""
+
+BESIDE = (1.002, 1.0, 1.0, 1.0, 1.002, 1.0)
+"""Factors on x, y, angle, vx, vy, spin of a whirl that lead a little off it."""
+
+ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
+"""State x, y, angle, vx, vy, spin near to where the radius of the modulated cycle is largest."""
+
+LOADS = (
+    *(0.0195, 0.0208, 0.0211, 0.0214, 0.0217, 0.0221, 0.0225),
+    *(0.0232, 0.024, 0.0247, 0.0251, 0.0255, 0.028),
+)
+"""In N, of the bifurcation diagram."""
+
+SLOW_LOADS = (0.0208, 0.0211)
+"""Those at which the whirl is stable, but disturbances of it fall slowly."""
+
+FAR_FROM_KINK = 0.02
+"""Of |U/W − 1|: nearer to where a point of the ring rests, the expansion about the whirl says nothing."""
+
+ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
+"""ω in rad/s at which the onset is found by its eigenvalues."""
+
+NEAR = 1e-3
+"""Relative distance from a border at which stability is that of either side."""
+
+STATE_ROUNDING = 4.0 * np.finfo(float).eps
+"""Relative, of the spin of a whirl that is given by its α."""
+
+UNSTABLE_LOADS = (0.3, 0.7)
+"""Friction forces between the fold and the Hopf point of (23), as fractions."""
+
+BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
+"""Factors on the state of the larger whirl there."""
+
+
+def at(**changes: Any) -> DiscOnDisc:
+    """Return the disc of Fig. 11 with some other parameters."""
+    return replace(DISC, **changes)
+
 
 Traced = Mapping[tuple[str, str, Kind], tuple[Boundary, ...]]
 """Curves by plane, law and kind."""
@@ -154,3 +233,81 @@ def section() -> Data:
             rows.append((load, radius, whirl_eigenvalues(disc, state_at(disc, alpha, law), law)[1].real))
         data[f"section/{name}"] = np.array(rows)
     return data
+
+
+# --- What motions of the centred disc end as.
+
+SETTLED = 600.0
+WATCHED = 350.0
+"""In s: how long motions are given to settle, and over how long before the end they are looked at."""
+
+SLOWLY_SETTLED = 2400.0
+"""In s: what takes longer near to where a cycle has just gone, as disturbances fall at less than 0.01 1/s there."""
+
+SETTLING_TOLERANCE = 1e-5
+
+AXIS = 1e-3
+"""Radius in units of R below which a motion counts as rotation about the axis."""
+
+MODULATED = 0.05
+"""Of (largest − smallest)/(largest + smallest) radius, above which a motion counts as modulated."""
+
+
+ENDS = ("rotation", "whirl", "modulated cycle", "sticking")
+"""What motions end as."""
+
+
+class Start(NamedTuple):
+    """A disc, the state from which it starts, what it is to end as, and after how many seconds."""
+
+    disc: DiscOnDisc
+    state: tuple[float, ...]
+    end: str
+    duration: float = SETTLED
+
+
+def kind_of_end(
+    simulate: Simulate, start: Start, tolerance: float = SETTLING_TOLERANCE
+) -> tuple[str, float, float]:
+    """Return what a motion ends as, and the smallest and the largest radius in m of its last part."""
+    times = [0.0, *np.linspace(max(start.duration - WATCHED, 0.5 * start.duration), start.duration, 801)]
+    run = simulate(start.disc, start.state, times, tolerance=tolerance)
+    radius = run.radius[1:]
+    low, high = float(np.min(radius)), float(np.max(radius))
+    if run.phases[-1].kind == "stick" and run.phases[-1].start <= times[1]:
+        return "sticking", low, high
+    if high < AXIS * start.disc.contact_radius:
+        return "rotation", low, high
+    return "modulated cycle" if high - low > MODULATED * (high + low) else "whirl", low, high
+
+
+def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
+    """Return what motions end as, and in how many that is what they are said to."""
+    ends: dict[float, list[str]] = {}
+
+    def as_said(tolerance: float) -> list[bool]:
+        ends[tolerance] = [kind_of_end(simulate, start, tolerance)[0] for start in starts]
+        return [end == start.end for end, start in zip(ends[tolerance], starts, strict=True)]
+
+    answers = asked(as_said, SETTLING_TOLERANCE)
+    found = ends[SETTLING_TOLERANCE]
+    differing = [
+        f"{end} in place of {start.end} for {changes(start.disc)}"
+        for end, start in zip(found, starts, strict=True)
+        if end != start.end
+    ]
+    return found, answers_of(
+        *answers,
+        source="Fig. 11 with X0 = 0; one parameter at a time is another",
+        note=f"Whether each motion ends as said after {at_each('t', sorted({one.duration for one in starts}))} s: "
+        + ", ".join(f"{start.end} for {changes(start.disc)}" for start in starts)
+        + f". {'; '.join(differing)}".rstrip("; "),
+    )
+
+
+def changes(disc: DiscOnDisc) -> str:
+    """Return in words what of Fig. 11's parameters is different."""
+    differing = [
+        f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
+    ]
+    return ", ".join(differing) or "Fig. 11"

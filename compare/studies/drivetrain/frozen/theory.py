@@ -10,38 +10,106 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.study import Data
-from compare.studies.drivetrain.frozen.parameters import (
-    SLIPPING,
-    SPEED,
-    SPEEDS,
-    SURPLUS,
-    SURPLUSES,
-    TORQUE,
-    TORQUES,
-    WHIRLS,
-    balanced_car,
-)
 from compare.studies.toolkit.drivetrain_bench import (
+    EPSILON,
     RPM,
     Operation,
     centred_car,
     facings,
     natural_frequency,
     onset_speed,
+    passenger_car,
+    start_disc,
 )
 from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support
 from reference_model.systems import FloatArray
+
+# --- At which speeds, torques and loads the car's clutch is looked at, and how exactly.
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain
+
+
+def balanced_car() -> Drivetrain:
+    """Return the passenger car without unbalance."""
+    return replace(passenger_car(), unbalance=0.0)
+
+
+FINER = 24
+"""Rings of the reference's annulus, in place of 16, which show their error."""
+
+CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
+"""Torque in N m and slip in rad/s at which the onset is sought."""
+
+TORQUE, SLIPPING = 80.0, 12.0
+"""N m and rad/s of the bench: about what the run-up has."""
+
+BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
+"""Speeds of the bench in turns a minute, below and above the onset."""
+
+DECAYS, SEEN = 20.0, 5.0
+"""Length of a run in decay times of its slowest mode, and how many of them before its end the rest is inferred."""
+
+START = 3e-4
+"""In m: from where a whirl starts, at rest and within the play."""
+
+SAMPLE = 5e-4
+"""In s, on the bench."""
+
+MODULATED = (6000.0, 0.6, 0.1)
+"""Speed in turns a minute, torque in N m, and by how much the load is more than the torque needs."""
+
+WHIRLS = (MODULATED, (3800.0, 1.3, 0.05), (4500.0, 8.0, 0.01))
+"""The same: the second whirl is not modulated, the third is on the stop."""
+
+BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
+"""Of load, and torques in N m: from a small whirl to one that all but reaches the stop."""
+
+BETWEEN = (3900.0, 4300.0)
+"""Speeds in turns a minute below and above the border."""
+
+TIME = 0.4
+"""In s: for how long small deviations are followed."""
+
+DEVIATION = 3e-3
+"""As a part of the radius."""
+
+TOLERANCE = 20 * WORKING
+"""Of the runs that are subtracted from each other."""
+
+PUSH, UNTIL = 0.2, 6.0
+"""The same of the modulated motion: first deviation, and when it ends, in s."""
+
+ROUGHER = 80.0
+"""Its tolerance over the usual one."""
+
+CYCLE_SAMPLE = 2e-3
+"""In s, of the modulated motion."""
+
+SPEEDS = np.linspace(2900.0, 6500.0, 32)
+"""Of the map in turns a minute, from just above the natural frequency."""
+
+TORQUES = np.geomspace(0.2, 60.0, 32)
+"""Of the maps in N m."""
+
+SURPLUSES = np.geomspace(1e-4, 0.2, 32)
+"""Of the load, over what the torque needs."""
+
+SURPLUS, SPEED = 0.1, 6000.0
+"""Of the map over speeds, and of that over surpluses."""
+
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -228,3 +296,32 @@ def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -
         return np.array([np.nan, np.nan])
     slowest = of_modulation(state_matrix_of(car, whirl), whirl.frequency)[0]
     return np.array([slowest.real, whirl.radius])
+
+
+# --- The car's drivetrain in Exudyn, in a whirl.
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain, DrivetrainModel
+
+
+def build(
+    car: Drivetrain, whirl: CarWhirl, *, deviation: float = 0.0, regularisation: float = EPSILON
+) -> DrivetrainModel:
+    """Return the drivetrain in a whirl between an engine and a load of constant torque.
+
+    The radius is larger by the part ``deviation``.
+    """
+    from exudyn_models import build_drivetrain
+
+    model = build_drivetrain(
+        car,
+        normal_load=whirl.friction_force / (car.faces * car.friction_coefficient),
+        regularisation=regularisation,
+        engine_speed=whirl.engine_speed,
+        gearbox_speed=whirl.engine_speed - whirl.slip,
+        engine_torque=lambda time, angle, speed: whirl.engine_torque,
+        vehicle_torque=lambda time, angle, speed: -whirl.torque,
+        shaft_torque=whirl.torque,
+    )
+    start_disc(model, (1.0 + deviation) * whirl.place, (1.0 + deviation) * whirl.velocity)
+    return model

@@ -1,5 +1,8 @@
 """The car's drivetrain runs up from idle to 6000 turns a minute while its clutch slips under control."""
 
-from compare.studies.drivetrain.run_up.claims import STUDY
+from compare.studies.drivetrain.run_up.pictures import animations, draw
+from compare.studies.drivetrain.run_up.study import STUDY
+
+STUDY.provides(figures=draw, animations=animations)
 
 __all__ = ["STUDY"]

@@ -21,7 +21,7 @@ from compare.output.figures import (
     new_figure,
 )
 from compare.report.animation import gif
-from compare.studies.drivetrain.run_up.spectrum import order_spectrum
+from compare.studies.drivetrain.run_up.study import order_spectrum
 from compare.studies.toolkit.drivetrain_bench import RPM, centre, natural_frequency, passenger_car
 from reference_model.systems import FloatArray
 

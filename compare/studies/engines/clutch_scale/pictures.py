@@ -7,8 +7,7 @@ import numpy as np
 from compare.claims.paper_parameters import FIG5
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
-from compare.studies.engines.clutch_scale.parameters import SAMPLES, UNTIL
-from compare.studies.engines.clutch_scale.units import CLUTCH
+from compare.studies.engines.clutch_scale.study import CLUTCH, SAMPLES, UNTIL
 
 
 def draw(data: ByEngine) -> Figures:

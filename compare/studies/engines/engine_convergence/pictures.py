@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure
-from compare.studies.engines.engine_convergence.solvers import SOLVERS
+from compare.studies.engines.engine_convergence.theory import SOLVERS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,19 +4,106 @@ from __future__ import annotations
 
 import cmath
 import functools
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH
+from compare.claims.error_estimates import TRUTH, WORKING
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
-from compare.studies.engines.engine_convergence.parameters import (
-    SLIDING_STARTS,
-    SLIDING_TIMES,
-    STICK_SLIP_TIMES,
-)
-from reference_model import Phase, PinOnDisc, simulate
+from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
+from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
+
+# --- Starts, tolerances, steps and slip speeds at which the engines' errors are measured.
+
+SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
+"""Near to the whirl and a third farther out: the pin slides all the time (our choice)."""
+
+SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
+"""In s: multiples of every step, so that a solver's own states are looked at and not its interpolation."""
+
+STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
+"""As those of Fig. 5, where vx is 0 and 0.03 m/s; each pin sticks and lets go once in the first 8 s."""
+
+STICKING_UNTIL = 8.0
+"""In s."""
+
+
+def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
+    return np.geomspace(largest, smallest, round(per_decade * math.log10(largest / smallest)) + 1)
+
+
+@dataclass(frozen=True)
+class Scan:
+    """The tolerances at which one engine is measured, and how its error is expected to follow them.
+
+    Parameters
+    ----------
+    order : int
+        Of the integrator. Its error estimate is of the same order in the step, so the step is ~ tolerance^(1/order)
+        and the error ~ tolerance; the next term is smaller by one power of the step.
+    sliding, sticking, work : array
+        Tolerances for both exponents, between a pin's first few steps and rounding, and for error over work.
+    sticking_term : float
+        Power of the tolerance by which the next term is smaller where the pin sticks.
+
+    """
+
+    order: int
+    sliding: FloatArray
+    sticking: FloatArray
+    sticking_term: float
+    work: FloatArray
+
+
+SCANS = {
+    "reference": Scan(
+        order=8,
+        sliding=_tolerances(1e-4, 10**-10.5, 8),
+        sticking=_tolerances(1e-4, 10**-10.5, 2),
+        sticking_term=1 / 8,
+        work=_tolerances(1e-4, 1e-11, 1),
+    ),
+    "exudyn": Scan(
+        order=5,
+        sliding=_tolerances(1e-4, 1e-10, 4),
+        sticking=_tolerances(1e-6, 1e-8, 2),
+        sticking_term=1.0,  # ε = 100·tolerance outweighs the step: the next term is ε²
+        work=_tolerances(1e-4, 1e-9, 1),
+    ),
+}
+
+
+REGULARISATIONS = np.geomspace(1e-4, 10**-6.5, 6)
+"""ε in m/s for the motion through three stick phases."""
+
+FIRST_REGULARISATIONS = np.geomspace(1e-3, 10**-5.5, 11)
+"""ε in m/s for the first stick alone."""
+
+CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
+"""ε in m/s for the first release by RK44, whose step must be below 2.8·mε/μN = 31 s²/m·ε."""
+
+TOLERANCE = WORKING / 10
+"""Tolerance at which ε dominates all other errors."""
+
+STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
+"""In s: past all nine stick phases on the way to the whirl."""
+
+WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
+"""In s: fixed steps through stick phases, where ε has to follow the step."""
+
+
+def smallest_regularisation(step: float) -> float:
+    """Return ε in m/s for which RK44, stable up to 2.8·mε/μN, resolves sticking with ``step``."""
+    return step * FIG5.friction_force / FIG5.mass / 1.5
+
+
+SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are assumptions: 20 s without sticking"
 
 
 def root_mean_square(values: FloatArray) -> float:
@@ -64,3 +151,74 @@ def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     pull = slope * z * turned + spring * pin.offset
     grows = (pull.conjugate() * slope * omega * z * turned).real
     return -(pull.conjugate() * slope * creep).real / grows
+
+
+# --- Errors of simulations, and the work they take.
+
+Simulate = Callable[..., Trajectory]
+
+
+def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
+    """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time in s."""
+    began = time.process_time()  # unlike wall time it does not count what other studies do on the same cores
+    trajectories = [run(FIG5, start, SLIDING_TIMES, **how) for start in SLIDING_STARTS]
+    spent = time.process_time() - began
+    truth, _ = sliding_truth()
+    error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)
+    return error, sum(trajectory.solution.evaluations for trajectory in trajectories), spent
+
+
+def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
+    """Simulate Fig. 5's way to the whirl; return the error (m, m/s), evaluations, and processor time in s."""
+    began = time.process_time()
+    trajectory = run(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, **how)
+    spent = time.process_time() - began
+    error = root_mean_square(trajectory.states - stick_slip_truth())
+    return error, trajectory.solution.evaluations, spent
+
+
+def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
+    """Return how far the events found are off; without numbers where there are too many or too few of them."""
+    return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
+
+
+# --- Exudyn's solvers at a fixed step: their declared orders, and how they are drawn.
+
+
+@dataclass(frozen=True)
+class Solver:
+    """One of Exudyn's solvers at a fixed step: declared order, steps in s, and how it is drawn.
+
+    ``sticks`` says whether its work is shown for a motion with stick phases too.
+    """
+
+    name: str
+    order: int
+    steps: tuple[float, ...]
+    look: Mapping[str, Any]
+    sticks: bool = False
+
+
+SOLVERS = (
+    Solver(
+        "RK44",
+        4,
+        (0.4, 0.2, 0.1, 0.05, 0.025),
+        {"color": BLUE, "marker": "o", "markersize": 6.0},
+        sticks=True,
+    ),
+    Solver("RK67", 6, (0.8, 0.4, 0.2, 0.1, 0.05), {"color": GREEN, "marker": "s", "markersize": 5.5}),
+    Solver(
+        "GeneralizedAlpha",
+        2,
+        (0.4, 0.2, 0.1, 0.05, 0.025),
+        {"color": ORANGE, "marker": "^", "markersize": 8.0},
+        sticks=True,
+    ),
+    Solver(
+        "TrapezoidalIndex2",
+        2,
+        (0.4, 0.2, 0.1, 0.05, 0.025),
+        {"color": PURPLE, "marker": "x", "markersize": 4.5},
+    ),
+)

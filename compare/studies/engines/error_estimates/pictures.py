@@ -8,8 +8,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, curve, engine_style, engines_in, new_figure, points
-from compare.studies.engines.error_estimates.parameters import LEAST_COVERAGE, MOST_OVER_ESTIMATE
-from compare.studies.engines.error_estimates.problems import PROBLEMS
+from compare.studies.engines.error_estimates.theory import LEAST_COVERAGE, MOST_OVER_ESTIMATE, PROBLEMS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,5 +1,8 @@
 """What foreign engines make of the paper's systems, from data recorded with them: laws, orders, errors over time."""
 
-from compare.studies.engines.foreign_engines.claims import STUDY
+from compare.studies.engines.foreign_engines.pictures import draw
+from compare.studies.engines.foreign_engines.study import STUDY
+
+STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

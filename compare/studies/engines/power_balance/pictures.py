@@ -8,7 +8,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
-from compare.studies.engines.power_balance.parameters import RESOLUTION
+from compare.studies.engines.power_balance.study import RESOLUTION
 
 
 def draw(data: ByEngine) -> Figures:

@@ -9,7 +9,7 @@ import numpy as np
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
-from compare.studies.pin.basins.parameters import PLANE
+from compare.studies.pin.basins.theory import PLANE
 from reference_model.ensemble import EndState
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.fig03.parameters import LOADS, PIN, with_load
-from compare.studies.pin.fig03.theory import positions
+from compare.studies.pin.fig03.study import LOADS, PIN, positions, with_load
 from reference_model.formulas.pin import equilibrium_position
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.fig04.parameters import CLAIM_SPEEDS, OFFSETS, pin_at
+from compare.studies.pin.fig04.study import CLAIM_SPEEDS, OFFSETS, pin_at
 from reference_model.formulas.pin import first_order_whirl_shift, whirl_shift
 from reference_model.systems import PinOnDisc
 

@@ -1,5 +1,8 @@
 """Fig. 5: equilibrium and whirl side by side, the stick phases on the way, and the start that divides them."""
 
-from compare.studies.pin.fig05.claims import STUDY
+from compare.studies.pin.fig05.pictures import animate, draw
+from compare.studies.pin.fig05.study import STUDY
+
+STUDY.provides(figures=draw, animations=animate)
 
 __all__ = ["STUDY"]

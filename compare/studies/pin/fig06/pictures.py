@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.fig06.parameters import WHIRL_LOADS
+from compare.studies.pin.fig06.study import WHIRL_LOADS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,5 +1,8 @@
 """A support that hardens or has a stop: what limits the amplitude "in practical application"."""
 
-from compare.studies.pin.nonlinear_support.claims import STUDY
+from compare.studies.pin.nonlinear_support.pictures import draw
+from compare.studies.pin.nonlinear_support.study import STUDY
+
+STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

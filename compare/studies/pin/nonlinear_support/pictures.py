@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import axis, curve, engines_in, new_figure, points
-from compare.studies.pin.nonlinear_support.parameters import PINS
+from compare.studies.pin.nonlinear_support.theory import PINS
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}
 """Label and dashes of each support."""

@@ -8,8 +8,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.sticking_domain.parameters import OUTSIDE, RESONANCE
-from compare.studies.pin.sticking_domain.theory import predicted_turns
+from compare.studies.pin.sticking_domain.theory import OUTSIDE, RESONANCE, predicted_turns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

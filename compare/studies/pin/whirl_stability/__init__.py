@@ -1,5 +1,8 @@
 """Eq. 11 to 16: the whirl without offset, where it exists, and how deviations from it develop."""
 
-from compare.studies.pin.whirl_stability.claims import STUDY
+from compare.studies.pin.whirl_stability.pictures import draw
+from compare.studies.pin.whirl_stability.study import STUDY
+
+STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

@@ -3,23 +3,82 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import expm
 
+from compare.claims.error_estimates import WORKING
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
+from compare.claims.paper_parameters import CENTRED
 from compare.claims.study import Data
-from compare.studies.pin.whirl_stability.parameters import (
-    DAMPINGS,
-    DEVIATION_TIMES,
-    PIN,
-    RATIOS,
-    K,
-    pin_at,
-)
 from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.systems import FloatArray, PinOnDisc
+
+# --- The pin of Fig. 4 without its offset, and where its whirl is looked at.
+
+PIN = CENTRED
+SOURCE = "Fig. 4 with X0 = 0, as (11)–(16) assume; the values of ω are ours"
+K = PIN.natural_frequency
+
+SPEEDS = (1.1, 1.5, 4.0)
+"""ω in rad/s of the long simulations."""
+
+DISPLACED = 1.1
+"""Radius at their start, in units of (11)."""
+
+DURATION = 460.0
+"""In s: the slowest deviation falls to 1e-10 of its beginning."""
+
+DELAY = 40.0
+"""In s: from how long before the end the remaining transient is inferred."""
+
+TOLERANCE = WORKING / 5
+"""The claims on radius and frequency of the circle (11) resolve 1e-9 of them."""
+
+STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
+"""ω in rad/s of the starts on the circle (11), below and above k."""
+
+INTERVAL = 0.01
+"""In s, between the states from which the change of the angular momentum is taken."""
+
+FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
+"""Weights of the one-sided difference of fourth order."""
+
+CAUGHT = 18.0
+"""In s: by then a pin that left the circle below k sticks to the disc."""
+
+CAUGHT_TOLERANCE = 1e-7
+
+POINTS = (
+    *((speed, PIN.damping) for speed in (1.05, 1.1, 1.5, 2.5, 5.0)),
+    *((1.5, damping) for damping in (0.5, 2.0)),
+)
+"""ω in rad/s and β in N s/m at which eigenvalues are measured."""
+
+FLOW_DURATION = 0.5
+"""In s, of the simulations that give eigenvalues."""
+
+DEVIATION = 1e-3
+"""Amplitude of the decaying deviation, in units of the radius (11)."""
+
+DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
+
+RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
+DAMPINGS = np.geomspace(0.03, 10.0, 121)
+"""ω/k and β/(mk) of the grid on which (14) to (16) are compared with eigenvalues, ω < k included."""
+
+
+def pin_at(speed: float, damping: float = PIN.damping) -> PinOnDisc:
+    """Return the pin of this study at another disc speed in rad/s and damping in N s/m."""
+    return replace(PIN, disc_speed=speed, damping=damping)
+
+
+def on_circle(pin: PinOnDisc, scale: float = 1.0) -> FloatArray:
+    """Return the state on the circle (11), ``scale`` times as large; for ω < k too, where it is no motion."""
+    radius = scale * pin.friction_force / (pin.damping * K)
+    return np.array([radius, 0.0, 0.0, K * radius])
 
 
 def curves() -> Data:

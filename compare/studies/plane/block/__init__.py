@@ -1,5 +1,8 @@
 """A block on a plane at rest: thrown, held, let go, on a spring, and pulled."""
 
-from compare.studies.plane.block.claims import STUDY
+from compare.studies.plane.block.pictures import draw
+from compare.studies.plane.block.study import STUDY
+
+STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

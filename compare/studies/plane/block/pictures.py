@@ -6,8 +6,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.plane.block.parameters import HEADINGS, SPEED, direction
-from compare.studies.plane.block.theory import STOPPING_DISTANCE
+from compare.studies.plane.block.study import HEADINGS, SPEED, STOPPING_DISTANCE, direction
 
 
 def draw(data: ByEngine) -> Figures:

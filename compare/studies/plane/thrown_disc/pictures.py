@@ -6,7 +6,7 @@ import numpy as np
 
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import axis, curve, engines_in, new_figure, points
-from compare.studies.plane.thrown_disc.parameters import FULL, RING, TO_REST, WHILE_SLIDING
+from compare.studies.plane.thrown_disc.study import FULL, RING, TO_REST, WHILE_SLIDING
 
 TAKEN = {
     "ring": (r"slides: $\mu N$", r"spins: $\mu NR$", r"both: $\frac{2}{\pi}$ of each"),

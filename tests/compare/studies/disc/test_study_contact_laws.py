@@ -11,7 +11,7 @@ from study_harness import BLIND, SEES, StudyTests, engine_named
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
 from compare.studies.disc.contact_laws import theory
-from compare.studies.disc.contact_laws.claims import STUDY
+from compare.studies.disc.contact_laws.study import STUDY
 from reference_model import plain
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Shares

@@ -12,8 +12,8 @@ from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
 from compare.studies.disc.fig08 import theory
-from compare.studies.disc.fig08.claims import STUDY
-from compare.studies.disc.fig08.parameters import RING
+from compare.studies.disc.fig08.study import STUDY
+from compare.studies.disc.fig08.theory import RING
 from compare.studies.toolkit.self_centred import last_load, with_load
 from reference_model.contact.contact_law import Ring, Shares
 from reference_model.formulas.disc import places_by_26

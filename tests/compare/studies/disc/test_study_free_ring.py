@@ -10,10 +10,8 @@ from scipy.integrate import solve_ivp
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.engines import EVERY_KIND, Engine
-from compare.studies.disc.free_ring.claims import STUDY
-from compare.studies.disc.free_ring.claims.ratios import other_ratios, powers
-from compare.studies.disc.free_ring.parameters import LOPSIDED, OTHERS, RINGS
-from compare.studies.disc.free_ring.theory import approach_constant, deviation
+from compare.studies.disc.free_ring.study import STUDY, other_ratios, powers
+from compare.studies.disc.free_ring.theory import LOPSIDED, OTHERS, RINGS, approach_constant, deviation
 from compare.studies.toolkit.free_bodies import Slowing
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.contact.elliptic import mean_directions

@@ -7,10 +7,10 @@ import pytest
 from study_harness import BLIND, LEFT_OUT, SEES, engine_named
 from wrong_parts import WrongPartTests
 
-import compare.studies.drivetrain.coupled_clutches.claims as claims
-import compare.studies.drivetrain.coupled_clutches.model as model
+import compare.studies.drivetrain.coupled_clutches.study as claims
+import compare.studies.drivetrain.coupled_clutches.theory as model
 from compare.claims.claim import Verdict
-from compare.studies.drivetrain.coupled_clutches.claims import STUDY
+from compare.studies.drivetrain.coupled_clutches.study import STUDY
 from compare.studies.drivetrain.coupled_clutches.theory import published
 
 

@@ -7,10 +7,15 @@ import pytest
 from study_harness import BLIND, LEFT_OUT, SEES
 from wrong_parts import WrongPartTests
 
-from compare.studies.drivetrain.run_up import claims, pictures
-from compare.studies.drivetrain.run_up.parameters import SLIP, TURNS, transmitted
-from compare.studies.drivetrain.run_up.spectrum import order_spectrum, strongest_line
-from compare.studies.drivetrain.run_up.theory import whirls_above_onset
+from compare.studies.drivetrain.run_up import pictures, study
+from compare.studies.drivetrain.run_up.study import (
+    SLIP,
+    TURNS,
+    order_spectrum,
+    strongest_line,
+    transmitted,
+    whirls_above_onset,
+)
 from compare.studies.toolkit.drivetrain_bench import (
     RPM,
     centre,
@@ -68,7 +73,7 @@ def moving(move):
         data = move()
         angle, speed = data["engine"].T
         motion = SimpleNamespace(**data | {"engine_angle": angle, "engine_speed": speed})
-        patch.setattr(claims, "_run_ups", lambda engine, top: (motion, motion))
+        patch.setattr(study, "_run_ups", lambda engine, top: (motion, motion))
 
     return put
 
@@ -79,7 +84,7 @@ def heat_counted_wrong_by_a_thousandth(patch):
 
 
 class TestDrivetrainRunUp(WrongPartTests):
-    study = claims.STUDY
+    study = study.STUDY
     few = {"balance": {"top": SHORT}, "lines": {"top": SHORT}, "curves": {"count": 40}}
     # A run-up shorter than a window claims nothing of the spectrum.
     not_claimed = {"exudyn": ("lines",)}

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from compare.studies.drivetrain.coupled_clutches.parameters import INERTIAS, SPEED, UNTIL, torque
-from compare.studies.drivetrain.coupled_clutches.theory import chain, exact
+from compare.studies.drivetrain.coupled_clutches.theory import INERTIAS, SPEED, UNTIL, chain, exact, torque
 from compare.studies.toolkit.torsional_chain import BACKWARD, FORWARD, OPEN, STUCK, Chain, Harmonic
 
 NOTHING = ((0.0, Harmonic()),)

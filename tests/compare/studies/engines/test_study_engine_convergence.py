@@ -13,9 +13,8 @@ from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine
 from compare.studies import STUDIES
-from compare.studies.engines.engine_convergence.claims import STUDY
-from compare.studies.engines.engine_convergence.solvers import SOLVERS
-from compare.studies.engines.engine_convergence.theory import release_shift_by_creep
+from compare.studies.engines.engine_convergence.study import STUDY
+from compare.studies.engines.engine_convergence.theory import SOLVERS, release_shift_by_creep
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.trajectory import Solution, Trajectory
 

@@ -12,10 +12,8 @@ from compare.claims.claim import Verdict
 from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
 from compare.claims.paper_parameters import FIG5
 from compare.engines import EVERY_KIND, Engine, engines
-from compare.studies.engines.error_estimates.calibration import Calibration, Problem, calibrated
-from compare.studies.engines.error_estimates.claims import STUDY, simulated
-from compare.studies.engines.error_estimates.parameters import KNOWN
-from compare.studies.engines.error_estimates.problems import PROBLEMS
+from compare.studies.engines.error_estimates.study import STUDY, simulated
+from compare.studies.engines.error_estimates.theory import KNOWN, PROBLEMS, Calibration, Problem, calibrated
 
 CLOSED = [kind for kind in PROBLEMS if not kind.startswith("any motion")]
 

@@ -18,13 +18,17 @@ from compare.output.figures import paper_style
 from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES
-from compare.studies.engines.foreign_engines import claims as foreign_engines
-from compare.studies.engines.foreign_engines import ladders, recorded
-from compare.studies.engines.foreign_engines.claims import STUDY, draw
-from compare.studies.engines.foreign_engines.ladders import halvings
-from compare.studies.engines.foreign_engines.parameters import BY_AXIS, FIRST_ORDER
-from compare.studies.engines.foreign_engines.recorded import recorded_claims, recorded_settings
-from compare.studies.engines.foreign_engines.tables import time_to
+from compare.studies.engines.foreign_engines import study as foreign_engines
+from compare.studies.engines.foreign_engines import theory
+from compare.studies.engines.foreign_engines.study import STUDY, draw
+from compare.studies.engines.foreign_engines.theory import (
+    BY_AXIS,
+    FIRST_ORDER,
+    halvings,
+    recorded_claims,
+    recorded_settings,
+    time_to,
+)
 from reference_model import simulate
 
 BUILDERS = Path(__file__).parents[4] / "builders"
@@ -227,8 +231,8 @@ def spoilt(change):
 
 
 def test_errors_that_stay_differ_from_first_order(monkeypatch):
-    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(lambda error: error + 0.3))
-    monkeypatch.setattr(recorded, "recorded", ladders.recorded)
+    monkeypatch.setattr(theory, "recorded", lambda: spoilt(lambda error: error + 0.3))
+    monkeypatch.setattr(theory, "recorded", theory.recorded)
     found = verdicts(STUDY.measure_theory().claims)
     agreeing = {name for name, said in found.items() if said is Verdict.AGREES}
     assert agreeing == {"axes-stay-off", "disc-stays-off", "holds-longer"}
@@ -237,13 +241,13 @@ def test_errors_that_stay_differ_from_first_order(monkeypatch):
 
 def test_errors_that_fall_differ_from_another_law(monkeypatch):
     halving = lambda error: error[0] * 0.5 ** np.arange(len(error))  # noqa: E731
-    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(halving))
+    monkeypatch.setattr(theory, "recorded", lambda: spoilt(halving))
     found = verdicts(STUDY.measure_theory().claims)
     assert found["axes-stay-off"] is found["disc-stays-off"] is Verdict.DIFFERS
 
 
 def test_creep_other_than_along_tangents_differs(monkeypatch):
-    monkeypatch.setattr(ladders, "recorded", lambda: spoilt(lambda error: 1.01 * error))
+    monkeypatch.setattr(theory, "recorded", lambda: spoilt(lambda error: 1.01 * error))
     assert verdicts(STUDY.measure_theory().claims)["creeps"] is Verdict.DIFFERS
 
 

@@ -10,8 +10,8 @@ from study_harness import LEFT_OUT, SEES, StudyTests
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5
 from compare.output.figures import paper_style, saved
-from compare.studies.pin.basins import claims, theory
-from compare.studies.pin.basins.claims import STUDY
+from compare.studies.pin.basins import study, theory
+from compare.studies.pin.basins.study import STUDY
 from compare.studies.pin.basins.theory import enclosed, smooth
 from reference_model.ensemble import EndState
 
@@ -49,7 +49,7 @@ class TestBasins(StudyTests):
     def test_the_theory_holds(self):
         claims = {claim.identity: claim.verdict for claim in self.found("theory").claims}
         # The boundary passes through too many of so few cells.
-        assert claims.pop("basins/area") is Verdict.INCONCLUSIVE
+        assert study.pop("basins/area") is Verdict.INCONCLUSIVE
         assert claims == dict.fromkeys(
             ("basins/divides", "basins/recomputes", "basins/shrinks"), Verdict.AGREES
         )
@@ -85,7 +85,7 @@ def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
     x, vx = np.meshgrid(np.linspace(-1.0, 1.0, 401), np.linspace(-1.0, 1.0, 401))
     middle = (abs(x) <= 0.5) & (abs(vx) <= 0.5)
     ends = np.where(middle, EndState.SELF_CENTRED, EndState.WHIRL).astype(np.uint8)
-    monkeypatch.setattr(claims, "ends_on_finer_grid", lambda pin, side: ends)
+    monkeypatch.setattr(study, "ends_on_finer_grid", lambda pin, side: ends)
     (claim,) = claims_of_theory("area")
     assert claim.verdict is Verdict.DIFFERS
     assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
@@ -119,7 +119,7 @@ def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(anew):
         found = right(starts, *pin, **parameters)
         return replace(found, end=np.where(found.end == 1, 2, 1).astype(np.uint8))
 
-    for module in (theory, claims):
+    for module in (theory, study):
         anew.setattr(module, "ensemble_of", swapped)
     assert all_differ("divides", "recomputes")
 

@@ -5,8 +5,8 @@ import pytest
 from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
-from compare.studies.pin.fig03 import parameters, theory
-from compare.studies.pin.fig03.claims import STUDY
+from compare.studies.pin.fig03 import study
+from compare.studies.pin.fig03.study import STUDY
 
 LOADS = {"loads": (0.02, 0.06)}
 
@@ -30,13 +30,13 @@ class TestFig03(StudyTests):
 
     def test_half_the_damping_leaves_the_rest_where_it_was(self):
         (claim,) = self.claims_of_fault("half the damping", "rests")
-        assert np.max(claim.difference) < 1e-6 * parameters.PIN.offset
+        assert np.max(claim.difference) < 1e-6 * study.PIN.offset
 
 
 def test_the_limit_load_is_extrapolated_from_exact_positions():
     loads = (0.05, 0.08)
-    positions = theory.positions(loads)
-    limit, error = theory.vanishing_load(loads, positions, np.array([1e-9, 1e-9]))
+    positions = study.positions(loads)
+    limit, error = study.vanishing_load(loads, positions, np.array([1e-9, 1e-9]))
     assert limit == pytest.approx(0.1, rel=1e-14)
-    moved, _ = theory.vanishing_load(loads, positions * (1.0 + 1e-9 / 0.06), np.zeros(2))
+    moved, _ = study.vanishing_load(loads, positions * (1.0 + 1e-9 / 0.06), np.zeros(2))
     assert abs(moved - limit) < error

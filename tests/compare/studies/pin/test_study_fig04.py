@@ -9,14 +9,14 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG4
-from compare.studies.pin.fig04 import claims, parameters, theory
-from compare.studies.pin.fig04.claims import STUDY
+from compare.studies.pin.fig04 import study
+from compare.studies.pin.fig04.study import STUDY
 from reference_model.formulas.pin import first_order_whirl_response, first_order_whirl_shift, whirl_shift
 
 NO_WHIRL = "no whirl near the guess"
 """What the search says that finds none; the runner shows the engine as one that failed, with this sentence."""
 
-AT_THREE = {"shift": {"speeds": parameters.CLAIM_SPEEDS}}
+AT_THREE = {"shift": {"speeds": study.CLAIM_SPEEDS}}
 
 AT_ONE = replace(STUDY, declared=[replace(one, each={"1.5": one.each["1.5"]}) for one in STUDY.declared])
 """The study with one speed of three."""
@@ -70,7 +70,7 @@ def test_neither_formula_has_the_friction_force_in_it(formula):
     ("factor", "seen"), [(1.108, {"shift", "limit"}), (1.01, {"shift", "limit"}), (1.0001, {"limit"})]
 )
 def test_a_wrong_equation_18_is_refuted_by_a_right_engine(monkeypatch, factor, seen):
-    monkeypatch.setattr(claims, "whirl_shift", lambda pin: tuple(factor * np.array(whirl_shift(pin))))
+    monkeypatch.setattr(study, "whirl_shift", lambda pin: tuple(factor * np.array(whirl_shift(pin))))
     assert those_that_differ() == seen
 
 
@@ -79,7 +79,7 @@ def test_a_wrong_first_order_response_is_refuted_by_a_right_engine(monkeypatch):
         right = first_order_whirl_response(pin)
         return right._replace(second_harmonic=1.001 * right.second_harmonic)
 
-    monkeypatch.setattr(claims, "first_order_whirl_response", wrong)
+    monkeypatch.setattr(study, "first_order_whirl_response", wrong)
     assert those_that_differ() == {"response"}
 
 
@@ -93,15 +93,15 @@ def test_no_simulation_enters_what_equation_18_may_be_off_by(monkeypatch):
         raise AssertionError("simulated")
 
     monkeypatch.setattr("reference_model.motion.stepper.Stepper.__init__", refuse)
-    for speed in parameters.CLAIM_SPEEDS:
-        pin = parameters.pin_at(speed)
-        assert theory.error_of_eq18(pin) < 0.05 * np.hypot(*whirl_shift(pin))
+    for speed in study.CLAIM_SPEEDS:
+        pin = study.pin_at(speed)
+        assert study.error_of_eq18(pin) < 0.05 * np.hypot(*whirl_shift(pin))
 
 
 def test_means_over_speed_are_those_of_the_theory_within_the_third_order(reference):
     """What Fig. 4 shows: marks on the curve of the first order."""
     for speed, mean in zip(reference.data["speeds"], reference.data["means"], strict=True):
-        exact = first_order_whirl_shift(parameters.pin_at(speed))
+        exact = first_order_whirl_shift(study.pin_at(speed))
         # (X0·w/ρ)², w = ω/(ω − k) the factor by which the offset grows, ρ = 1.2 m: the next order, relatively.
         growth = FIG4.offset * speed / (speed - FIG4.natural_frequency) / 1.2
         assert mean == pytest.approx(exact, abs=float(np.hypot(*exact)) * growth**2)

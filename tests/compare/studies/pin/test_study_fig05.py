@@ -15,9 +15,9 @@ from study_harness import BLIND, SEES, StudyTests, engine_named
 from compare.claims.claim import Verdict
 from compare.claims.paper_parameters import FIG5_STARTS
 from compare.engines import Engine
-from compare.studies.pin.fig05 import parameters, theory
-from compare.studies.pin.fig05.claims import STUDY
+from compare.studies.pin.fig05 import study
 from compare.studies.pin.fig05.pictures import animate
+from compare.studies.pin.fig05.study import STUDY
 
 
 def never_released(system, initial_state, times, *, tolerance=1e-9):
@@ -104,21 +104,21 @@ def test_one_stick_phase_too_few_or_too_many_at_the_end_is_seen(count):
 
 
 def test_a_pin_that_sticks_too_seldom_has_no_critical_velocity_rather_than_an_error():
-    assert math.isnan(theory.critical_velocity(TestFig05.faults["stick never ends"], 1e-8))
-    assert math.isnan(theory.critical_velocity(TestFig05.faults["wrong sign"], 1e-6))
+    assert math.isnan(study.critical_velocity(TestFig05.faults["stick never ends"], 1e-8))
+    assert math.isnan(study.critical_velocity(TestFig05.faults["wrong sign"], 1e-6))
 
 
 @pytest.mark.parametrize("name", FIG5_STARTS)
 def test_first_stick_and_release_found_by_a_plain_event_are_those_of_the_reference(name):
     """Two ways to the same times: an event on the slip of (1) with (7), and slip-polar coordinates."""
-    times = theory.first_stick_and_release(name, 4e-13)
-    assert times == pytest.approx(theory.reference_events(name)[:2], abs=1e-10)
+    times = study.first_stick_and_release(name, 4e-13)
+    assert times == pytest.approx(study.reference_events(name)[:2], abs=1e-10)
 
 
 def test_the_plain_event_does_not_depend_on_the_slip_at_which_it_is_put():
     """That slip is 1e4 times the tolerance: what is left of the time is taken from its closed form."""
     for name in FIG5_STARTS:
-        near, far = (theory.first_stick_and_release(name, tolerance) for tolerance in (4e-13, 4e-11))
+        near, far = (study.first_stick_and_release(name, tolerance) for tolerance in (4e-13, 4e-11))
         # The time left over is of the order s/(μN/m), and right to s times its derivatives.
         assert far == pytest.approx(near, abs=1e2 * 4e-11)
 
@@ -127,15 +127,15 @@ def test_the_critical_velocity_of_the_map_divides_the_ends_of_long_runs():
     """The map from one stick phase to the next, and a plain bisection on where the pin is after 220 s."""
     reference = engine_named("reference")
     low, high = 0.0277, 0.0279
-    assert theory.outside_at_end(reference, low, 1e-9) < 0.0
-    assert theory.outside_at_end(reference, high, 1e-9) > 0.0
-    while high - low > parameters.CAPTURE:
+    assert study.outside_at_end(reference, low, 1e-9) < 0.0
+    assert study.outside_at_end(reference, high, 1e-9) > 0.0
+    while high - low > study.CAPTURE:
         middle = 0.5 * (low + high)
-        if theory.outside_at_end(reference, middle, 1e-9) > 0.0:
+        if study.outside_at_end(reference, middle, 1e-9) > 0.0:
             high = middle
         else:
             low = middle
-    assert low <= theory.critical_velocity(reference, 1e-10) <= high
+    assert low <= study.critical_velocity(reference, 1e-10) <= high
 
 
 def test_there_is_no_animation_without_an_engine():

@@ -8,8 +8,8 @@ from studies_under_test import GROSS, altered
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.fig06 import parameters
-from compare.studies.pin.fig06.claims import STUDY
+from compare.studies.pin.fig06 import study
+from compare.studies.pin.fig06.study import STUDY
 from compare.studies.toolkit.whirls import extent
 from reference_model import whirl_orbit
 from reference_model.formulas.pin import equilibrium_radius, sticking_radius
@@ -57,13 +57,13 @@ class TestFig06(StudyTests):
         assert found["branch sticks"][0] == 0.0
         assert found["branch sticks"][-1] == 1.0
         assert np.all(found["branch extent"][:, 0] < found["branch extent"][:, 1])
-        outermost = whirl_orbit(parameters.with_load(parameters.WHIRL_LOADS[-1]))
+        outermost = whirl_orbit(study.with_load(study.WHIRL_LOADS[-1]))
         assert found["branch extent"][0] == pytest.approx(extent(outermost), abs=1e-4)
 
     def test_the_equilibrium_ends_where_sticking_begins(self):
         """(5): at μN = C·X0 the radius (3) is zero, and (9) starts from zero."""
         found = self.found("theory").data
-        fig6, limit = parameters.FIG6, parameters.LIMIT
+        fig6, limit = study.FIG6, study.LIMIT
         assert np.all(found["equilibrium load"] < limit)
         assert np.all(found["sticking load"] > limit)
         below, above = (replace(fig6, friction_force=factor * limit) for factor in (1.0 - 1e-6, 1.0 + 1e-6))

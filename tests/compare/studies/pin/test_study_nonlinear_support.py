@@ -10,8 +10,8 @@ from studies_under_test import altered
 from study_harness import BLIND, SEES, StudyTests
 
 from compare.claims.paper_parameters import CENTRED
-from compare.studies.pin.nonlinear_support import parameters, theory
-from compare.studies.pin.nonlinear_support.claims import STUDY
+from compare.studies.pin.nonlinear_support import theory
+from compare.studies.pin.nonlinear_support.study import STUDY
 
 NO_ORBIT = "no whirl near the guess"
 """What the search says that finds none; the runner shows the engine as one that failed, with this sentence."""
@@ -56,17 +56,17 @@ class TestNonlinearSupport(StudyTests):
 
 
 def test_the_motions_pass_the_bends_of_the_supports():
-    for pin in parameters.PINS.values():
-        slides = replace(pin, offset=parameters.OFFSET)
-        states = simulate(slides, parameters.SLIDING_START, parameters.SLIDING_TIMES).states
+    for pin in theory.PINS.values():
+        slides = replace(pin, offset=theory.OFFSET)
+        states = simulate(slides, theory.SLIDING_START, theory.SLIDING_TIMES).states
         deflection = np.hypot(states[:, 0] - slides.offset, states[:, 1])
-        beyond = deflection > parameters.STOP.stop_gap
+        beyond = deflection > theory.STOP.stop_gap
         assert beyond.any()
         assert not beyond.all()
 
 
 def test_growth_ends_where_a_circle_turns_with_the_disc():
-    for pin in parameters.PINS.values():
+    for pin in theory.PINS.values():
 
         def excess(radius, pin=pin):
             stop = pin.stop_stiffness * max(0.0, radius - pin.stop_gap)
@@ -78,9 +78,9 @@ def test_growth_ends_where_a_circle_turns_with_the_disc():
 
 def test_the_linear_circle_grows_with_the_momentum_that_friction_adds():
     (_, first), (time, last) = theory.curves()["linear growth"]
-    load = parameters.GROWING_LOADS[-1]
+    load = theory.GROWING_LOADS[-1]
     pin = replace(CENTRED, damping=0.0, friction_force=load)
     end = simulate(pin, theory.first_circle(pin), [0.0, time]).at_end
     # The circle at the start has no radial speed yet: 0.5 % of ripple is left.
     assert np.hypot(*end[:2]) == pytest.approx(last, rel=1e-2)
-    assert first == parameters.GROWING_FROM
+    assert first == theory.GROWING_FROM

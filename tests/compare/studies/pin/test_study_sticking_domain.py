@@ -7,8 +7,8 @@ from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.error_estimates import Measurement
 from compare.engines import Engine
-from compare.studies.pin.sticking_domain import claims, parameters
-from compare.studies.pin.sticking_domain.claims import STUDY
+from compare.studies.pin.sticking_domain import study, theory
+from compare.studies.pin.sticking_domain.study import STUDY
 from compare.studies.pin.sticking_domain.theory import vertex
 from compare.studies.toolkit.sticking import safest_angle
 from reference_model import Phase, Trajectory
@@ -31,9 +31,9 @@ class TestStickingDomain(StudyTests):
     }
 
 
-@pytest.mark.parametrize("speed", parameters.SPEEDS)
+@pytest.mark.parametrize("speed", theory.SPEEDS)
 def test_starts_are_where_the_least_force_holds_the_pin(speed):
-    pin = parameters.pin_at(speed)
+    pin = theory.pin_at(speed)
     angle = safest_angle(pin)
     around = squared_holding_force(pin, 0.01, angle + np.linspace(-np.pi, np.pi, 101))
     assert np.min(around) == pytest.approx(squared_holding_force(pin, 0.01, angle))
@@ -57,7 +57,7 @@ def test_a_pin_just_outside_that_is_not_let_go_tells_nothing_where_it_creeps_nea
         states = np.tile(start, (len(times), 1))
         return Trajectory(pin, np.array(times), states, (Phase("stick", times[0], times[-1], states[0]),))
 
-    monkeypatch.setattr(claims, "displaced", displaced)
-    found = claims.lets_go(Engine("mine", simulate), (1.4,))
+    monkeypatch.setattr(study, "displaced", displaced)
+    found = study.lets_go(Engine("mine", simulate), (1.4,))
     assert np.all(np.isinf(found.value))
     assert np.all(np.isinf(found.error) == open_)

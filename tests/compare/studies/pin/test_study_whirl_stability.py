@@ -6,8 +6,8 @@ from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.whirl_stability import parameters, theory
-from compare.studies.pin.whirl_stability.claims import STUDY, conditions
+from compare.studies.pin.whirl_stability import theory
+from compare.studies.pin.whirl_stability.study import STUDY, conditions
 from reference_model.formulas.pin import characteristic_coefficients_as_printed
 
 SPEEDS, STARTS, POINTS = {"speeds": (1.5,)}, {"starts": (0.8, 1.5)}, {"points": ((1.5, 0.1), (1.5, 1.0))}
@@ -64,4 +64,4 @@ def test_the_linear_deviation_solves_the_linear_equations():
     times = np.linspace(0.0, 2.0, 201)
     deviation = theory.linear_deviation(times)
     assert deviation[0] == 1.0
-    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(parameters.K, rel=0.01)
+    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(theory.K, rel=0.01)

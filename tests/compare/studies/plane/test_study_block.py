@@ -11,8 +11,8 @@ from studies_under_test import GROSS, altered, fault, made
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.engines import Engine
-from compare.studies.plane.block import parameters, theory
-from compare.studies.plane.block.claims import STUDY
+from compare.studies.plane.block import study
+from compare.studies.plane.block.study import STUDY
 from reference_model.trajectory import Trajectory
 
 DEGREE = np.exp(1j * math.radians(1.0))
@@ -109,7 +109,7 @@ class TestBlock(StudyTests):
 def test_the_block_on_a_spring_rests_after_four_half_swings_at_a_twentieth_of_a_millimetre():
     """By hand: 0.85, −0.65, 0.45, −0.25, 0.05 mm, and 1e4 N/m · 0.05 mm = 0.5 N < μN."""
     times = math.pi / 100.0 * np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.5])
-    states = theory.half_swings(parameters.SWINGING, 0.85e-3, times)
+    states = study.half_swings(study.SWINGING, 0.85e-3, times)
     assert states[:, 0] == pytest.approx([0.85e-3, -0.65e-3, 0.45e-3, -0.25e-3, 0.05e-3, 0.05e-3], abs=1e-18)
     assert states[:, 1] == pytest.approx(0.0, abs=1e-15)
 
@@ -117,7 +117,7 @@ def test_the_block_on_a_spring_rests_after_four_half_swings_at_a_twentieth_of_a_
 @pytest.mark.parametrize("start", [1.01, 2.5, 6.3])
 def test_swings_are_those_of_newtons_law_up_to_each_turning_point(start):
     """Friction changes its sign where the block turns: each half swing by an integration of its own."""
-    pin = parameters.SPRING
+    pin = study.SPRING
     length, half = pin.friction_force / pin.stiffness, math.pi / pin.natural_frequency
     place, t = start * length, 0.0
     while abs(place) > length:
@@ -128,16 +128,16 @@ def test_swings_are_those_of_newtons_law_up_to_each_turning_point(start):
         )
         at = np.array([0.0, 0.3, 0.8, 1.0]) * half
         run = solve_ivp(rates, (0.0, half), (place, 0.0), "DOP853", at, rtol=1e-12, atol=1e-12)
-        expected = theory.half_swings(pin, start * length, t + at)
+        expected = study.half_swings(pin, start * length, t + at)
         np.testing.assert_allclose(run.y.T, expected, atol=1e-9)
         place, t = run.y[0, -1], t + half
-    assert theory.half_swings(pin, start * length, [t, 9.0 * t])[:, 0] == pytest.approx(place, abs=1e-9)
+    assert study.half_swings(pin, start * length, [t, 9.0 * t])[:, 0] == pytest.approx(place, abs=1e-9)
 
 
-@pytest.mark.parametrize("stiffness", [0.0, parameters.ACROSS.stiffness, 1e4 * parameters.ACROSS.stiffness])
+@pytest.mark.parametrize("stiffness", [0.0, study.ACROSS.stiffness, 1e4 * study.ACROSS.stiffness])
 def test_the_velocity_across_a_pull_is_that_of_newtons_law_to_what_the_spring_changes(stiffness, monkeypatch):
     """The bound holds of springs that are so near that their pull changes by a hundredth, too."""
-    block, times = parameters.ACROSS, parameters.TURNING
+    block, times = study.ACROSS, study.TURNING
 
     def rates(_, y):
         z, v = y.view(complex)
@@ -145,21 +145,21 @@ def test_the_velocity_across_a_pull_is_that_of_newtons_law_to_what_the_spring_ch
         return np.array([v, a]).view(float)
 
     run = solve_ivp(
-        rates, (0.0, times[-1]), (0.0, 0.0, 0.0, parameters.SPEED), "DOP853", times, rtol=1e-12, atol=1e-13
+        rates, (0.0, times[-1]), (0.0, 0.0, 0.0, study.SPEED), "DOP853", times, rtol=1e-12, atol=1e-13
     )
-    monkeypatch.setattr(theory, "ACROSS", replace(block, stiffness=stiffness))
-    apart = np.max(np.abs(run.y[2:].T - theory.across(times)))
-    bound = theory.bend_by_spring(times)
+    monkeypatch.setattr(study, "ACROSS", replace(block, stiffness=stiffness))
+    apart = np.max(np.abs(run.y[2:].T - study.across(times)))
+    bound = study.bend_by_spring(times)
     assert apart <= bound + 1e-10
     assert apart >= 0.1 * bound
 
 
 def test_half_of_the_speed_is_left_in_the_end():
-    assert theory.across([30.0])[0] == pytest.approx([0.5 * parameters.SPEED, 0.0], abs=1e-15)
+    assert study.across([30.0])[0] == pytest.approx([0.5 * study.SPEED, 0.0], abs=1e-15)
 
 
 def test_a_sliding_block_is_slowed_down_or_pulled_as_by_a_constant_force_when_the_spring_is_weak():
-    block, t = replace(parameters.AFAR, stiffness=1e-9), np.array([0.5, 2.0])
-    s, v = theory.pulled(block, 1.0, 1.5e9, t).T
+    block, t = replace(study.AFAR, stiffness=1e-9), np.array([0.5, 2.0])
+    s, v = study.pulled(block, 1.0, 1.5e9, t).T
     assert s == pytest.approx(t + 0.25 * t**2, abs=1e-6)
     assert v == pytest.approx(1.0 + 0.5 * t, abs=1e-6)

@@ -9,23 +9,23 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 import exudyn_models
 from compare.engines import Engine
-from compare.studies.plane.thrown_disc import full_disc, parameters
-from compare.studies.plane.thrown_disc.claims import STUDY
+from compare.studies.plane.thrown_disc import study
+from compare.studies.plane.thrown_disc.study import STUDY
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
 
 
 def by_ring(patch):
-    patch.setattr(full_disc, "Annulus", lambda inner, outer: Ring(outer))
+    patch.setattr(study, "Annulus", lambda inner, outer: Ring(outer))
 
 
 def with_a_small_hole(patch):
-    patch.setattr(full_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
+    patch.setattr(study, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
 
 
 def part_with_a_small_hole(patch):
     add = exudyn_models.add_ring_friction
-    hole = {"inner_radius": 0.02 * parameters.RADIUS}
+    hole = {"inner_radius": 0.02 * study.RADIUS}
     patch.setattr(exudyn_models, "add_ring_friction", lambda *nodes, **contact: add(*nodes, **contact | hole))
 
 
@@ -89,14 +89,14 @@ def mean_over_ring(ratio, directions=2000):
     return np.mean(along / speed), np.mean((rim * np.cos(chi) - along * np.sin(chi)) / speed)
 
 
-@pytest.mark.parametrize("throw", parameters.RING, ids=lambda throw: throw.name)
+@pytest.mark.parametrize("throw", study.RING, ids=lambda throw: throw.name)
 def test_what_friction_takes_of_a_throw_on_a_ring_is_the_mean_over_its_directions(throw):
     ratio = throw.sliding / abs(throw.rim) if throw.rim else 1e9
     force, moment = mean_over_ring(ratio)
     assert [force, moment] == pytest.approx([throw.force, throw.moment], abs=1e-5)
 
 
-@pytest.mark.parametrize("throw", parameters.FULL, ids=lambda throw: throw.name)
+@pytest.mark.parametrize("throw", study.FULL, ids=lambda throw: throw.name)
 def test_what_friction_takes_of_a_throw_on_a_full_disc_is_the_mean_over_its_rings(throw):
     radii = np.sqrt((np.arange(200) + 0.5) / 200)  # each with as much of the area
     found = []
@@ -106,11 +106,11 @@ def test_what_friction_takes_of_a_throw_on_a_full_disc_is_the_mean_over_its_ring
     assert np.mean(found, axis=0) == pytest.approx([throw.force, throw.moment], abs=1e-3)
 
 
-@pytest.mark.parametrize("throw", [*parameters.RING, *parameters.FULL], ids=lambda throw: throw.name)
+@pytest.mark.parametrize("throw", [*study.RING, *study.FULL], ids=lambda throw: throw.name)
 def test_a_throw_loses_its_momenta_to_force_and_moment_at_once(throw):
     """Linear and angular momentum over force and moment: the same time for both where there are both."""
     times = [
-        start * inertia / (parameters.DECELERATION * taken)
+        start * inertia / (study.DECELERATION * taken)
         for start, inertia, taken in (
             (throw.sliding, 1.0, throw.force),
             (abs(throw.rim), throw.inertia, throw.moment),

@@ -8,8 +8,17 @@ from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.searches import circles_of, extrapolated
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import CENTRED, CIRCLES, ORDERS, PAPER_LAW, RING, SOURCE_CENTRED
-from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, spin_of_large_whirl
+from compare.studies.disc.fig09.theory import (
+    CENTRED,
+    CIRCLES,
+    ORDERS,
+    PAPER_LAW,
+    RING,
+    SOURCE_CENTRED,
+    circle_of,
+    radius_of_pin,
+    spin_of_large_whirl,
+)
 from compare.studies.toolkit.self_centred import with_load
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import FloatArray

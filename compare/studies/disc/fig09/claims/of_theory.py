@@ -11,8 +11,12 @@ import numpy as np
 from compare.claims.error_estimates import extrapolated_order
 from compare.claims.measured import Measured
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import CENTRED, DAMPINGS, PAPER_LAW, RING, SOURCE
 from compare.studies.disc.fig09.theory import (
+    CENTRED,
+    DAMPINGS,
+    PAPER_LAW,
+    RING,
+    SOURCE,
     last_stable_load,
     marginal_ratio,
     orbits,

@@ -13,14 +13,17 @@ from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.searches import extrapolated, with_tolerance
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import (
+from compare.studies.disc.fig09.theory import (
     HALVED_OFFSETS,
     OFFSET_LOAD,
     ORBIT_TOLERANCE,
     ORBITS,
     RING,
+    circle_of,
+    extent,
+    first_order_shift,
+    orbit_of_reference,
 )
-from compare.studies.disc.fig09.theory import circle_of, extent, first_order_shift, orbit_of_reference
 from compare.studies.toolkit.self_centred import with_load
 from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray

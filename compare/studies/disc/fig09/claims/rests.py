@@ -12,7 +12,7 @@ from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.searches import rests_of
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import (
+from compare.studies.disc.fig09.theory import (
     CENTRED,
     DECAY,
     DISPLACED,
@@ -20,8 +20,9 @@ from compare.studies.disc.fig09.parameters import (
     ORBIT_TOLERANCE,
     REST_LOADS,
     RING,
+    circle_of,
+    rest_of,
 )
-from compare.studies.disc.fig09.theory import circle_of, rest_of
 from compare.studies.toolkit.self_centred import with_load
 from compare.studies.toolkit.steady_motion import mode_growth
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl

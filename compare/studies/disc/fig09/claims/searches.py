@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import Measurement, known, refined
 from compare.engines import Engine
-from compare.studies.disc.fig09.parameters import CIRCLES, ORBIT_TOLERANCE
-from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, rest_of
+from compare.studies.disc.fig09.theory import CIRCLES, ORBIT_TOLERANCE, circle_of, radius_of_pin, rest_of
 from compare.studies.toolkit.self_centred import with_load
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion
 from reference_model.systems import DiscOnDisc, FloatArray

@@ -14,7 +14,7 @@ from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.searches import circle, circles_of, rest, rests_of
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import (
+from compare.studies.disc.fig09.theory import (
     CENTRED,
     CIRCLES,
     OUTSIDE,
@@ -23,9 +23,11 @@ from compare.studies.disc.fig09.parameters import (
     SOURCE_CENTRED,
     STICK_LOADS,
     TOLERANCE,
+    circle_of,
     on_six_points,
+    radius_of_pin,
+    stuck_at,
 )
-from compare.studies.disc.fig09.theory import circle_of, radius_of_pin, stuck_at
 from compare.studies.toolkit.self_centred import with_load
 from reference_model import simulate
 from reference_model.systems import FloatArray

@@ -13,8 +13,16 @@ from compare.claims.linearised_flow import rotated
 from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
 from compare.studies.disc.fig09.claims.study import STUDY
-from compare.studies.disc.fig09.parameters import INSIDE, LATEST, OUTSIDE, RING, STICK_LOADS, TOLERANCE
-from compare.studies.disc.fig09.theory import orbit_of_reference, stuck_at
+from compare.studies.disc.fig09.theory import (
+    INSIDE,
+    LATEST,
+    OUTSIDE,
+    RING,
+    STICK_LOADS,
+    TOLERANCE,
+    orbit_of_reference,
+    stuck_at,
+)
 from compare.studies.toolkit.self_centred import with_load
 from compare.studies.toolkit.sticking import first_release
 from reference_model import Trajectory

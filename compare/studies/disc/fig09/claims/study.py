@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from compare.claims.study import Study
-from compare.studies.disc.fig09.parameters import RING, SOURCE
 from compare.studies.disc.fig09.pictures import draw
-from compare.studies.disc.fig09.theory import curves
+from compare.studies.disc.fig09.theory import RING, SOURCE, curves
 
 STUDY = Study.beside(
     __file__,

@@ -14,7 +14,7 @@ from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.claims.measured import Measured, answers_of
 from compare.engines import Engine
 from compare.studies.disc.stability_map.claims.study import STUDY
-from compare.studies.disc.stability_map.parameters import ASIDE, DEVIATION, FLOW_TOLERANCE, LINES, K, at
+from compare.studies.disc.stability_map.theory import ASIDE, DEVIATION, FLOW_TOLERANCE, LINES, K, at
 from compare.studies.toolkit.fig11_planes import PLANES
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian

@@ -13,17 +13,15 @@ from scipy.optimize import brentq
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.measured import Measured, answers_of
 from compare.studies.disc.stability_map.claims.study import STUDY
-from compare.studies.disc.stability_map.parameters import (
+from compare.studies.disc.stability_map.theory import (
     BOTH_LAWS,
     DISC,
     FAR_FROM_KINK,
     ONE_AT_A_TIME,
     ONSET_SPEEDS,
     K,
-    at,
-)
-from compare.studies.disc.stability_map.theory import (
     Traced,
+    at,
     change_of_stability,
     crossed,
     growth_of_rotation,

@@ -8,9 +8,18 @@ import numpy as np
 
 from compare.claims.measured import Measured, answers_of
 from compare.studies.disc.stability_map.claims.study import STUDY
-from compare.studies.disc.stability_map.ends import SLOWLY_SETTLED, Start, ends_of
-from compare.studies.disc.stability_map.parameters import BESIDE_LARGEST, DISC, UNSTABLE_LOADS, K, at
-from compare.studies.disc.stability_map.theory import critical_eigenvalues, nearest
+from compare.studies.disc.stability_map.theory import (
+    BESIDE_LARGEST,
+    DISC,
+    SLOWLY_SETTLED,
+    UNSTABLE_LOADS,
+    K,
+    Start,
+    at,
+    critical_eigenvalues,
+    ends_of,
+    nearest,
+)
 from compare.studies.toolkit.fig11_planes import LAWS, PLANES
 from reference_model.formulas.pin import upper_branch_margin
 from reference_model.simulation import simulate

@@ -11,17 +11,22 @@ from compare.claims.measured import Measured
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.disc.stability_map.claims.study import STUDY
-from compare.studies.disc.stability_map.ends import ENDS, SETTLED, SLOWLY_SETTLED, Start, ends_of, kind_of_end
-from compare.studies.disc.stability_map.parameters import (
+from compare.studies.disc.stability_map.theory import (
     BESIDE,
     BEYOND,
     DISC,
+    ENDS,
     LOADS,
     ON_CYCLE,
     OUTSIDE,
+    SETTLED,
     SLOW_LOADS,
+    SLOWLY_SETTLED,
     STUCK,
+    Start,
     at,
+    ends_of,
+    kind_of_end,
 )
 from compare.studies.toolkit.fig11_planes import PLANES
 from reference_model.steady.bifurcation_curves import crossings

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from compare.claims.study import Study
-from compare.studies.disc.stability_map.parameters import DISC, SOURCE
 from compare.studies.disc.stability_map.pictures import draw
-from compare.studies.disc.stability_map.theory import curves
+from compare.studies.disc.stability_map.theory import DISC, SOURCE, curves
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.claims.study import STUDY
-from compare.studies.drivetrain.frozen.parameters import CASES
+from compare.studies.drivetrain.frozen.theory import CASES
 from compare.studies.toolkit.drivetrain_bench import (
     Operation,
     centred_car,

@@ -17,7 +17,7 @@ from compare.claims.error_estimates import COARSENING, WORKING, Measurement, cha
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.claims.study import STUDY
-from compare.studies.drivetrain.frozen.parameters import (
+from compare.studies.drivetrain.frozen.theory import (
     ABOVE,
     BELOW,
     DECAYS,

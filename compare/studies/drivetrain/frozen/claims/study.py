@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from compare.claims.study import Study
-from compare.studies.drivetrain.frozen.parameters import BORDER_SURPLUS, BORDER_TORQUES
 from compare.studies.drivetrain.frozen.pictures import draw
-from compare.studies.drivetrain.frozen.theory import curves
+from compare.studies.drivetrain.frozen.theory import BORDER_SURPLUS, BORDER_TORQUES, curves
 from compare.studies.toolkit.drivetrain_bench import SOURCE
 
 STUDY = Study.beside(

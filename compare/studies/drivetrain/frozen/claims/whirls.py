@@ -21,8 +21,7 @@ from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, r
 from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.claims.study import STUDY
-from compare.studies.drivetrain.frozen.model import build
-from compare.studies.drivetrain.frozen.parameters import (
+from compare.studies.drivetrain.frozen.theory import (
     BETWEEN,
     BORDER_SURPLUS,
     BORDER_TORQUES,
@@ -36,9 +35,8 @@ from compare.studies.drivetrain.frozen.parameters import (
     TOLERANCE,
     UNTIL,
     WHIRLS,
-)
-from compare.studies.drivetrain.frozen.theory import (
     CarWhirl,
+    build,
     in_turning_axes,
     of_modulation,
     state_matrix_of,

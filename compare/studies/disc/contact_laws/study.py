@@ -1,0 +1,355 @@
+"""The study of the laws of contact, to which the modules beside this one add its claims."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from compare.claims.error_estimates import ROUNDING, TIGHTEST, observed_exponent, refined
+from compare.claims.measured import Measured
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.disc.contact_laws.theory import (
+    ANGLE,
+    CENTRE,
+    COMPARED,
+    DIFFERENCES,
+    DIRECTION,
+    DISC,
+    INNER,
+    NUMBERS,
+    QUADRATURE,
+    RATIOS,
+    RESTING,
+    RING,
+    RINGS,
+    SIX,
+    SOURCE,
+    SOURCE_OF_LAWS,
+    SPEED,
+    STEP,
+    WIDTHS,
+    R,
+    curves,
+    friction,
+    greatest_errors_of_expansion,
+    greatest_errors_of_points,
+    ring_by_quadrature,
+    sum_of_points,
+)
+from reference_model.contact.annulus import ORDER, SLOPE_ORDER, Annulus
+from reference_model.systems import DiscOnDisc, FloatArray
+
+STUDY = Study.beside(
+    __file__,
+    "contact-laws",
+    source=SOURCE,
+    seconds=1.5,
+    quick=True,
+    contact=True,
+)
+STUDY.provides(curves=curves)
+
+
+# --- The friction that acts on a disc in an engine, read off its acceleration.
+
+NOTE = (
+    "F_x, F_y over μN and M over μN·R. From the acceleration at the start, by the velocities of the first "
+    f"{4.0 * STEP:g} s; predicted by quadrature. Error: the change from differences of the next lower order, and at "
+    "a smaller tolerance."
+)
+
+
+@STUDY.claim(
+    "Friction on the continuous ring is the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
+)
+def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
+    """Compare friction on the ring with the integral, at the ``ratios`` U/W."""
+    predicted = [ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
+    return friction_on(engine, DISC, ratios, "ring", predicted)
+
+
+@STUDY.claim(
+    "Friction on six points is the mean of (20) over the points, which slip as (21) says",
+    equation="(21)",
+    resolution=1e-3,
+    note=NOTE,
+)
+def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
+    """Compare friction on six points with the sum over them, at the ``ratios`` U/W."""
+    predicted = [sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
+    return friction_on(engine, SIX, ratios, "points6", predicted)
+
+
+def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
+    """Return slip of the centre and of the rim, u and R·(ω − φ̇) in m/s, for U/W and both signs of the latter."""
+    alphas = [math.atan2(1.0, ratio) for ratio in ratios]
+    return [
+        (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))
+        for sign in (1.0, -1.0)
+        for alpha in alphas
+    ]
+
+
+def friction_on(
+    engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
+) -> Measured:
+    """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with those ``predicted``, shape (2n, 3).
+
+    By (19) they are what the acceleration at the start takes besides springs and dampers. ``name`` is that of the
+    law in the figures.
+    """
+    inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
+
+    def friction(tolerance: float) -> FloatArray:
+        found = []
+        for slip, rim in motions(ratios):
+            v, spin = slip + 1j * disc.disc_speed * CENTRE, disc.disc_speed - rim / disc.contact_radius
+            start = [CENTRE.real, CENTRE.imag, ANGLE, v.real, v.imag, spin]
+            velocities = engine.simulate(disc, start, STEP * np.arange(5), tolerance=tolerance).states[:, 3:]
+            support = disc.damping * v + disc.stiffness * (CENTRE - disc.offset)
+            resisted = (support.real, support.imag, disc.shaft_damping * (spin - disc.shaft_speed))
+            found.append(inertia * (np.array(DIFFERENCES) @ velocities) / STEP + resisted)
+        return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
+
+    found, error = refined(friction, TIGHTEST)
+    # One number alone may be right by chance: of the noise the largest of all counts, of the differences' own error
+    # the largest in a motion.
+    truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
+    along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
+    return Measured(
+        predicted=predicted,
+        value=found[:, 0],
+        error=np.max(error[:, 0], axis=0) + truncation,
+        size=1.0,
+        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]},
+        components=("F_x", "F_y", "M"),
+        system=disc,
+        parameters={"x": CENTRE.real, "y": CENTRE.imag, "angle": ANGLE},
+        data={"ratio": ratios, name: np.column_stack((along, found[:, 0, 2]))[: len(ratios)]},
+    )
+
+
+# --- How far the laws of contact are from the integral, from each other and from the textbook; no engine takes part.
+
+OF_EXPANSION = (
+    "Predicted: the integral (20), and the same with the three terms of (22). Measured: the closed forms. Error: "
+    "that of the quadrature"
+)
+
+OF_POINTS = (
+    "Found on a grid over U/W = 1/20 … 20 and φ that is refined about its best place again and again. Error: twice "
+    "the last"
+)
+
+PARTS = ("force", "moment")
+
+
+@STUDY.claim(
+    "The elliptic integrals of the continuous ring equal the integral (20)",
+    equation="(20)",
+    resolution=1e-10,
+    note="F_x, F_y over μN and M over μN·R. Predicted: adaptive quadrature, whose own estimate is the error.",
+)
+def closed_form() -> Measured:
+    """Compare the closed form of the ring with quadrature, for slip in any direction and spin of either sign."""
+    predicted, measured, errors = [], [], []
+    for sign in (1.0, -1.0):
+        for i, ratio in enumerate(COMPARED):
+            slip = ratio * complex(math.cos(i), math.sin(i))
+            integral, error = ring_by_quadrature(slip, sign)
+            predicted.append(integral)
+            measured.append(friction(RING, slip, sign))
+            errors.append([error + ROUNDING] * 3)
+    return of_laws(
+        predicted=predicted,
+        value=measured,
+        error=errors,
+        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in COMPARED]},
+        components=("F_x", "F_y", "M"),
+    )
+
+
+def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> Measured:
+    """Return what was measured of laws: all that they depend on is a radius, or two."""
+    return Measured(
+        parameters={"contact_radius": R} | dict(parameters or {}), source=SOURCE_OF_LAWS, **measured
+    )
+
+
+@STUDY.claim(
+    "(23) is off by up to 0.1025 of μN in force and of μN·R in moment",
+    equation="(23)",
+    resolution=1e-6,
+    note=f"{OF_EXPANSION}.",
+)
+def error_of_expansion() -> Measured:
+    """Compare how far (23) is from the ring where it is the farthest."""
+    integrals, formulas = greatest_errors_of_expansion()
+    return of_laws(
+        predicted=integrals[:, 1],
+        value=formulas[:, 1],
+        error=QUADRATURE,
+        components=PARTS,
+        data={"expansion_worst": formulas[:, :2]},
+    )
+
+
+@STUDY.claim(
+    "(23) is off the most in force at U = 0.77 W, and in moment at W = 0.77 U",
+    equation="(23)",
+    resolution=1e-3,
+    note=f"U/W. {OF_EXPANSION}, and how well a top can be located with it.",
+)
+def place_of_expansion_error() -> Measured:
+    """Compare where (23) is the farthest from the ring."""
+    integrals, formulas = greatest_errors_of_expansion()
+    return of_laws(
+        predicted=integrals[:, 0],
+        value=formulas[:, 0],
+        error=integrals[:, 2] + formulas[:, 2],
+        components=PARTS,
+    )
+
+
+@STUDY.claim(
+    "n points are off by up to 1/n + 2/π − cot(π/2n)/n of μN and of μN·R",
+    equation="(21)",
+    resolution=1e-3,
+    note="Predicted: the point that is about to rest has its full share of friction, in the direction that hurts the "
+    f"most, and the others are a sum of sines at U = W. {OF_POINTS} step.",
+)
+def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
+    """Compare how far points are from the ring where they are the farthest."""
+    found = greatest_errors_of_points(numbers)
+    return of_laws(
+        predicted=[[1.0 / n + 2.0 / math.pi - 1.0 / (n * math.tan(0.5 * math.pi / n))] * 2 for n in numbers],
+        value=found[:, :, 1],
+        error=found[:, :, 2],
+        at={"n": numbers},
+        components=PARTS,
+        data={f"points{n}_worst": one for n, one in zip(numbers, found[:, :, :2], strict=True)},
+    )
+
+
+@STUDY.claim(
+    "n points are off the most where U = W and one of them comes to rest",
+    equation="(21)",
+    resolution=1e-3,
+    note=f"U/W. {OF_POINTS} change of the place.",
+)
+def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
+    """Compare where points are the farthest from the ring."""
+    found = greatest_errors_of_points(numbers)
+    return of_laws(
+        predicted=np.ones(found.shape[:2]),
+        value=found[:, :, 0],
+        error=found[:, :, 3],
+        at={"n": numbers},
+        components=PARTS,
+    )
+
+
+OF_RINGS = (
+    f"With {', '.join(map(str, RINGS))} rings on either side of the one with the point at rest; against 100. Errors: "
+    "scatter, and the change without a next term."
+)
+
+
+@STUDY.claim(
+    "An annulus with a resting point converges with its rings at order 12",
+    kind="order",
+    resolution=1.5,
+    note=OF_RINGS,
+)
+def annulus_converges() -> Measured:
+    """Observe at which order force and moment of an annulus converge."""
+    return order_in_rings(Annulus.shares, ORDER)
+
+
+@STUDY.claim(
+    "The slopes of an annulus with a resting point converge with its rings at order 6",
+    kind="order",
+    resolution=1.5,
+    note=OF_RINGS,
+)
+def slopes_converge() -> Measured:
+    """Observe at which order the slopes of force and moment of an annulus converge."""
+    return order_in_rings(Annulus.slopes, SLOPE_ORDER)
+
+
+def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
+    """Observe at which order a ``function`` of an annulus converges with its rings."""
+    # Gauss's rule on powers and logarithms has an error in even powers of 1/(n + ½).
+    fineness = 1.0 / (np.array(RINGS) + 0.5)
+    observed = []
+    for radius in RESTING:
+        exact = np.array(function(Annulus(INNER, R, rings=100), radius, 1.0))
+        found = np.array([function(Annulus(INNER, R, rings=n), radius, 1.0) for n in RINGS])
+        errors = np.linalg.norm(found / exact - 1.0, axis=1)
+        observed.append(observed_exponent(fineness, errors, next_term=2.0, noise=ROUNDING))
+    exponents, numerical, model = np.array(observed).T
+    return of_laws(
+        predicted=np.full(len(RESTING), float(order)),
+        value=exponents,
+        error=numerical,
+        model=float(np.max(model)),
+        at={"radius in m": RESTING},
+        parameters={"inner_radius": INNER},
+    )
+
+
+@STUDY.claim(
+    "A thin annulus is a ring, up to the square of its width",
+    equation="(20)",
+    kind="order",
+    resolution=0.1,
+    note="Exponent with which the distance from the ring of the mean radius falls, for width/R = "
+    f"{', '.join(f'{width:g}' for width in WIDTHS)}. Errors: scatter, and the change without a next term.",
+)
+def thin_annulus() -> Measured:
+    """Observe how an annulus becomes a ring."""
+    widths, slips = np.array(WIDTHS), (0.5 * R, 2.0 * R)
+    observed = []
+    for slip in slips:
+        laws = [Annulus(R * (1.0 - width / 2.0), R * (1.0 + width / 2.0)) for width in WIDTHS]
+        found = np.array([law.shares(slip, 1.0) for law in laws])
+        errors = np.abs(found / np.array(RING.shares(slip, 1.0)) - 1.0)
+        observed += [observed_exponent(widths, error, next_term=2.0, noise=ROUNDING) for error in errors.T]
+    exponents, numerical, model = np.array(observed).T
+    return of_laws(
+        predicted=np.full(len(exponents), 2.0),
+        value=exponents,
+        error=numerical,
+        model=float(np.max(model)),
+        components=[f"{part} at U = {slip / R:g} W" for slip in slips for part in PARTS],
+    )
+
+
+@STUDY.claim(
+    "An annulus that turns in place has the moment of a disc clutch",
+    unit="m",
+    resolution=1e-9,
+    note="M/μN of a full disc, and of an annulus from 2R/3 to R. Predicted: (2/3)(r₂³ − r₁³)/(r₂² − r₁²) under "
+    "uniform pressure, (r₁ + r₂)/2 under one like 1/r. Error: rounding.",
+)
+def in_place() -> Measured:
+    """Compare the moment of annuli that turn in place with the textbook."""
+    predicted, measured = [], []
+    for inner in (0.0, INNER):
+        uniform = 2.0 / 3.0 * (R**3 - inner**3) / (R**2 - inner**2)
+        predicted.append((uniform, 0.5 * (inner + R)))
+        laws = (Annulus(inner, R), Annulus(inner, R, pressure=lambda radius: 1.0 / radius))
+        measured.append([law.shares(0.0, 1.0).moment for law in laws])
+    return of_laws(
+        predicted=predicted,
+        value=measured,
+        error=ROUNDING * R,
+        at={"r₁ in m": (0.0, INNER)},
+        components=("uniform pressure", "pressure like 1/r"),
+        parameters={"inner_radius": INNER},
+    )

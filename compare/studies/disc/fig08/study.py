@@ -1,0 +1,324 @@
+"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the friction force, and where it ends."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import KroghInterpolator
+
+from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING, Measurement, refined
+from compare.claims.linearised_flow import real_and_imaginary
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.disc.fig08.theory import (
+    BALANCED,
+    DECAYS,
+    END_LOADS,
+    LOADS,
+    OFFSETS,
+    PAPER_LAW,
+    RESOLUTION,
+    RING,
+    SIX,
+    SOURCE,
+    SOURCE_OF_GRID,
+    STICKING_RATIOS,
+    STICKING_TIME,
+    TOLERANCE,
+    by_26,
+    curves,
+    grid,
+    last_load_by_26,
+    place_and_spin,
+    unbalanced,
+)
+from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
+from compare.studies.toolkit.steady_motion import steady_motion
+from reference_model import simulate
+from reference_model.formulas.disc import places_by_26, semicircle_residual
+from reference_model.steady.stability import jacobian_without_angle
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
+
+STUDY = Study.beside(
+    __file__,
+    "fig08",
+    source=SOURCE,
+    system=RING,
+    seconds=2.5,
+    words={"own": f"{RING.offset:g}"},
+)
+STUDY.provides(curves=curves)
+
+
+@functools.lru_cache(maxsize=4)
+def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
+    """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), and one error of all."""
+    found = refined(
+        lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
+    )
+    # One number alone may be right by chance, and two runs may coincide to within the tolerance.
+    return Measurement(found.value, np.asarray(found.largest + TOLERANCE * disc.offset))
+
+
+def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
+    """Return means of x, y and spin over the motion near to the place by (26), which is some per cent off."""
+    place, *_ = places_by_26(disc)
+    motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
+    return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
+
+
+@STUDY.claim(
+    "On the continuous ring the engine's steady state is the self-centred equilibrium, at every friction force",
+    equation="(19), (20)",
+    unit="m, rad/s",
+    resolution=RESOLUTION,
+    note="Measured: the state that the engine itself brings back after a sixth of a turn, found from the place by "
+    "(26). Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    """Compare the equilibria of the ring with root finding."""
+    found = means_of(engine, RING, loads)
+    return Measured(
+        predicted=[place_and_spin(with_load(RING, load)) for load in loads],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x in m", "y in m", "spin in rad/s"),
+        data={"load": loads, "ring": found.value},
+    )
+
+
+@STUDY.claim(
+    "The self-centred equilibria of the continuous ring lie on the semicircle (4)",
+    equation="(4)",
+    unit="m²",
+    resolution=1e-9 * RING.offset**2,
+    note="Left side minus right side of (4), at the places of the claim above.",
+    implied_by=rests,
+    swept=("friction_force",),
+)
+def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    """Put the equilibria of the ring into the equation of the circle."""
+    found = means_of(engine, RING, loads)
+    x, y, _ = found.value.T
+    # ∂(4)/∂(x, y) is twice the way from the circle's centre, so of length X0 on the circle.
+    error = 2.0 * np.hypot(x - RING.offset / 2.0, y) * found.error + found.error**2
+    return Measured(
+        predicted=np.zeros(len(loads)),
+        value=semicircle_residual(RING, x, y),
+        error=error,
+        at={"μN in N": loads},
+    )
+
+
+@STUDY.claim(
+    "A displaced disc approaches the equilibrium as the slowest eigenvalue says",
+    equation="(19), (20)",
+    unit="1/s",
+    resolution=1e-4,
+    note="Starts at rest where the springs are relaxed, with the spin of the shaft. Measured: growth of the slowest "
+    "mode's part of the deviation, in the later half of "
+    + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in DECAYS)
+    + ". Error: the change against the earlier half, and at a smaller tolerance.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = DECAYS) -> Measured:
+    """Compare the decay of displaced discs, by μN in N and span in s, with the slowest eigenvalue."""
+    measured, errors = [], []
+    for load, span in spans:
+        (earlier, later), error = refined(
+            functools.partial(_decay, engine, with_load(RING, load), span), WORKING
+        )
+        measured.append(later)
+        # What is not linear falls with the deviation, so that of the later half less is left than the change shows.
+        errors.append(np.max(error) + np.hypot(*(later - earlier)))
+    return Measured(
+        predicted=real_and_imaginary(
+            [equilibrium_of(with_load(RING, load)).eigenvalues[0] for load, _ in spans]
+        ),
+        value=measured,
+        error=np.repeat(np.array(errors)[:, np.newaxis], 2, axis=1),
+        at={"μN in N": [load for load, _ in spans]},
+        components=("real part", "imaginary part"),
+    )
+
+
+def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], tolerance: float) -> FloatArray:
+    """Return real and imaginary part in 1/s of the slowest mode's growth in both halves of ``span``, shape (2, 2)."""
+    rest = equilibrium_of(disc).state
+    start = np.array([disc.offset, 0.0, 0.0, 0.0, 0.0, disc.shaft_speed])
+    # Two samples a radian: the mode's frequency is below the natural one.
+    intervals = 4 * round(0.5 * disc.natural_frequency * (span[1] - span[0]))
+    times = np.linspace(*span, intervals + 1)
+    states = engine.simulate(disc, start, [0.0, *times], tolerance=tolerance).states[1:]
+    # The left ones: of a sum of modes they see one.
+    values, vectors = np.linalg.eig(jacobian_without_angle(disc, rest).T)
+    slowest = vectors[:, max(range(len(values)), key=lambda i: (values[i].real, values[i].imag))]
+    part = np.delete(states - rest, ANGLE, axis=1) @ slowest
+    logarithm = np.log(np.abs(part)) + 1j * np.unwrap(np.angle(part))
+    earlier, later = np.diff(logarithm[[0, intervals // 2, intervals]]) / (0.5 * (span[1] - span[0]))
+    return real_and_imaginary([earlier, later])
+
+
+@STUDY.claim(
+    "The equilibrium reaches the axis at the μN that holds the disc against springs and shaft",
+    equation="(5)",
+    unit="N",
+    resolution=1e-6,
+    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in END_LOADS)} N, μN as a polynomial of "
+    f"their distance from the axis. A pin's would end at C·X0 = {RING.stiffness * RING.offset:g} N; of the disc's "
+    "friction the moment of the shaft takes a part. Error: the change without the farthest, and at a smaller "
+    "tolerance.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def ends(engine: Engine) -> Measured:
+    """Extrapolate the friction forces of equilibria near the axis to the axis."""
+    found = refined(
+        lambda tolerance: [_means(engine, with_load(RING, load), tolerance) for load in END_LOADS], TOLERANCE
+    )
+    distance = np.hypot(found.value[:, 0], found.value[:, 1])
+    on_axis = _extrapolated(distance, END_LOADS)
+    moved = [_extrapolated(distance + found.largest * one, END_LOADS) for one in np.eye(len(distance))]
+    without_farthest = _extrapolated(distance[1:], END_LOADS[1:])
+    return Measured(
+        predicted=last_load(RING),
+        value=on_axis,
+        error=np.sum(np.abs(np.array(moved) - on_axis)) + abs(on_axis - without_farthest),
+    )
+
+
+def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
+    """Return μN in N of a disc on the axis, from those at several ``distances`` in m, if they differ."""
+    if not np.all(np.diff(distances) < 0.0):
+        return math.nan
+    return float(KroghInterpolator(distances, np.array(loads))(0.0))
+
+
+@STUDY.claim(
+    "A disc on the axis sticks to the master disc above the μN where the equilibrium ends, and not below",
+    equation="(5)",
+    note=f"Whether it sticks after {STICKING_TIME:g} s, or does not, at "
+    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of that μN. Starts on the axis with 95 % of the "
+    "speed of the master disc.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measured:
+    """See at friction forces about the end of the equilibrium, in units of it, whether a disc on the axis sticks."""
+    loads = np.array(ratios) * last_load(RING)
+    start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
+
+    def as_said(tolerance: float) -> list[bool]:
+        motions = [(with_load(RING, load), start, [0.0, STICKING_TIME]) for load in loads]
+        runs = engine.simulate_many(motions, tolerance=tolerance)
+        return [
+            (run.phases[-1].kind == "stick") == (ratio > 1.0) for run, ratio in zip(runs, ratios, strict=True)
+        ]
+
+    return answers_of(*asked(as_said, 1e-7))
+
+
+@STUDY.claim(
+    "On six points the mean place and spin of the disc are those of exact Coulomb friction",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-9,
+    note="Means over the motion that comes back after a sixth of a turn; predicted by the reference at tolerance "
+    f"{TIGHTEST:g}.",
+    swept=("friction_force",),
+)
+def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    """Compare the means of the motion on six points with those of the reference."""
+    found = means_of(engine, SIX, loads)
+    beside_ring = np.abs(found.value - [place_and_spin(with_load(RING, load)) for load in loads])[:, 2]
+    return Measured(
+        predicted=[_six_points_of_reference(load) for load in loads],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x in m", "y in m", "spin in rad/s"),
+        system=SIX,
+        note=f"The spin differs from that on the continuous ring by {np.min(beside_ring):.1g} to "
+        f"{np.max(beside_ring):.1g} rad/s.",
+        data={"load": loads, "six points": found.value},
+    )
+
+
+@functools.cache
+def _six_points_of_reference(load: float) -> tuple[float, ...]:
+    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(SIX, load), TIGHTEST))
+
+
+@STUDY.claim(
+    "The corrected (26) is the equilibrium of (23), at every friction force and offset",
+    equation="(26)",
+    unit="m, rad/s",
+    resolution=1e-12,
+    note="Predicted: balance of forces and moments of (19) with (23). Error: that of rounded parameters.",
+    swept=("friction_force", "offset"),
+)
+def corrected_26() -> Measured:
+    """Compare places and spins of (26) with the equilibria of (23)."""
+    discs = grid()
+    places = np.array([by_26(disc) for disc in discs])
+    moved = np.array([by_26(with_load(disc, disc.friction_force * (1.0 + ROUNDING))) for disc in discs])
+    return Measured(
+        predicted=[place_and_spin(disc, PAPER_LAW) for disc in discs],
+        value=places,
+        error=np.abs(moved - places) + ROUNDING * RING.offset,
+        at={"X0, μN": [f"{disc.offset:g} m, {disc.friction_force:.4g} N" for disc in discs]},
+        components=("x in m", "y in m", "spin in rad/s"),
+        source=SOURCE_OF_GRID,
+    )
+
+
+@STUDY.claim(
+    "Springs and friction (23) balance at no place that (26) as printed gives",
+    equation="(26)",
+    note=f"Whether the force that is left at a place is below {BALANCED:g}·μN by the corrected (26), and above by "
+    "the printed one.",
+    swept=("friction_force", "offset"),
+)
+def printed_26() -> Measured:
+    """Count the places of (26) at which the disc would rest."""
+    discs = grid()
+    corrected, printed = (
+        np.array([unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
+    )
+    return answers_of(
+        [*(BALANCED - corrected), *(printed - BALANCED)],
+        source=SOURCE_OF_GRID,
+        note=f"At {len(discs)} places each. By the corrected one it is at most {np.max(corrected):.1g}·μN, by the "
+        f"printed one {np.min(printed):.2g} to {np.max(printed):.2g}·μN.",
+    )
+
+
+@STUDY.claim(
+    "The corrected (26) ends at the μN with which friction (23) holds the disc against springs and shaft",
+    equation="(5), (26)",
+    unit="N",
+    resolution=1e-9,
+    note="Measured: μN and α at which the first two lines of (26) hold with A = 0.",
+    swept=("friction_force", "offset"),
+)
+def end_of_26() -> Measured:
+    """Compare the friction force at which (26) ends with that at which friction (23) can hold the disc."""
+    discs = [replace(RING, offset=offset) for offset in OFFSETS]
+    predicted = np.array([last_load(disc, PAPER_LAW) for disc in discs])
+    return Measured(
+        predicted=predicted,
+        value=[last_load_by_26(disc) for disc in discs],
+        error=2.0 * ROUNDING * predicted,
+        at={"X0 in m": OFFSETS},
+        source=SOURCE_OF_GRID,
+    )

@@ -1,0 +1,392 @@
+"""The study of the free ring, to which the modules beside this one add its claims."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import make_interp_spline
+from scipy.optimize import brentq
+
+from compare.claims.error_estimates import Measurement, observed_exponent, refined
+from compare.claims.measured import Measured, answers_of
+from compare.claims.parameters import at_each
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.disc.free_ring.theory import (
+    CITED,
+    DECELERATION,
+    ENDING,
+    HEADING,
+    INERTIAS,
+    INTEGRATED,
+    LOPSIDED,
+    NEARNESSES,
+    OTHERS,
+    REMAINING,
+    RINGS,
+    SOURCE,
+    SPEED,
+    TABLE,
+    TOLERANCE,
+    Throw,
+    approach_times,
+    curves,
+    deviation,
+    expected_approach,
+    nearness,
+    rest_of,
+    roughly_rest,
+    speeds_at,
+    speeds_before_rest,
+    thrown,
+    uniform_times,
+)
+from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.elliptic import mean_directions
+from reference_model.systems import FloatArray
+
+STUDY = Study.beside(__file__, "free-ring", source=SOURCE, seconds=2.0)
+STUDY.provides(curves=curves)
+
+
+# --- How sliding and spinning end: at once, and in a ratio that forgets the start.
+
+
+@STUDY.claim(
+    "Sliding and spinning end at the same instant, whatever the start",
+    equation="(19), (20)",
+    resolution=1e-4,
+    note="Time by which sliding ends after spinning, over that to rest: U and W, extrapolated in straight lines from "
+    f"t/T = {REMAINING[1]:g}, {REMAINING[0]:g} of it before. Error: the change from twice as far away, and at a "
+    "smaller tolerance.",
+)
+def end_together(engine: Engine, throws: Sequence[Throw] = (*RINGS, *OTHERS)) -> Measured:
+    """Extrapolate both speeds to zero."""
+    rests = np.array([roughly_rest(engine, throw) for throw in throws])
+
+    def apart(tolerance: float) -> FloatArray:
+        """Return by how much the rest of the centre is later than that of the rim, from two pairs of samples."""
+        found = []
+        for throw, rest in zip(throws, rests.tolist(), strict=True):
+            times = rest * (1.0 - REMAINING[:3])
+            speeds = speeds_at(thrown(engine, throw, tolerance), times)
+            ends = [_zeros_between(times, speed) for speed in speeds]
+            found.append((ends[0] - ends[1]) / rest)
+        return np.array(found)
+
+    found = refined(apart, TOLERANCE)
+    # A line through two speeds is zero to within three errors of a speed over its slope, which is above 0.4·g here.
+    noise = 2.0 * 3.0 * TOLERANCE / (0.4 * DECELERATION) / rests
+    # Speeds in a ratio that still changes are no straight lines: from farther away that is seen better.
+    bend = np.abs(found.value[:, 1] - found.value[:, 0])
+    return Measured(
+        system=TABLE,
+        predicted=np.zeros(len(throws)),
+        value=found.value[:, 0],
+        error=found.largest + noise + bend,
+        at={"throw": [throw.name for throw in throws]},
+        source=SOURCE + CITED,
+    )
+
+
+def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
+    """Return where straight lines through neighbours, the last first, are zero."""
+    return times[:-1] + speeds[:-1] * (times[:-1] - times[1:]) / (speeds[1:] - speeds[:-1])
+
+
+@STUDY.claim(
+    "Sliding and rim speed of a ring with J = mR² end in the ratio 1, whatever the start",
+    equation="(19), (20)",
+    resolution=1e-4,
+    note=f"U/W when {REMAINING[0]:g} of the time to rest is left. Error: the tolerance of both speeds, and the "
+    "change at a smaller one. Model error: what the approach to 1 leaves.",
+)
+def ratio_one(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+    """Compare the ratio at the last of the times with 1."""
+
+    def ratio(tolerance: float) -> FloatArray:
+        speeds = [speeds_before_rest(engine, throw, tolerance, REMAINING[0]) for throw in throws]
+        return np.array([sliding[0] / rim[0] for sliding, rim in speeds])
+
+    found = refined(ratio, TOLERANCE)
+    rests = np.array([roughly_rest(engine, throw) for throw in throws])
+    farthest = np.array([expected_approach(throw) for throw in throws]) / (REMAINING[0] * rests)
+    return Measured(
+        system=TABLE,
+        predicted=np.ones(len(throws)),
+        value=found.value,
+        error=found.largest + ratio_noise(REMAINING[0] * rests),
+        model=float(np.max(deviation(farthest))),
+        at={"throw": [throw.name for throw in throws]},
+        source=SOURCE + CITED,
+        data={"ratio of rings": np.mean(found.value)},
+    )
+
+
+def ratio_noise(left: ArrayLike) -> FloatArray:
+    """Return the error of ln U/W that the tolerance of both speeds makes when so much time (s) is left, for c = 1."""
+    speed = 2.0 / math.pi * DECELERATION * np.asarray(left)
+    return np.asarray(2.0 * TOLERANCE / speed)
+
+
+@STUDY.claim(
+    "With J = mR² the ratio of both speeds comes to 1 like exp(−A/t) with the remaining time t",
+    equation="(19), (20)",
+    unit="s",
+    note="A = t·(ln(8/|ln U/W|) − 2). Predicted by the integrals over the ratio. Error: the tolerance of both "
+    "speeds, and the change at a smaller one. Model error: the change of the integrals if they end at the δ of the "
+    "measurement.",
+    basis="reference",
+)
+def approach(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+    """Compare A of the approach to the ratio 1 with the integrals."""
+
+    def constants(tolerance: float) -> FloatArray:
+        found = []
+        for throw in throws:
+            trajectory = thrown(engine, throw, tolerance)
+            times = approach_times(engine, throw)
+            sliding, rim = speeds_at(trajectory, times)
+            found.append((rest_of(trajectory) - times) * nearness(np.log(sliding / rim)))
+        return np.array(found)
+
+    found = refined(constants, TOLERANCE)
+    there = np.isfinite(found.error)  # what comes and goes with the tolerance makes nothing else open
+    largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
+    predicted = np.array([expected_approach(throw) for throw in throws])
+    # An error of δ changes L by as much, relative to δ.
+    left = predicted[:, np.newaxis] / np.array(NEARNESSES)
+    noise = left * ratio_noise(left) / deviation(NEARNESSES)
+    # The law of the approach is that of small δ: the integrals tell what it leaves out at the δ of the measurement.
+    left_out = [
+        abs(expected_approach(throw, float(deviation(NEARNESSES[0]))) - expected_approach(throw))
+        for throw in throws
+    ]
+    return Measured(
+        system=TABLE,
+        predicted=np.repeat(predicted[:, np.newaxis], len(NEARNESSES), axis=1),
+        value=found.value,
+        error=largest + noise,
+        model=max(left_out),
+        resolution=1e-2 * float(np.min(predicted)),
+        at={"throw": [throw.name for throw in throws], "A/t": NEARNESSES},
+        data=_drawn(engine, throws),
+    )
+
+
+def _drawn(engine: Engine, throws: Sequence[Throw]) -> dict[str, ArrayLike]:
+    """Return both speeds in m/s, and A over the remaining time, from the start to rest."""
+    speeds, approaches = [], []
+    for throw in throws:
+        trajectory, times = thrown(engine, throw, TOLERANCE), uniform_times(engine, throw)
+        speeds.append(speeds_at(trajectory, times))
+        approaches.append(expected_approach(throw) / (rest_of(trajectory) - times))
+    sliding, rim = zip(*speeds, strict=True)
+    return {"sliding": sliding, "rim": rim, "approach": approaches}
+
+
+@STUDY.claim(
+    "For mR²/2 < J < 2mR² the ratio ends at the balance of both decelerations, whatever the start",
+    equation="(19), (20)",
+    resolution=1e-2,
+    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in REMAINING[:3])} of the time to rest, extrapolated to zero "
+    "as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: the change from twice as "
+    "far away, and at a smaller tolerance.",
+    basis="reference",
+    swept=("polar_inertia",),
+)
+def other_ratios(engine: Engine, throws: Sequence[Throw] = OTHERS) -> Measured:
+    """Extrapolate the ratio of other moments of inertia to the end."""
+
+    def ratios(tolerance: float) -> FloatArray:
+        found = []
+        for throw in throws:
+            sliding, rim = speeds_before_rest(engine, throw, tolerance, REMAINING[:4])
+            found.append([_limit(*(sliding / rim)[:3]), _limit(*(sliding / rim)[1:])])
+        return np.array(found)
+
+    found = refined(ratios, TOLERANCE)
+    return Measured(
+        system=TABLE,
+        predicted=[math.exp(Slowing(throw.inertia).terminal) for throw in throws],
+        value=found.value[:, 0],
+        error=found.largest + np.abs(found.value[:, 1] - found.value[:, 0]),
+        at={"throw": [throw.name for throw in throws]},
+        source=SOURCE + CITED,
+        data={"inertia": [throw.inertia for throw in throws], "ratio": found.value[:, 0]},
+    )
+
+
+def _limit(last: float, middle: float, first: float) -> float:
+    """Return the limit of a sequence that approaches it like a geometric one (Aitken)."""
+    return float(last - (last - middle) ** 2 / ((last - middle) - (middle - first)))
+
+
+@STUDY.claim(
+    "As a power of the time left, the rim's share of the slip goes to zero for J < mR²/2, the centre's for J > 2mR²",
+    equation="(19), (20)",
+    resolution=0.05,
+    note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {ENDING[-1]:g} to {ENDING[0]:g} "
+    "of the time to rest, with the next term, whose size is the model error.",
+    swept=("polar_inertia",),
+)
+def powers(engine: Engine, throws: Sequence[Throw] = LOPSIDED) -> Measured:
+    """Fit the power with which the ratio goes to zero or to infinity."""
+    predicted, found = [], []
+    for throw in throws:
+        slow = throw.inertia < 0.5
+        power = 0.5 / throw.inertia - 1.0 if slow else 0.5 * throw.inertia - 1.0
+
+        def shares(tolerance: float, throw: Throw = throw, slow: bool = slow) -> FloatArray:
+            sliding, rim = speeds_before_rest(engine, throw, tolerance, ENDING)
+            return rim / sliding if slow else sliding / rim
+
+        share = refined(shares, TOLERANCE)
+        predicted.append(power)
+        found.append(observed_exponent(ENDING, share.value, next_term=2.0 * power, noise=share.largest))
+    exponents, errors, models = zip(*found, strict=True)
+    return Measured(
+        system=TABLE,
+        predicted=predicted,
+        value=exponents,
+        error=errors,
+        model=max(models),
+        at={"throw": [throw.name for throw in throws]},
+        source=SOURCE + "; limits as Goyal et al. 1991",
+    )
+
+
+# --- When and where a ring comes to rest, and what its energy becomes.
+
+
+@STUDY.claim(
+    "Time and ways to rest are those of the integrals over the ratio",
+    equation="(19), (20)",
+    unit="s, m, rad",
+    resolution=1e-8,
+    note="Predicted by integrals over the ratio U/W, without a step in time.",
+    basis="reference",
+    swept=("polar_inertia",),
+)
+def stops(engine: Engine, throws: Sequence[Throw] = INTEGRATED) -> Measured:
+    """Compare rest and ways with the integrals."""
+    found = stops_of(engine, throws)
+    predicted, nearly = (
+        np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
+    )
+    return Measured(
+        system=TABLE,
+        predicted=predicted,
+        value=found.value,
+        error=found.largest + float(np.max(np.abs(predicted - nearly))),
+        at={"throw": [throw.name for throw in throws]},
+        components=("time in s", "x in m", "y in m", "angle in rad"),
+    )
+
+
+def stops_of(engine: Engine, throws: Sequence[Throw]) -> Measurement:
+    """Return the time to rest in s, and x, y in m and the angle in rad there, shape (n, 4)."""
+
+    def found(tolerance: float) -> FloatArray:
+        trajectories = [thrown(engine, throw, tolerance) for throw in throws]
+        return np.array([[rest_of(trajectory), *trajectory.at_end[:3]] for trajectory in trajectories])
+
+    return refined(found, TOLERANCE)
+
+
+def _integrated(throw: Throw, near: float) -> list[float]:
+    rest = Slowing(throw.inertia).stop(throw.sliding, abs(throw.rim), near)
+    place = cmath.rect(rest.slid / DECELERATION, HEADING)
+    turned = math.copysign(rest.turned, throw.rim) / DECELERATION / TABLE.contact_radius
+    return [rest.time / DECELERATION, place.real, place.imag, turned]
+
+
+@STUDY.claim(
+    "The energy that the ring loses is the heat of friction",
+    equation="(19), (20)",
+    kind="conservation",
+    resolution=1e-6,
+    note="Largest difference at any time, as a fraction of the energy at the start. Error: the tolerance, and every "
+    "second sample left out of the quadrature of μN·P(U, W).",
+    basis="reference",
+)
+def heat(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+    """Compare the energy that is lost with the integral of the friction power."""
+
+    def imbalance(tolerance: float) -> FloatArray:
+        """Return the largest difference in time, as a fraction of all energy, by all samples and by every second."""
+        found = []
+        for throw in throws:
+            times = uniform_times(engine, throw)
+            sliding, rim = speeds_at(thrown(engine, throw, tolerance), times)
+            energy = 0.5 * TABLE.mass * (sliding**2 + throw.inertia * rim**2)
+            shares = [mean_directions(*both) for both in zip(sliding, rim, strict=True)]
+            power = TABLE.friction_force * np.sum(np.column_stack((sliding, rim)) * shares, axis=1)
+            row = []
+            for step in (1, 2):
+                heat = make_interp_spline(times[::step], power[::step], k=5).antiderivative()
+                row.append(np.max(np.abs(energy[0] - energy - heat(times))[::2]) / energy[0])
+            found.append(row)
+        return np.array(found)
+
+    found = refined(imbalance, TOLERANCE)
+    halved = np.abs(found.value[:, 1] - found.value[:, 0])
+    return Measured(
+        system=TABLE,
+        predicted=np.zeros(len(throws)),
+        value=found.value[:, 0],
+        error=found.largest + 2.0 * TOLERANCE / SPEED + halved,
+        at={"throw": [throw.name for throw in throws]},
+    )
+
+
+# --- For which bodies there is a terminal ratio, and that of a disc, which is published.
+
+
+@STUDY.claim(
+    "Both speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
+    equation="(20)",
+    note="Whether the closed form of (20) has a balance of both decelerations, or has none, for "
+    f"{at_each('J/mR²', INERTIAS)}.",
+)
+def ratio_exists() -> Measured:
+    """Look for a balance of both decelerations."""
+
+    def has_ratio(inertia: float) -> bool:
+        slowing = Slowing(inertia)
+        return slowing.unevenness(-LARGEST) < 0.0 < slowing.unevenness(LARGEST)
+
+    return answers_of(
+        [has_ratio(inertia) == (0.5 < inertia < 2.0) for inertia in INERTIAS],
+        source="assumption: J/(mR²) from 0.1 to 10; limits as Goyal, Ruina and Papadopoulos 1991",
+    )
+
+
+@STUDY.claim(
+    "On the whole face of a uniform disc the balance of both decelerations gives the published ratio",
+    equation="(20)",
+    resolution=1e-3,
+    note="Sliding over rim speed in the end, by the mean of the closed form of (20) over all radii; J = mR²/2. Model "
+    "error: half of the last digit that is published.",
+)
+def published_ratio() -> Measured:
+    """Compare the balance of an annulus without a hole with the literature."""
+    face = Annulus(0.0, 1.0, rings=16)
+
+    def unevenness(ratio: float) -> float:
+        """Return q for J = mR²/2."""
+        resistance, moment = face.shares(ratio, 1.0)
+        return resistance / ratio - moment / 0.5
+
+    return Measured(
+        predicted=0.653,
+        value=brentq(unevenness, 0.1, 0.9, xtol=1e-12),
+        error=1e-10,
+        model=5e-4,  # the digits that are published
+        source="Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007",
+    )

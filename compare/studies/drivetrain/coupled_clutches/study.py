@@ -1,0 +1,320 @@
+"""What engines make of Modelica's CoupledClutches, beside its exact motion; and the published result beside that."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+
+import numpy as np
+
+from compare.claims.error_estimates import observed_exponent
+from compare.claims.measured import Measured
+from compare.claims.parameters import at_each
+from compare.claims.study import Data, Study
+from compare.engines import Engine, UnsupportedSystemError
+from compare.studies.drivetrain.coupled_clutches.theory import (
+    ACCUMULATED,
+    ALL_SLIP_UNTIL,
+    BREAKS,
+    BRISTLES,
+    EPSILONS,
+    INERTIAS,
+    LETS_GO_FROM,
+    PUBLISHED_TOLERANCE,
+    SHOWN,
+    SMALL_EPSILON,
+    SPEED,
+    STEPS,
+    TORQUE,
+    UNTIL,
+    Run,
+    exact,
+    first_and_slips,
+    published,
+    switches,
+    with_bristles,
+    with_our_contact,
+)
+from compare.studies.toolkit.torsional_chain import STUCK
+from reference_model.systems import FloatArray
+
+ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
+FOLLOWED = STEPS[[0, 2]]
+"""To the end; the order in the step is asked for while all clutches slip."""
+
+EVENTS = tuple(
+    f"clutch {clutch + 1} {'holds' if mode == STUCK else 'lets go'} at {time:.4f} s"
+    for time, clutch, mode in switches()
+)
+OF_ORDER = (
+    "Largest error of a speed. Numerical error: scatter about the power law; model error: its next term."
+)
+
+
+def curves() -> Data:
+    """Return the exact speeds and what the published ones are off by, for the figure."""
+    t = np.linspace(0.0, UNTIL, 1501)
+    record = published()
+    off = record.speeds - first_and_slips(exact().states(record.times)[1])
+    return {"t": t, "speeds": exact().states(t)[1], "published t": record.times, "published": off}
+
+
+STUDY = Study.beside(
+    __file__,
+    "coupled-clutches",
+    source="Modelica.Mechanics.Rotational.Examples.CoupledClutches",
+    only=("exudyn", "exudyn-native"),
+    contact=True,
+    seconds=2.0,
+)
+STUDY.provides(curves=curves)
+
+
+def _speeds(t: FloatArray) -> FloatArray:
+    return exact().states(t)[1]
+
+
+@functools.lru_cache(maxsize=1)
+def _explicit(engine: Engine) -> list[Run]:
+    return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
+
+
+@functools.lru_cache(maxsize=len(STEPS))
+def _implicit(engine: Engine, step: float) -> Run:
+    return with_our_contact(SMALL_EPSILON, step, until=UNTIL if step in FOLLOWED else ALL_SLIP_UNTIL)
+
+
+@functools.lru_cache(maxsize=1)
+def _bristles(engine: Engine) -> list[Run]:
+    return [with_bristles(*of_one) for of_one in BRISTLES]
+
+
+def _is_native(engine: Engine) -> bool:
+    return engine.kin == "exudyn"
+
+
+def _check_has_epsilon(engine: Engine) -> None:
+    if _is_native(engine):
+        raise UnsupportedSystemError("Exudyn's own connector holds by bristles and has no ε")
+
+
+HALVED = (
+    "That of the finest run. Numerical error: twice the largest change from the next coarser one, whose errors of "
+    "first order are twice as large."
+)
+
+
+def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
+    """Return the first of ``runs``, each twice as coarse as the one before, and its error."""
+    return runs[0], 2.0 * float(np.max(np.abs(runs[0] - runs[1])))
+
+
+@STUDY.claim(
+    "Three clutches in a row take four rotors through slip and stick as under Coulomb friction",
+    kind="trajectory",
+    unit="rad/s",
+    resolution=1e-3,
+    note=HALVED,
+)
+def moves(engine: Engine) -> Measured:
+    """Compare speeds with the exact ones."""
+    runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
+    found, error = _finest([run.at(SHOWN) for run in runs])
+    note = (
+        f"By Exudyn's CoordinateSpringDamperExt with bristles of {BRISTLES[0][1]:g} N m/rad, implicit steps of "
+        f"{BRISTLES[0][0]:g} s; the coarser run has a quarter of that stiffness and twice that step."
+        if _is_native(engine)
+        else f"By add_ring_friction with ε = {EPSILONS[0]:g} m/s, explicit."
+    )
+    return Measured(
+        predicted=_speeds(SHOWN),
+        value=found,
+        error=error,
+        components=ROTORS,
+        at={"t in s": SHOWN},
+        note=note,
+        named={"speeds of four rotors": None},
+        data={"run t": runs[0].times, "run off": runs[0].speeds - _speeds(runs[0].times)},
+    )
+
+
+@STUDY.claim(
+    "Each clutch begins to hold and lets go at the times of Coulomb friction",
+    unit="s",
+    resolution=1e-3,
+    note=f"When the slip passes ε = {EPSILONS[0]:g} m/s, the nearest time of each kind. {HALVED}",
+)
+def switches_on_time(engine: Engine) -> Measured:
+    """Compare the times at which slip falls below ε, or rises above it, with those of the events."""
+    _check_has_epsilon(engine)
+    times, error = _finest(
+        [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
+    )
+    return Measured(predicted=[time for time, *_ in switches()], value=times, error=error, components=EVENTS)
+
+
+def _passings(run: Run, epsilon: float) -> FloatArray:
+    """Return when the slip of each event passes ``epsilon`` (rad/s), nearest to it; NaN where it never does."""
+    found = []
+    for time, clutch, mode in switches():
+        above = np.abs(run.slips[:, clutch]) - epsilon
+        falls = mode == STUCK
+        first = np.flatnonzero(
+            (above[:-1] > 0.0) & (above[1:] <= 0.0) if falls else (above[:-1] <= 0.0) & (above[1:] > 0.0)
+        )
+        share = above[first] / (above[first] - above[first + 1])
+        passed = run.times[first] + share * (run.times[first + 1] - run.times[first])
+        found.append(float(passed[np.argmin(np.abs(passed - time))]) if passed.size else np.nan)
+    return np.array(found)
+
+
+@STUDY.claim(
+    "Four rotors under a torque on the first gain the angular momentum that it gives",
+    kind="conservation",
+    unit="kg m²/s",
+    resolution=1e-8,
+    note="At the end. Numerical error: eight times what the runs of the first claim differ by; rounding, which grows "
+    "as the root of the number of steps; and the impulse of the largest torque in the gaps that solve_dynamic leaves "
+    "at breaks, which all runs share.",
+)
+def momentum(engine: Engine) -> Measured:
+    """Compare what the rotors have at the end with what they began with and the impulse of the torque."""
+    from exudyn_models.solver.breaks import GAP
+
+    gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # in s
+    runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
+    found = [float(np.dot(INERTIAS, run.speeds[-1])) for run in runs]
+    return Measured(
+        predicted=float(np.dot(INERTIAS, _speeds(np.array([UNTIL]))[0])),
+        value=found[0],
+        error=8.0 * (float(np.ptp(found)) + np.finfo(float).eps * SPEED * math.sqrt(len(runs[0].times)))
+        + gaps * TORQUE,
+    )
+
+
+@STUDY.claim(
+    "Under implicit steps too the clutches take four rotors through slip and stick as under Coulomb friction",
+    kind="trajectory",
+    unit="rad/s",
+    resolution=1e-3,
+    note=f"At steps of {STEPS[0]:g} s and ε = {SMALL_EPSILON:g} m/s. Numerical error: the largest change from a run "
+    "of four times the step: where in a step an event falls makes the errors of neighbours scatter.",
+)
+def implicit(engine: Engine) -> Measured:
+    """Compare speeds with the exact ones."""
+    _check_has_epsilon(engine)
+    fine, coarse = (_implicit(engine, float(step)).at(SHOWN) for step in FOLLOWED)
+    return Measured(
+        predicted=_speeds(SHOWN),
+        value=fine,
+        error=float(np.max(np.abs(fine - coarse))),
+        components=ROTORS,
+        at={"t in s": SHOWN},
+    )
+
+
+@STUDY.claim(
+    "The error of explicit runs falls like ε where clutches hold",
+    kind="order",
+    resolution=0.1,
+    note=f"{at_each('ε in m/s', EPSILONS)}. {OF_ORDER}",
+)
+def order_in_epsilon(engine: Engine) -> Measured:
+    """Compare the power of ε with 1, before a clutch lets go: how late it is then has a logarithm of ε in it."""
+    _check_has_epsilon(engine)
+    times = SHOWN[(SHOWN > ALL_SLIP_UNTIL + 0.01) & (SHOWN < LETS_GO_FROM)]
+    return _order(EPSILONS, _explicit(engine), times, next_term=1.0)
+
+
+@STUDY.claim(
+    "The error of implicit runs falls like the square of the step while all clutches slip",
+    kind="order",
+    resolution=0.1,
+    note=f"{at_each('step in s', STEPS)}; ε = {SMALL_EPSILON:g} m/s. {OF_ORDER}",
+)
+def order_in_step(engine: Engine) -> Measured:
+    """Compare the power of the step with 2."""
+    _check_has_epsilon(engine)
+    runs = [_implicit(engine, float(step)) for step in STEPS]
+    return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], next_term=1.0, predicted=2.0)
+
+
+def _order(
+    lengths: FloatArray, runs: list[Run], times: FloatArray, *, next_term: float, predicted: float = 1.0
+) -> Measured:
+    errors = np.array([np.max(np.abs(run.at(times) - _speeds(times))) for run in runs])
+    exponent, numerical, model = observed_exponent(lengths, errors, next_term=next_term)
+    words = ", ".join(f"{error:.3g} rad/s" for error in errors)
+    return Measured(
+        predicted=predicted,
+        value=exponent,
+        error=numerical,
+        model=model,
+        note=f"From {times[0]:g} to {times[-1]:g} s. Errors: {words}.",
+    )
+
+
+OF_PUBLISHED = (
+    "Published by the Modelica Association: Dymola 2020x, DASSL. Numerical error: "
+    f"{ACCUMULATED:g} times its tolerance of {PUBLISHED_TOLERANCE:g}, over the largest of its kind."
+)
+SLIPS = tuple(f"slip of clutch {i}" for i in range(1, len(INERTIAS)))
+
+
+def _published(values: FloatArray, predicted: FloatArray, components: tuple[str, ...]) -> Measured:
+    allowed = ACCUMULATED * PUBLISHED_TOLERANCE * float(np.max(np.abs(predicted)))
+    worst = np.argmax(np.abs(values - predicted), axis=0), np.arange(len(components))
+    return Measured(predicted=predicted[worst], value=values[worst], error=allowed, components=components)
+
+
+@STUDY.claim(
+    "Modelica's published speeds of CoupledClutches are the exact ones",
+    kind="trajectory",
+    basis="independent",
+    unit="rad/s",
+    resolution=1e-3,
+    note=f"Where they part most. {OF_PUBLISHED}",
+    named={"published speed": 0},
+)
+def published_speeds() -> Measured:
+    """Compare the published speed of the first rotor, and the slips, with the exact ones."""
+    predicted = first_and_slips(_speeds(published().times))
+    return _published(published().speeds, predicted, ("speed of rotor 1", *SLIPS))
+
+
+@STUDY.claim(
+    "Modelica's published angles of CoupledClutches are the exact ones",
+    kind="trajectory",
+    basis="independent",
+    unit="rad",
+    resolution=1e-3,
+    note=f"Where they part most. {OF_PUBLISHED}",
+)
+def published_angles() -> Measured:
+    """Compare the published angle of the first rotor, and those between neighbours, with the exact ones."""
+    predicted = first_and_slips(exact().states(published().times)[0])
+    return _published(
+        published().angles, predicted, ("angle of rotor 1", *(f"angle of {one}" for one in SLIPS))
+    )
+
+
+@STUDY.claim(
+    "Modelica's published clutches begin to hold and let go at the exact times",
+    basis="independent",
+    unit="s",
+    resolution=1e-3,
+    note=OF_PUBLISHED,
+)
+def published_switches() -> Measured:
+    """Compare the times at which a published mode changes with those of the events."""
+    times, modes = published().times, published().modes
+    found = []
+    for time, clutch, mode in switches():
+        changes = [
+            at
+            for at, (one, two) in zip(times[1:], itertools.pairwise(modes[:, clutch]), strict=True)
+            if one != two and two == mode
+        ]
+        found.append(min(changes, key=lambda at: abs(at - time), default=np.nan))
+    return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)

@@ -1,0 +1,355 @@
+"""How fast the engines converge: in tolerance, in step, and in the slip speed that smooths the friction law."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.claims.error_estimates import COARSENING, TRUTH, extrapolated_order, observed_exponent
+from compare.claims.measured import Measured
+from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import at_each
+from compare.claims.study import Data, Study
+from compare.engines import Engine
+from compare.studies.engines.engine_convergence.theory import (
+    CREEP_REGULARISATIONS,
+    FIRST_REGULARISATIONS,
+    REGULARISATIONS,
+    SCANS,
+    SLIDING_SOURCE,
+    SOLVERS,
+    STICKING_STARTS,
+    STICKING_UNTIL,
+    TOLERANCE,
+    WORK_STEPS,
+    Simulate,
+    Solver,
+    gap,
+    of_sliding,
+    of_stick_slip,
+    release_shift_by_creep,
+    root_mean_square,
+    sliding_truth,
+    smallest_regularisation,
+)
+from reference_model import simulate
+from reference_model.systems import FloatArray
+
+STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("reference", "exudyn"), seconds=3.0)
+
+
+# ---------------------------------------------------------------- in the tolerance
+
+
+@STUDY.claim(
+    "The error of a sliding pin falls in proportion to the tolerance",
+    equation="(1), (10)",
+    kind="order",
+    resolution=0.1,
+    note="Against (10) in polar form at tolerance 3e-14. Error and error estimate of an integrator of order n are "
+    "both of that order in its step, so that the step is ~ tolerance^(1/n), the exponent 1, and the next term "
+    "smaller by one step. Least squares with that term; numerical error: 95 % interval from the scatter; model "
+    "error: what the term changes.",
+)
+def sliding(engine: Engine, with_work: bool = True) -> Measured:
+    """Find the exponent with which the error of sliding pins falls with the tolerance."""
+    scan = SCANS[engine.name]
+    errors = np.array([of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
+    exponent, numerical, model = observed_exponent(
+        scan.sliding, errors, next_term=1.0 / scan.order, noise=sliding_truth()[1]
+    )
+    data: Data = {"sliding: tolerances": scan.sliding, "sliding: errors": errors}
+    if with_work:
+        data["work: sliding"] = np.array(
+            [of_sliding(engine.simulate, tolerance=t) for t in scan.work.tolist()]
+        )
+    return Measured(
+        predicted=1.0,
+        value=exponent,
+        error=numerical,
+        model=model,
+        source=SLIDING_SOURCE + f"; {_range_of(scan.sliding, 'tolerance')}",
+        note=f"Here n is {scan.order}.",
+        data=data,
+    )
+
+
+@STUDY.claim(
+    "The errors of stick and release times fall in proportion to the tolerance",
+    equation="(6), (7)",
+    kind="order",
+    resolution=0.2,
+    note="Root mean square over the first stick and release of every start, against the reference at tolerance "
+    f"{TRUTH:g}. Exponent and errors as for the sliding pin.",
+    basis="reference",
+)
+def sticking(engine: Engine, with_work: bool = True) -> Measured:
+    """Find the exponent with which the errors of stick and release times fall with the tolerance."""
+    scan = SCANS[engine.name]
+    exact, noise = _exact_events()
+    errors = np.array(
+        [root_mean_square(gap(_events(engine.simulate, t), exact)) for t in scan.sticking.tolist()]
+    )
+    exponent, numerical, model = observed_exponent(
+        scan.sticking, errors, next_term=scan.sticking_term, noise=noise
+    )
+    data: Data = {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
+    if with_work:
+        data["work: stick-slip"] = np.array(
+            [of_stick_slip(engine.simulate, tolerance=t) for t in scan.work.tolist()]
+        )
+    return Measured(
+        predicted=1.0,
+        value=exponent,
+        error=numerical,
+        model=model,
+        parameters={"until": STICKING_UNTIL},
+        source=f"Fig. 5 with {len(STICKING_STARTS)} starts x = 0.1, vx from 0 to 0.06; "
+        + _range_of(scan.sticking, "tolerance"),
+        data=data,
+    )
+
+
+def _events(run: Simulate, tolerance: float) -> FloatArray:
+    """Return when pins stick and let go, in s, from one of ``STICKING_STARTS`` after the other."""
+    times = (0.0, STICKING_UNTIL)
+    return np.concatenate(
+        [run(FIG5, start, times, tolerance=tolerance).stick_times for start in STICKING_STARTS]
+    )
+
+
+@functools.cache
+def _exact_events() -> tuple[FloatArray, float]:
+    """Return the same times as exactly as the reference has them, and how far they are off."""
+    exact = _events(simulate, TRUTH)
+    return exact, root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
+
+
+# ---------------------------------------------------------------- in the step
+
+
+def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Measured | None]:
+    """Declare the claim for the solvers of each order, which the sentence names."""
+    for order, superscript in {4: "⁴", 6: "⁶", 2: "²"}.items():
+        STUDY.claim(
+            f"The error of a sliding pin falls like h{superscript} with {{}} at a fixed step h",
+            equation="(1), (10)",
+            kind="order",
+            resolution=0.2,
+            note="Orders observed while halving the step are extrapolated to h = 0. Model error: the extrapolation's "
+            "own step; numerical error: its change from one step to the next.",
+            each={solver.name: solver for solver in SOLVERS if solver.order == order},
+        )(function)
+    return function
+
+
+@of_every_order
+def steps(engine: Engine, solver: Solver, with_work: bool = True) -> Measured | None:
+    """Find the order of one of Exudyn's solvers at a fixed step."""
+    if engine.name != "exudyn":
+        return None
+    import exudyn_models  # the command line must start without it
+
+    run = exudyn_models.simulate_fixed_step
+    rows = np.array([of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
+    order, numerical, model = extrapolated_order(rows[:, 0], sliding_truth()[1])
+    observed = ", ".join(f"{value:.3f}" for value in np.log2(rows[:-1, 0] / rows[1:, 0]))
+    data: Data = {f"{solver.name}: steps": np.array(solver.steps), f"{solver.name}: sliding": rows}
+    if with_work and solver.sticks:
+        data[f"{solver.name}: stick-slip"] = np.array(
+            [
+                of_stick_slip(run, integrator=solver.name, step=h, regularisation=smallest_regularisation(h))
+                for h in WORK_STEPS
+            ]
+        )
+    return Measured(
+        predicted=solver.order,
+        value=order,
+        error=numerical,
+        model=model,
+        source=SLIDING_SOURCE,
+        note=f"{at_each('h', solver.steps)} s: {observed}.",
+        data=data,
+    )
+
+
+# ---------------------------------------------------------------- in the slip speed that smooths friction
+
+HOW = (
+    f"Against the reference at tolerance {TRUTH:g}. Least squares with a term smaller by ε; numerical error: 95 % "
+    f"interval from the scatter, and the change at tolerance {COARSENING * TOLERANCE:g}; model error: what the term "
+    "changes."
+)
+
+
+@STUDY.claim(
+    "The error of the first stick falls like ε² with the slip speed ε that smooths the friction law",
+    equation="(6)",
+    kind="order",
+    resolution=0.1,
+    note="The law is exact down to ε, and the slip left there is over in a time ~ ε whose error is ~ ε². "
+    + HOW,
+)
+def first_stick(engine: Engine) -> Measured | None:
+    """Find the exponent of the error of the first stick in ε."""
+    if engine.name != "exudyn":
+        return None
+    import exudyn_models
+
+    start = FIG5_STARTS["equilibrium"]
+    first = simulate(FIG5, start, (0.0, 8.0), tolerance=TRUTH).stick_times[:1]
+
+    def error(epsilon: float, tolerance: float) -> float:
+        found = exudyn_models.simulate(FIG5, start, (0.0, 5.0), tolerance=tolerance, regularisation=epsilon)
+        return float(gap(found.stick_times[:1], first)[0])
+
+    errors = np.array([error(epsilon, TOLERANCE) for epsilon in FIRST_REGULARISATIONS.tolist()])
+    # The tolerance weighs most at the smallest ε.
+    noise = abs(error(float(FIRST_REGULARISATIONS[-1]), COARSENING * TOLERANCE) - float(errors[-1]))
+    exponent, numerical, model = observed_exponent(FIRST_REGULARISATIONS, errors, next_term=1.0, noise=noise)
+    return Measured(
+        predicted=2.0,
+        value=exponent,
+        error=numerical,
+        model=model,
+        parameters={"tolerance": TOLERANCE},
+        source="Fig. 5, first start; " + _range_of(FIRST_REGULARISATIONS, "ε", "m/s"),
+        data={"first regularisations": FIRST_REGULARISATIONS, "first stick": errors},
+    )
+
+
+class Smoothing(NamedTuple):
+    """Errors of later events and, last, of the state over ``REGULARISATIONS``, shape (ε, n), and their exponents."""
+
+    errors: FloatArray
+    exponents: FloatArray
+    numerical: FloatArray
+    model: FloatArray
+
+
+@STUDY.claim(
+    "The errors of all later stick and release times fall like ε",
+    equation="(6), (7)",
+    kind="order",
+    resolution=0.1,
+    note=HOW,
+)
+def later_events(engine: Engine) -> Measured | None:
+    """Find the exponents of the errors of all events after the first stick in ε."""
+    if engine.name != "exudyn":
+        return None
+    import exudyn_models
+
+    found = smoothing(exudyn_models.simulate)
+    events = len(found.exponents) - 1
+    return Measured(
+        predicted=np.ones(events),
+        value=found.exponents[:-1],
+        error=found.numerical[:-1],
+        model=float(np.max(found.model[:-1])),
+        components=[f"{('release', 'stick')[i % 2]} {(i + 1) // 2 + 1}" for i in range(events)],
+        parameters={"tolerance": TOLERANCE},
+        source="Fig. 5, second start to 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
+        data={"regularisations": REGULARISATIONS, "later events and state": found.errors},
+    )
+
+
+@STUDY.claim(
+    "The error of the state after three stick phases falls like ε",
+    equation="(1), (6)",
+    kind="order",
+    resolution=0.1,
+    note=HOW,
+)
+def state(engine: Engine) -> Measured | None:
+    """Find the exponent of the error of the state in ε."""
+    if engine.name != "exudyn":
+        return None
+    import exudyn_models
+
+    found = smoothing(exudyn_models.simulate)
+    return Measured(
+        predicted=1.0,
+        value=found.exponents[-1],
+        error=found.numerical[-1],
+        model=float(found.model[-1]),
+        parameters={"tolerance": TOLERANCE},
+        source="Fig. 5, second start at 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
+    )
+
+
+@functools.lru_cache(maxsize=1)
+def smoothing(simulate_smoothed: Simulate) -> Smoothing:
+    """Return the errors of events and state over ε, which two claims share; takes the simulation to be measured."""
+    start, until = FIG5_STARTS["whirl"], (0.0, 20.0)
+    exact = simulate(FIG5, start, until, tolerance=TRUTH)
+
+    def errors(epsilon: float, tolerance: float) -> FloatArray:
+        found = simulate_smoothed(FIG5, start, until, tolerance=tolerance, regularisation=epsilon)
+        state = root_mean_square(found.at_end - exact.at_end)
+        return np.append(gap(found.stick_times, exact.stick_times), state)[1:]  # the first stick falls faster
+
+    by_epsilon = np.array([errors(epsilon, TOLERANCE) for epsilon in REGULARISATIONS.tolist()])
+    # The tolerance weighs most at the smallest ε.
+    noise = np.abs(errors(float(REGULARISATIONS[-1]), COARSENING * TOLERANCE) - by_epsilon[-1])
+    exponents, numerical, model = np.transpose(
+        [
+            observed_exponent(REGULARISATIONS, column, next_term=1.0, noise=part)
+            for column, part in zip(by_epsilon.T, noise, strict=True)
+        ]
+    )
+    return Smoothing(by_epsilon, exponents, numerical, model)
+
+
+@STUDY.claim(
+    "The first release is early by ε times a factor that follows from the creep of a stuck pin",
+    equation="(6), (7)",
+    unit="s per m/s",
+    note="Shift of the first release over ε, RK44 with four steps in mε/μN, extrapolated to ε = 0. Predicted: creep "
+    "with w = ε·a/g all through the stick phase under exact friction, where m·a is the force of (6). Model error: "
+    "the extrapolation's own step; numerical error: its change from one ε to the next, and at twice the step.",
+)
+def creep(engine: Engine) -> Measured | None:
+    """Compare the first release of both starts of Fig. 5 per ε with creep."""
+    if engine.name != "exudyn":
+        return None
+    import exudyn_models
+
+    starts, until = list(FIG5_STARTS.values()), (0.0, 6.0)
+    exact = [simulate(FIG5, start, until, tolerance=TRUTH).stick_phases[0] for start in starts]
+
+    def shifts(epsilon: float, steps: float) -> FloatArray:
+        step = FIG5.mass * epsilon / FIG5.friction_force / steps
+        found = [
+            exudyn_models.simulate_fixed_step(
+                FIG5, start, until, integrator="RK44", step=step, regularisation=epsilon
+            )
+            for start in starts
+        ]
+        ends = [trajectory.stick_times[1] if trajectory.stick_phases else math.nan for trajectory in found]
+        return np.array([(end - phase.end) / epsilon for end, phase in zip(ends, exact, strict=True)])
+
+    measured = np.array([shifts(epsilon, 4.0) for epsilon in CREEP_REGULARISATIONS])
+    rough = shifts(CREEP_REGULARISATIONS[-1], 2.0)
+    extrapolated = 2.0 * measured[1:] - measured[:-1]
+    numerical = np.abs(rough - measured[-1]) + np.abs(extrapolated[-1] - extrapolated[-2])
+    model = np.abs(measured[-1] - measured[-2])
+    finite = bool(np.all(np.isfinite(extrapolated)))
+    predicted = np.array([release_shift_by_creep(FIG5, phase) for phase in exact])
+    return Measured(
+        predicted=predicted,
+        value=extrapolated[-1],
+        error=numerical if finite else 0.0,
+        model=float(np.max(model)) if finite else 0.0,
+        resolution=0.05 * float(np.min(np.abs(predicted))),
+        components=[f"start of the way to the {end}" for end in FIG5_STARTS],
+        source="Fig. 5, both starts; " + at_each("ε", CREEP_REGULARISATIONS) + " m/s",
+    )
+
+
+def _range_of(values: FloatArray, name: str, unit: str = "") -> str:
+    return f"{name} from {values[0]:.3g} to {values[-1]:.3g} {unit}".rstrip()

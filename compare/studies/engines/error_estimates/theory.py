@@ -1,0 +1,357 @@
+"""Random motions that are known: in closed form, or by the reference at a far tighter tolerance."""
+
+from __future__ import annotations
+
+import cmath
+import functools
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from compare.claims.error_estimates import TRUTH, refined
+from compare.engines import Engine
+from compare.studies.toolkit.free_bodies import Slowing
+from compare.studies.toolkit.random_systems import (
+    any_disc,
+    any_pin,
+    any_start,
+    between,
+    sign,
+    state_of,
+    vector,
+)
+from compare.studies.toolkit.sticking import farthest
+from reference_model import simulate
+from reference_model.formulas.pin import (
+    first_order_whirl_response,
+    release_time,
+    whirl_frequency,
+    whirl_radius,
+)
+from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.trajectory import Trajectory
+
+# --- How many motions are drawn, from what, and what error bars must reach.
+
+MOTIONS = 360
+"""Random motions for an engine, as many of every kind of problem that it can simulate."""
+
+TOLERANCES = (1e-7, 1e-5)
+"""Between these the tolerance of a motion is drawn."""
+
+SEED = 20
+
+LEAST_COVERAGE, MOST_OVER_ESTIMATE = 0.99, 30.0
+"""What error bars must reach to mean something, in each kind of motion."""
+
+SOURCE = (
+    f"assumption: parameters, starts, times and tolerances (from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}) "
+    "are random"
+)
+
+KNOWN = 4.0 * np.finfo(float).eps
+"""To this fraction of its largest number an exact motion is known: a sine, a root and a product are rounded as much.
+
+A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
+"""
+
+EXACT = 100.0 * TRUTH
+"""Tolerance of the reference where there is no closed form: a thousandth of the smallest that is asked about."""
+
+SMALL_OFFSET = 1e-7
+"""X0/ρ_c of the response. What is of second order in it is as small beside it; errors are ~ tolerance/X0."""
+
+SAMPLES = 16
+"""Of a turn of the whirl, for its mean: exact for the two harmonics that there are."""
+
+THROWS = ((0.7, 20.0), (0.8, 60.0), (1.3, 50.0), (1.5, 15.0))
+"""J/(mR²) of the thrown rings and atan(W/U) in degrees at the start.
+
+Not 1, where the end is in the integrals like exp(−A/t): they are good to 1e-11 there, and to 1e-13 elsewhere.
+"""
+
+
+# --- Calibration of error estimates: how far they are from the true errors of motions that are known exactly.
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A motion of which the exact value of some numbers is known.
+
+    Parameters
+    ----------
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    start : array of shape (4,) or (6,)
+        State at ``times[0]``.
+    times : array of shape (n,)
+        In s.
+    quantity : callable
+        Reads the numbers off a trajectory, shape (m,); fewer where the motion has none of some.
+    exact : array of shape (m,)
+        What they should be.
+
+    """
+
+    system: System
+    start: FloatArray
+    times: FloatArray
+    quantity: Callable[[Trajectory], FloatArray]
+    exact: FloatArray
+
+    def measured(self, engine: Engine, tolerance: float) -> FloatArray:
+        """Return the numbers that ``engine`` gives, shape (m,); none where one of them is missing."""
+        found = self.quantity(engine.simulate(self.system, self.start, self.times, tolerance=tolerance))
+        return found if found.shape == self.exact.shape else np.full(self.exact.shape, math.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """True and estimated errors of the n numbers of several motions, as fractions of the largest number of each.
+
+    Parameters
+    ----------
+    motion : array of shape (n,)
+        To which motion a number belongs, from 0 on.
+    errors, estimates : array of shape (n,)
+        Dimensionless; not a number where the engine gave none.
+
+    """
+
+    motion: NDArray[np.int_]
+    errors: FloatArray
+    estimates: FloatArray
+
+    @property
+    def motions(self) -> int:
+        """How many there are."""
+        return int(self.motion[-1]) + 1
+
+    @functools.cached_property
+    def _covered(self) -> FloatArray:
+        """Of each motion, the fraction of its numbers whose true error lies within the estimate."""
+        within = np.bincount(self.motion, self.errors <= self.estimates)  # False for NaN
+        return np.asarray(within / np.bincount(self.motion))
+
+    @property
+    def coverage(self) -> float:
+        """Fraction of numbers whose true error lies within the estimate; every motion counts as much."""
+        return float(np.mean(self._covered))
+
+    @property
+    def coverage_noise(self) -> float:
+        """Standard error of the coverage, that of a mean over motions: the numbers of one of them go together."""
+        return float(np.std(self._covered, ddof=1) / math.sqrt(self.motions))
+
+    @property
+    def ratios(self) -> FloatArray:
+        """Estimates over true errors, those at least ``KNOWN``, shape (n,); 0 without a number."""
+        ratios = self.estimates / np.maximum(self.errors, KNOWN)
+        return np.where(np.isnan(ratios), 0.0, ratios)
+
+    @property
+    def over_estimate(self) -> float:
+        """Median of estimate over true error."""
+        return float(np.median(self.ratios))
+
+
+def calibrated(engine: Engine, problems: Iterable[tuple[Problem, float]]) -> Calibration:
+    """Return true and estimated errors of ``engine`` in problems, each at its tolerance."""
+    motion, errors, estimates = [], [], []
+    for i, (problem, tolerance) in enumerate(problems):
+        measured, estimate = refined(functools.partial(problem.measured, engine), tolerance)
+        scale = np.max(np.abs(problem.exact))
+        motion.append(np.full(measured.shape, i))
+        errors.append(np.abs(measured - problem.exact) / scale)
+        estimates.append(estimate / scale)
+    return Calibration(np.concatenate(motion), np.concatenate(errors), np.concatenate(estimates))
+
+
+# --- Random motions that are known: in closed form, or by the reference at a far tighter tolerance.
+
+
+def _at_end(trajectory: Trajectory) -> FloatArray:
+    return trajectory.at_end
+
+
+def _duration(random: Generator, system: System) -> float:
+    """Draw from one to two turns of the support's own oscillation, in s."""
+    return between(random, 2.0 * math.pi, 4.0 * math.pi) / system.natural_frequency
+
+
+def _damped(system: System, start: complex, velocity: complex, t: float) -> tuple[complex, complex]:
+    """Return place and velocity of a damped oscillator about the offset, without friction."""
+    decay = system.damping / (2.0 * system.mass)
+    own = cmath.sqrt(complex(system.natural_frequency**2 - decay**2))
+    w = start - system.offset
+    slope = (velocity + decay * w) / own
+    c, s, fade = cmath.cos(own * t), cmath.sin(own * t), math.exp(-decay * t)
+    place = fade * (w * c + slope * s)
+    return place + system.offset, -decay * place + fade * own * (slope * c - w * s)
+
+
+def oscillator(random: Generator) -> Problem:
+    """Let a pin without friction oscillate about the offset, damped."""
+    pin = replace(any_pin(random), friction_force=0.0)
+    place = vector(random, abs(pin.offset))
+    velocity = vector(random, abs(pin.offset) * pin.natural_frequency)
+    t = _duration(random, pin)
+    exact = state_of(*_damped(pin, place, velocity, t))
+    return Problem(pin, state_of(place, velocity), np.array([0.0, t]), _at_end, exact)
+
+
+def shaft(random: Generator) -> Problem:
+    """Let a disc without friction follow the shaft, with the lag of first order."""
+    disc = replace(any_disc(random, None), friction_force=0.0)
+    place = vector(random, abs(disc.offset))
+    velocity = vector(random, abs(disc.offset) * disc.natural_frequency)
+    lag, t = disc.polar_inertia / disc.shaft_damping, _duration(random, disc)
+    spin = disc.disc_speed * random.uniform(-1.0, 2.0)
+    away = spin - disc.shaft_speed
+    exact = state_of(
+        *_damped(disc, place, velocity, t),
+        angle=disc.shaft_speed * t - away * lag * math.expm1(-t / lag),
+        spin=disc.shaft_speed + away * math.exp(-t / lag),
+    )
+    return Problem(disc, state_of(place, velocity, spin=spin), np.array([0.0, t]), _at_end, exact)
+
+
+def stick(random: Generator) -> Problem:
+    """Let a pin turn with the disc until (7) lets it go: a state on the way, and when it is let go."""
+    while True:
+        pin = any_pin(random)
+        place = cmath.rect(farthest(pin) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
+        delay = release_time(pin, abs(place), cmath.phase(place))
+        if 0.05 < delay * abs(pin.disc_speed) < math.inf:
+            break
+    turned = place * cmath.exp(0.5j * pin.disc_speed * delay)
+    turning = 1j * pin.disc_speed
+    return Problem(
+        pin,
+        state_of(place, turning * place),
+        np.array([0.0, 0.5 * delay, 1.3 * delay]),
+        _on_the_way_and_release,
+        np.append(state_of(turned, 1j * turned) / abs(place), delay * pin.disc_speed),
+    )
+
+
+def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
+    """Return place, velocity and time of release in units of the radius and the disc's speed: all are about one.
+
+    In metres and seconds places would be small beside the time, and so rounding of the largest number far above
+    theirs.
+    """
+    omega, start = trajectory.system.disc_speed, trajectory.states[0]
+    state = trajectory.states[1] / math.hypot(start[0], start[1]) / (1.0, 1.0, omega, omega)
+    return np.append(state, omega * trajectory.stick_times[1:2])
+
+
+def whirl(random: Generator) -> Problem:
+    """Let a centred pin go round on the circle (11)."""
+    pin = replace(any_pin(random), offset=0.0)
+    turning, t = 1j * whirl_frequency(pin), _duration(random, pin)
+    place = cmath.rect(whirl_radius(pin), random.uniform(-math.pi, math.pi))
+    end = place * cmath.exp(turning * t)
+    start, exact = state_of(place, turning * place), state_of(end, turning * end)
+    return Problem(pin, start, np.array([0.0, t]), _at_end, exact)
+
+
+def response(random: Generator) -> Problem:
+    """Take the mean of a whirl with a small offset, in units of it: the exact response of first order."""
+    pin = any_pin(random)
+    pin = replace(pin, offset=SMALL_OFFSET * whirl_radius(pin))
+    found, turning = first_order_whirl_response(pin), 1j * whirl_frequency(pin)
+    place = whirl_radius(pin) + found.mean + found.second_harmonic
+    velocity = turning * (whirl_radius(pin) + 2.0 * found.second_harmonic)
+    turn = math.tau / pin.natural_frequency
+    return Problem(
+        pin,
+        state_of(place, velocity),
+        turn * np.arange(SAMPLES + 1) / SAMPLES,
+        _mean_over_offset,
+        np.array([found.mean.real, found.mean.imag]) / pin.offset,
+    )
+
+
+def _mean_over_offset(trajectory: Trajectory) -> FloatArray:
+    return np.asarray(np.mean(trajectory.states[1:, :2], axis=0) / trajectory.system.offset)
+
+
+def free_ring(random: Generator) -> Problem:
+    """Throw a ring on a table: how far it slides and turns, and when it rests."""
+    inertia, degrees = THROWS[int(random.integers(len(THROWS)))]
+    time, slid, turned = _unit_stop(inertia, degrees)
+    mass, radius = between(random, 0.1, 10.0), between(random, 0.03, 1.0)
+    speed, deceleration = between(random, 0.1, 3.0), between(random, 0.1, 3.0)
+    disc = DiscOnDisc(
+        mass=mass,
+        polar_inertia=inertia * mass * radius**2,
+        stiffness=0.0,
+        damping=0.0,
+        friction_force=mass * deceleration,
+        disc_speed=0.0,
+        contact_radius=radius,
+        shaft_damping=0.0,
+        shaft_speed=0.0,
+    )
+    angle, sense = math.radians(degrees), sign(random)
+    heading = cmath.rect(1.0, random.uniform(-math.pi, math.pi))
+    rest, way = time * speed / deceleration, speed**2 / deceleration
+    end = slid * way * heading
+    return Problem(
+        disc,
+        state_of(0j, speed * math.cos(angle) * heading, spin=sense * speed * math.sin(angle) / radius),
+        np.array([0.0, 1.1 * rest]),
+        _place_and_time_of_rest,
+        np.array([end.real, end.imag, sense * turned * way / radius, rest]),
+    )
+
+
+@functools.cache
+def _unit_stop(inertia: float, degrees: float) -> tuple[float, float, float]:
+    """Return time and ways until a ring rests that is thrown with √(U² + W²) = 1 m/s, for μN = m·(1 m/s²)."""
+    angle = math.radians(degrees)
+    return Slowing(inertia).stop(math.cos(angle), math.sin(angle))[:3]
+
+
+def _place_and_time_of_rest(trajectory: Trajectory) -> FloatArray:
+    return np.append(trajectory.at_end[:3], trajectory.stick_times[-2:-1])
+
+
+def _generic(random: Generator, system: System) -> Problem:
+    """Take any motion; the reference says at a far tighter tolerance where it leads."""
+    start, times = any_start(random, system), np.array([0.0, _duration(random, system)])
+    return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=EXACT).at_end)
+
+
+def pin(random: Generator) -> Problem:
+    """Let a pin slip, and stick where it happens to."""
+    return _generic(random, any_pin(random))
+
+
+def ring(random: Generator) -> Problem:
+    """Let a disc slip on a continuous ring."""
+    return _generic(random, any_disc(random, None))
+
+
+def points(random: Generator) -> Problem:
+    """Let a disc slip on three to six points."""
+    return _generic(random, any_disc(random, int(random.integers(3, 7))))
+
+
+PROBLEMS: Mapping[str, Callable[[Generator], Problem]] = {
+    "damped oscillation": oscillator,
+    "lag of the shaft": shaft,
+    "stick and release": stick,
+    "whirl": whirl,
+    "response to an offset": response,
+    "thrown ring": free_ring,
+    "any motion of a pin": pin,
+    "any motion of a ring": ring,
+    "any motion of points": points,
+}
+"""By what they are about."""

@@ -1,0 +1,254 @@
+"""What foreign engines make of the paper's systems, from data recorded with them: laws, orders, errors over time."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+import compare.studies.engines.foreign_engines.theory as ladders
+from compare.claims.error_estimates import extrapolated_order, observed_exponent
+from compare.claims.measured import Measured
+from compare.claims.study import Data, Study
+from compare.foreign.cases import CASES
+from compare.foreign.records import DIGITS, ERROR, SECONDS, STEPS
+from compare.studies.engines.foreign_engines.theory import (
+    BOXES,
+    BY_AXIS,
+    FIRST_ORDER,
+    OFF_FOR_DISCS,
+    PYRAMIDS,
+    SINGLE_PRECISION,
+    STICKING,
+    TANGENTS,
+    Law,
+    box,
+    creep,
+    error_of,
+    halvings,
+    pyramid,
+    recorded_settings,
+    release_by,
+    release_where,
+    tables,
+)
+
+ORDER = (
+    "Orders observed while the step is halved, extrapolated to 0. Model error: the extrapolation's own step; "
+    "numerical error: its change from one step to the next."
+)
+SCATTERED_ORDER = (
+    "Orders observed while the step is halved, by least squares with a term smaller by one step, since errors "
+    "scatter with where in a step the contact begins to stick. Model error: what that term changes; numerical "
+    "error: 95 % interval from the scatter."
+)
+LAW = (
+    "How far it is off the exact one, recorded and extrapolated to a step of 0. Predicted by our own "
+    "integration of that law, smoothed over 1e-5 m/s. Numerical error: what the last halving changes of the "
+    "extrapolation, the digits that are recorded, and eight times the change at an eighth of the smoothing."
+)
+
+
+def curves() -> Data:
+    """Return the recorded ladders: seconds and error of each run."""
+    return {
+        f"{recording.name}: {case}": runs[:, [SECONDS, ERROR]]
+        for recording in ladders.recorded()
+        for case, runs in recording.runs.items()
+    }
+
+
+STUDY = Study.beside(
+    __file__,
+    "foreign-engines",
+    only=("theory",),
+    seconds=1.0,
+)
+STUDY.provides(curves=curves, tables=tables, recorded=recorded_settings)
+
+
+_of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
+"""Declares an order that steps of ever half the length show."""
+
+_of_law = functools.partial(
+    STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
+)
+"""Declares how far a law of friction leads off the exact motion."""
+
+
+@_of_order("Steps of order 1: the error of a sliding pin falls in proportion to the step")
+def slides() -> Measured:
+    """Compare with order 1."""
+    return _orders(1.0, FIRST_ORDER, ("slip",))
+
+
+@STUDY.claim(
+    "The error of a pin that sticks falls in proportion to a fixed step, whatever the order of the steps in slip",
+    kind="order",
+    basis="independent",
+    resolution=0.5,
+    note=SCATTERED_ORDER,
+)
+def sticks() -> Measured:
+    """Compare with order 1."""
+    return _orders(1.0, STICKING, ("stick-slip", "release"), scatters=True)
+
+
+@_of_order("Steps of order 1: the error of a disc on six points falls in proportion to the step")
+def disc_slides() -> Measured:
+    """Compare with order 1."""
+    return _orders(
+        1.0, tuple(name for name in FIRST_ORDER if name not in SINGLE_PRECISION + OFF_FOR_DISCS), ("disc",)
+    )
+
+
+@_of_order(
+    "A pyramid or a box in place of the cone is another law: the errors of pin and disc do not fall with the step"
+)
+def axes_stay_off() -> Measured:
+    """Compare with order 0."""
+    return _orders(0.0, BY_AXIS, ("slip", "disc"))
+
+
+@_of_order(
+    "Bullet's cone and Chipmunk's joints are another law for a disc: the error does not fall with the step"
+)
+def disc_stays_off() -> Measured:
+    """Compare with order 0."""
+    return _orders(0.0, OFF_FOR_DISCS, ("disc",))
+
+
+def _orders(
+    predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
+) -> Measured:
+    """Return the orders of errors of the ``wanted`` settings in the number of steps, in each of ``cases``."""
+    by_name = {recording.name: recording for recording in ladders.recorded()}
+    runs = {(name, case): halvings(by_name[name].runs[case]) for case in cases for name in wanted}
+    found = [
+        observed_exponent(1.0 / rows[:, STEPS], rows[:, ERROR], next_term=1.0)
+        if scatters
+        else extrapolated_order(rows[:, ERROR], 0.0)
+        for rows in runs.values()
+    ]
+    orders, numerical, model = np.transpose(found)
+    words = ", ".join(
+        f"{name} ({case}): {order:.3f}" for (name, case), order in zip(runs, orders, strict=True)
+    )
+    dates = " and ".join(sorted({by_name[name].recorded for name in wanted}))
+    return Measured(
+        predicted=np.full(len(orders), predicted),
+        value=orders,
+        error=numerical,
+        model=float(np.max(model)),
+        components=[f"{name} ({case})" for name, case in runs],
+        system=CASES[cases[0]].system,
+        source=f"Recorded on {dates}; " + "; ".join(f"{case}: {CASES[case].title}" for case in cases),
+        note=f"{words}.",
+    )
+
+
+@_of_law(
+    "A pin whirls by Bullet's and DART's boxes as by friction for each axis of the world",
+    equation=CASES["whirl"].equation,
+)
+def box_whirls() -> Measured:
+    """Compare with our integration of a box."""
+    return _as_far_off_as(box, "whirl", BOXES)
+
+
+@_of_law(
+    "A pin whirls by MuJoCo's pyramid as by friction along the nearest axis of the world",
+    equation=CASES["whirl"].equation,
+)
+def pyramid_whirls() -> Measured:
+    """Compare with our integration of a pyramid."""
+    return _as_far_off_as(pyramid, "whirl", PYRAMIDS)
+
+
+@_of_law(
+    "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction for each axis does",
+    equation=CASES["release"].equation,
+)
+def box_releases() -> Measured:
+    """Compare with our integration of a box."""
+    return _as_far_off_as(box, "release", BOXES)
+
+
+@_of_law(
+    "MuJoCo's pyramid lets a stuck pin go too early, by as much as friction along the nearest axis does",
+    equation=CASES["release"].equation,
+)
+def pyramid_releases() -> Measured:
+    """Compare with our integration of a pyramid."""
+    return _as_far_off_as(pyramid, "release", PYRAMIDS)
+
+
+def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
+    """Return how far the ``wanted`` settings, of order 1, are off in a case, beside ``law``."""
+    by_name = {recording.name: recording for recording in ladders.recorded()}
+    errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
+    extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
+    rounding = 0.5 * 10.0 ** (1 - DIGITS) * errors[:, -1]
+    predicted, smoothing = error_of(law, case)
+    return Measured(
+        predicted=np.full(len(wanted), predicted),
+        value=extrapolated[:, -1],
+        error=np.abs(extrapolated[:, 1] - extrapolated[:, 0]) + 3.0 * rounding + smoothing,
+        components=wanted,
+        system=CASES[case].system,
+        source=f"Recorded: {', '.join(wanted)}; {CASES[case].title}",
+        named={f"{case} by {name.replace(',', '')}": i for i, name in enumerate(wanted)},
+    )
+
+
+@STUDY.claim(
+    "A box around Coulomb's cone lets a stuck pin go later than the cone does, a pyramid within it at once",
+    equation="(6), (7)",
+    unit="s",
+    resolution=1e-2,
+    note="By our own integration of these laws, smoothed over 1e-5 m/s. Predicted: how much later the force of (6) "
+    "exceeds |F_x|, |F_y| <= μN, and |F_x| + |F_y| <= μN, than F <= μN, (7). Numerical error: eight times the change "
+    "at an eighth of the smoothing.",
+    named={"late by a box": 0, "late by a pyramid": 1},
+)
+def holds_longer() -> Measured:
+    """Compare how much later than by Coulomb's law a stuck pin is let go with the roots of (6) for these laws."""
+    times, errors = np.transpose([release_by(law) for law in (box, pyramid)])
+    exact = release_where(abs)
+    by_axes = (
+        release_where(lambda pull: max(abs(pull.real), abs(pull.imag))),
+        release_where(lambda pull: abs(pull.real) + abs(pull.imag)),
+    )
+    return Measured(
+        predicted=np.subtract(by_axes, exact),
+        value=times - exact,
+        error=errors,
+        components=("by a box", "by a pyramid"),
+        system=CASES["release"].system,
+        source=CASES["release"].title,
+    )
+
+
+@STUDY.claim(
+    "Solved for zero slip, a stuck pin moves along tangents: it drifts outwards by ω²h/2 of its radius per second",
+    basis="independent",
+    unit="m",
+    resolution=1e-4,
+    note="Predicted: |(1 + iωh)ⁿ − exp(iωnh)| times the radius, which is off by ω²h/2 per second to first order. "
+    "Numerical error: a unit in the last digit that is recorded.",
+)
+def creeps() -> Measured:
+    """Compare with places that go from w to (1 + iωh)·w in each step where a pin sticks."""
+    by_name = {recording.name: recording for recording in ladders.recorded()}
+    runs = np.concatenate([by_name[name].runs["stuck"] for name in TANGENTS])
+    names = [
+        f"{name}, {steps:g} steps" for name in TANGENTS for steps in by_name[name].runs["stuck"][:, STEPS]
+    ]
+    return Measured(
+        predicted=[creep(steps) for steps in runs[:, STEPS].astype(int)],
+        value=runs[:, ERROR],
+        error=10.0 ** (1 - DIGITS) * runs[:, ERROR],
+        components=names,
+        system=CASES["stuck"].system,
+        source=f"Recorded, all steps: {', '.join(TANGENTS)}",
+    )

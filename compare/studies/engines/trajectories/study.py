@@ -1,0 +1,297 @@
+"""Plain motions: state by state beside the reference, and whether velocities and forces add up along them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from compare.claims.error_estimates import TRUTH, Measurement, open_where_coarse, refined
+from compare.claims.measured import Measured
+from compare.claims.parameters import components_of
+from compare.claims.study import Findings, Study
+from compare.engines import Engine
+from compare.studies.engines.trajectories.drawn import DRAWN
+from compare.studies.engines.trajectories.parameters import (
+    MOTIONS,
+    PANEL,
+    PINS,
+    PINS_THAT_STICK,
+    POINTS,
+    RINGS,
+    STICK_RESOLUTION,
+    Motion,
+)
+from compare.studies.engines.trajectories.pooling import MeasureAll, Motions, together
+from compare.studies.engines.trajectories.stick import as_many, late, samples_in_stick, stick_times
+from compare.studies.engines.trajectories.theory import (
+    NODES,
+    at_bounds,
+    at_nodes,
+    by_reference,
+    equation_of,
+    forces,
+    gauss,
+    times_of,
+)
+from reference_model import DiscOnDisc, PinOnDisc, Trajectory
+from reference_model.systems import FloatArray
+
+STUDY = Study.beside(
+    __file__,
+    "trajectories",
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
+    seconds=2.0,
+    quick=True,
+    contact=True,
+)
+
+INTEGRATED = (
+    f"What is missing in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its error from how "
+    "the Legendre coefficients of what is integrated fall. The tolerance counts as an error of both states besides."
+)
+
+NAMES = {motion: name for name, motion in MOTIONS.items()}
+
+
+def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
+    """Return motions by hand each for itself, and those that are drawn by kinds."""
+    return {name: (motion,) for name, motion in by_hand.items()} | {
+        f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
+    }
+
+
+SLIDING = by_name(PINS, "pins", "pins on stops")
+STICKING = by_name(PINS_THAT_STICK, "pins that stick")
+OF_DISCS = {"(19), (20)": by_name(RINGS, "rings"), "(19), (21)": by_name(POINTS, "points")}
+"""By the equations that they follow."""
+
+
+def of_bodies(
+    sentence: str,
+    *,
+    of_pins: str,
+    of_discs: str,
+    pins: Mapping[str, Motions],
+    by_law: bool = True,
+    **more: Any,
+) -> Callable[[MeasureAll], MeasureAll]:
+    """Declare a claim of pins, and of discs on rings and on points, in the unit ``of_pins`` or ``of_discs``.
+
+    ``by_law`` says whether it is about the equations by which they move; ``more`` is as ``Study.claim`` takes it.
+    """
+
+    def declare(function: MeasureAll) -> MeasureAll:
+        for equation, each in ({"(1)": pins} | OF_DISCS).items():
+            unit = of_pins if each is pins else of_discs
+            STUDY.claim(sentence, equation=equation if by_law else "", unit=unit, each=each, **more)(function)
+        return function
+
+    return declare
+
+
+# ---------------------------------------------------------------- what is claimed
+
+
+@functools.lru_cache(maxsize=256)  # of all motions, at the tolerances of an error estimate
+def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+    """Return the motion at ``times_of(motion)``, for all claims on it."""
+    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
+
+
+def states_of(engine: Engine, motion: Motion) -> Measurement:
+    """Return the states of a motion, and their errors."""
+    return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
+
+
+@of_bodies(
+    "A body moves state by state as the reference does: {}",
+    of_pins="m, m/s",
+    of_discs="m, rad, m/s, rad/s",
+    pins=SLIDING | STICKING,
+    kind="trajectory",
+    note=f"Predicted: the reference at tolerance {TRUTH:g}.",
+)
+@together
+def moves(engine: Engine, motion: Motion) -> Measured:
+    """Compare all states with the reference's."""
+    found = states_of(engine, motion)
+    predicted = by_reference(motion).states
+    # A single number may be right by chance, and so may all of them where both runs take the same steps.
+    bar = found.largest + motion.tolerance * float(np.max(np.abs(predicted)))
+    times, data = times_of(motion), {}
+    if motion in NAMES:
+        difference = np.max(np.abs(found.value - predicted), axis=1)
+        shown = {"times": times, "difference": difference, "error bar": bar}
+        data = {f"{NAMES[motion]}: {name}": values for name, values in shown.items()}
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=bar,
+        resolution=motion.resolution,
+        at={"t in s": times},
+        components=components_of(motion.system),
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+        data=data,
+    )
+
+
+@of_bodies(
+    "Places and angle change by the integrals of velocity and spin: {}",
+    of_pins="m",
+    of_discs="m, rad",
+    pins=SLIDING,
+    by_law=False,
+    note=INTEGRATED,
+)
+@together
+def kinematics(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the change of places and angle in each panel with the integral of velocity and spin."""
+    half = motion.system.state_size // 2
+    return balance(
+        engine,
+        motion,
+        lambda states: states[..., :half],
+        lambda states: states[..., half:],
+        components_of(motion.system)[:half],
+    )
+
+
+@of_bodies(
+    "Momentum and spin change by the impulses of friction, springs and dampers: {}",
+    of_pins="N s",
+    of_discs="N s, N m s",
+    pins=SLIDING,
+    kind="conservation",
+    basis="reference",
+    note=INTEGRATED,
+)
+@together
+def momentum(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the change of momentum and spin in each panel with the integral of forces and moments."""
+    body = motion.system
+    half = body.state_size // 2
+    inertia = np.array(
+        [body.mass, body.mass, *([body.polar_inertia] if isinstance(body, DiscOnDisc) else [])]
+    )
+    return balance(
+        engine,
+        motion,
+        lambda states: inertia * states[..., half:],
+        functools.partial(forces, body),
+        ("along x in N s", "along y in N s", "of spin in N m s")[:half],
+    )
+
+
+def balance(
+    engine: Engine,
+    motion: Motion,
+    amounts: Callable[[FloatArray], FloatArray],
+    rates: Callable[[FloatArray], FloatArray],
+    components: Sequence[str],
+) -> Measured | None:
+    """Compare what changes in each panel with the integral of what changes it; None where the motion sticks."""
+    if motion.sticks:  # there friction holds, and is none of the contact's law
+        return None
+
+    def integrals(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        return gauss(rates(at_nodes(run(engine, motion, tolerance).states)))
+
+    def missing(tolerance: float) -> FloatArray:
+        changes = np.diff(amounts(at_bounds(run(engine, motion, tolerance).states)), axis=0)
+        return np.asarray(changes - integrals(tolerance)[0])
+
+    found = refined(missing, motion.tolerance)
+    cut = float(np.max(integrals(motion.tolerance)[1]))
+    return Measured(
+        predicted=np.zeros_like(found.value),
+        value=found.value,
+        error=found.largest + cut + 2.0 * motion.tolerance,
+        size=float(np.max(np.abs(amounts(by_reference(motion).states)))),
+        resolution=motion.resolution,
+        at={"from t in s": at_bounds(times_of(motion))[:-1]},
+        components=components,
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+    )
+
+
+@STUDY.claim(
+    "A body sticks and lets go when the reference does: {}",
+    kind="trajectory",
+    unit="s",
+    resolution=STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, beside those of the reference.",
+    each=STICKING,
+)
+@together
+def phases(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare beginnings and ends of all stick phases with the reference's."""
+    if not motion.sticks:
+        return None
+    predicted = stick_times(by_reference(motion))
+    found = refined(
+        lambda tolerance: as_many(stick_times(run(engine, motion, tolerance)), predicted), motion.tolerance
+    )
+    found = open_where_coarse(found, states_of(engine, motion))
+    return of_stick(motion, predicted, found, ("stick", "release"))
+
+
+@STUDY.claim(
+    "A body half way through a stick phase is let go when (7) says: {}",
+    equation="(7)",
+    unit="s",
+    resolution=STICK_RESOLUTION,
+    note="End of each stick phase, less what (7) says for the place in the middle of it.",
+    each=STICKING,
+)
+@together
+def release(engine: Engine, motion: Motion) -> Measured | None:
+    """Compare the ends of stick phases with (7), where the reference finds any."""
+    pin, middles = motion.system, samples_in_stick(by_reference(motion))
+    if not isinstance(pin, PinOnDisc) or not middles:
+        return None
+    found = refined(lambda tolerance: late(run(engine, motion, tolerance), pin, middles), motion.tolerance)
+    found = open_where_coarse(found, states_of(engine, motion))
+    return of_stick(motion, np.zeros(len(middles)), found, ("release",))
+
+
+def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]) -> Measured:
+    """Return what is measured of a pin's stick phases; the numbers are of each ``kind`` in turn."""
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        # An error of the state may make the first number of two right by chance; one of the tolerance is in all.
+        error=found.largest + motion.tolerance * motion.until,
+        size=1.0 / motion.system.natural_frequency,
+        components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],
+        system=motion.system,
+        source=motion.source,
+        note=started(motion),
+    )
+
+
+def started(motion: Motion) -> str:
+    """Return from where, and until when, a motion is followed."""
+    return f"To t = {motion.until:g} s from {motion.start}."
+
+
+# ---------------------------------------------------------------- of other motions
+
+
+def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
+    """Measure what the study claims, of each of the given motions in place of its own."""
+    declared = []
+    for one in STUDY.declared:
+        (like,) = next(iter(one.each.values()))
+        mine = {
+            name: (motion,) for name, motion in motions.items() if equation_of(motion) == equation_of(like)
+        }
+        declared += [replace(one, each=mine)] if mine else []
+    return replace(STUDY, declared=declared).measure(engine)

@@ -1,0 +1,265 @@
+"""How likely the whirl is: the basins of Fig. 5, their boundary, and how they change with the speed."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+
+from compare.claims.error_estimates import WORKING, known, refined
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.paper_parameters import FIG5
+from compare.claims.shares import of_grid
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.pin.basins.theory import (
+    AFTER,
+    ASIDE,
+    ASIDE_TOLERANCE,
+    ASKED,
+    BARELY,
+    CELLS,
+    FINER,
+    FROM_REST,
+    ON_BOUNDARY,
+    PLACES,
+    PLANE,
+    REACH,
+    RECOMPUTED,
+    RECTANGLE,
+    SETTLED,
+    SIDE,
+    SPEEDS,
+    STARTS,
+    STEP,
+    WHERE,
+    WITHIN,
+    beyond_equilibrium,
+    boundary,
+    curves,
+    distances,
+    enclosed,
+    ends_on_finer_grid,
+    ends_on_grid,
+    ensemble_of,
+    inside,
+    places_on_grid,
+    random_places,
+    saddle,
+    shares_over_speed,
+    smooth,
+    sought_from,
+    starts_at,
+)
+from reference_model import simulate
+from reference_model.ensemble import EndState
+from reference_model.orbits.basin_boundary import Separatrix
+from reference_model.orbits.release_map import Release, ReleaseMap
+from reference_model.systems import FloatArray, PinOnDisc
+
+STUDY = Study.beside(
+    __file__,
+    "basins",
+    words={"rectangle": RECTANGLE, "side": f"{SIDE}"},
+    source="Fig. 5",
+    system=FIG5,
+    seconds=4.5,
+)
+STUDY.provides(curves=curves)
+
+
+@STUDY.claim(
+    "The stick–slip orbit between the two basins of Fig. 5 comes back to its start after its period",
+    equation="(1), (6)",
+    kind="trajectory",
+    unit="m, m/s",
+    resolution=1e-4,
+)
+def closes(engine: Engine) -> Measured:
+    """Compare the state after a period with that at the start."""
+    orbit = saddle(FIG5)
+    found = refined(
+        lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
+    )
+    return Measured(
+        predicted=orbit.state,
+        value=found.value,
+        error=found.largest,
+        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
+        note=f"Found by the map from release to release: period {orbit.period:.7g} s, of which it sticks "
+        f"{orbit.stick_time:.5g} s; multipliers "
+        f"{', '.join(f'{abs(value):.5g}' for value in orbit.multipliers)}.",
+    )
+
+
+@STUDY.claim(
+    "The stick–slip orbit has the period, the time of stick and the multiplier that its map of releases gives",
+    equation="(1), (6)",
+    kind="trajectory",
+    unit="s, 1",
+    resolution=1e-3,
+    note=f"From release to release, and from releases {STEP:g} and {2.0 * STEP:g} rad to either side by differences "
+    "of fourth order. Error: the change at a smaller tolerance and with twice these differences.",
+    named={"period of the saddle": 0, "stick of the saddle": 1, "multiplier of the saddle": 2},
+)
+def returns(engine: Engine) -> Measured:
+    """Compare period, time of stick and multiplier of the saddle in the engine's own map of releases."""
+    orbit = saddle(FIG5)
+    releases = ReleaseMap(FIG5, ON_BOUNDARY)
+
+    def after(angle: float, tolerance: float) -> Release:
+        times = [0.0, 1.5 * orbit.period]
+        run = engine.simulate(FIG5, releases.state(angle), times, tolerance=tolerance)
+        late = (release for release in releases.along(run) if release.time > 0.5 * orbit.period)
+        return next(late, Release(math.nan, math.nan, math.nan))
+
+    @functools.cache
+    def slope(reach: float, tolerance: float) -> float:
+        ends = [after(orbit.release_angle + side * reach, tolerance).angle for side in (1.0, -1.0)]
+        return (ends[0] - ends[1]) / (2.0 * reach)
+
+    def multiplier(reach: float, tolerance: float) -> float:
+        return (4.0 * slope(reach, tolerance) - slope(2.0 * reach, tolerance)) / 3.0
+
+    def one_turn(tolerance: float) -> FloatArray:
+        middle = after(orbit.release_angle, tolerance)
+        return np.array([middle.time, middle.stick_time, multiplier(STEP, tolerance)])
+
+    found = refined(one_turn)
+    # Of fourth order: at twice the step it is 16 times as far off, and the change 15 times.
+    bent = abs(multiplier(2.0 * STEP, WORKING) - found.value[2]) / 7.5
+    return Measured(
+        predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
+        value=found.value,
+        error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
+        components=("period in s", "time of stick in s", "multiplier in 1"),
+    )
+
+
+@STUDY.claim(
+    "Starts on either side of the boundary, which is found by shooting, come to equilibrium and whirl",
+    equation="(3), (17)",
+    note=f"Starts {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: whether the "
+    "distance from the place (3) is smaller, or larger, than X0.",
+    basis="reference",
+)
+def parts(engine: Engine, places: int = PLACES) -> Measured:
+    """Tell to which end starts on either side of the boundary come, at so many ``places`` of it."""
+    rays = np.exp(2j * math.pi * np.arange(places) / places)
+    ways = np.column_stack((rays.real, rays.imag))
+    within = starts_at(*(WITHIN + np.zeros_like(ways)).T)
+    without = starts_at(*(WITHIN + REACH * ways).T)
+    divided = Separatrix.of(sought_from(FIG5))
+    middle = [divided.point_between(start, end)[[0, 2]] for start, end in zip(within, without, strict=True)]
+    sides = starts_at(*np.concatenate((middle - ASIDE * ways, middle + ASIDE * ways)).T)
+    outwards = np.repeat((-1.0, 1.0), places)
+
+    def margins(tolerance: float) -> FloatArray:
+        runs = engine.simulate_many([(FIG5, start, [0.0, AFTER]) for start in sides], tolerance=tolerance)
+        return outwards * [beyond_equilibrium(run.at_end) for run in runs]
+
+    return answers_of(*asked(margins, ASIDE_TOLERANCE), source=FROM_REST, note=f"{2 * places} starts.")
+
+
+@STUDY.claim(
+    "The stable set of the saddle-type stick–slip orbit separates starts that end in equilibrium and in whirl",
+    note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting, and cubic splines. Those of "
+    "the starts that end as the other side of the splines does which are the farthest from it were asked by shooting "
+    "on which side of the saddle's stable set they are: those do not hold for which that is not their end.",
+    basis="reference",
+)
+def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
+    """Count the starts that end otherwise than their side of the boundary says.
+
+    The curve is interpolated: starts that end as its other side does are asked by shooting on which side they are.
+    """
+    curve, places, ends = smooth(boundary(FIG5, cells)), places_on_grid(side), ends_on_grid(FIG5, side)
+    other = ends.ravel() != np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
+    beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
+    off = distances(beyond, curve)
+    farthest = np.argsort(off)[: -ASKED - 1 : -1]
+    sides = Separatrix.of(saddle(FIG5))  # far tighter than by which they may miss it
+    misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
+    before, behind = sides.ends
+    as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
+    how_far = f", none farther than {off.max():.2g} from it" if len(off) else ""
+    # The others end as their side of the curve says, or lie nearer to it than those that are asked.
+    margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
+    return answers_of(
+        margins,
+        BARELY,
+        source=FROM_REST,
+        note=f"The boundary is from {len(boundary(FIG5, cells)) - 1} starts that come to the saddle; {len(off)} "
+        f"starts end as the other side of the splines does{how_far}; {len(farthest)} of these were asked.",
+    )
+
+
+@STUDY.claim(
+    "The share of starts that end in the equilibrium is the share of the area inside the boundary, at both speeds",
+    resolution=2e-3,
+    note=f"{SIDE} × {SIDE} starts by the compiled ensemble, and where those of a cell end differently a grid {FINER} "
+    "times as dense; the boundary by shooting. Numerical error: half of the finer cells through which the boundary "
+    "passes.",
+    basis="reference",
+    swept=("disc_speed",),
+)
+def area(side: int = SIDE, cells: int = CELLS, pins: tuple[PinOnDisc, ...] = tuple(WHERE)) -> Measured:
+    """Compare the share of the starts with the share of the area, for each pin."""
+    whole = math.prod(high - low for low, high in PLANE)
+    shares = [of_grid(ends_on_finer_grid(pin, side))[EndState.SELF_CENTRED] for pin in pins]
+    return Measured(
+        predicted=[enclosed(smooth(boundary(pin, cells))) / whole for pin in pins],
+        value=[share.value for share in shares],
+        error=[0.5 * (share.high - share.low) for share in shares],
+        at={"ω in rad/s": [pin.disc_speed for pin in pins]},
+        source=f"Fig. 5; starts in {RECTANGLE}",
+        named={f"share at {pin.disc_speed:g} rad/s": i for i, pin in enumerate(pins)},
+    )
+
+
+@STUDY.claim(
+    "The plain reference finds the ends that the compiled ensemble finds",
+    equation="(1), (6)",
+    kind="trajectory",
+    note=f"{RECOMPUTED} starts, of which half are not farther than {ASIDE:g} from the boundary.",
+)
+def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS) -> Measured:
+    """Ask the plain reference about some of the random starts, and about some next to the boundary."""
+    curve, (places, random) = smooth(boundary(FIG5, cells)), random_places(starts)
+    near = curve[random.integers(len(curve), size=count // 2)]
+    near = near + random.uniform(-ASIDE, ASIDE, (count // 2, 2))
+    chosen = starts_at(*np.concatenate((places[: count // 2], near)).T)
+    found = ensemble_of(chosen).end
+    return answers_of(
+        [
+            (beyond_equilibrium(simulate(FIG5, start, [0.0, SETTLED]).at_end) > 0.0)
+            == (end == EndState.WHIRL)
+            for start, end in zip(chosen, found, strict=True)
+        ],
+        source="Fig. 5; random starts, half of them beside the boundary",
+    )
+
+
+@STUDY.claim(
+    "The attraction area of the self-centred equilibrium shrinks as ω grows",
+    note=f"Whether the share of the same {STARTS} random starts does not grow from one of {len(SPEEDS)} speeds to "
+    "the next.",
+    basis="independent",
+    swept=("disc_speed",),
+)
+def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measured:
+    """Compare the equilibrium's shares at neighbouring speeds, from the first that has a whirl on."""
+    shares = shares_over_speed(speeds, starts)
+    rest = shares[EndState.SELF_CENTRED][:, 0]
+    last = max(int(np.argmax(rest < 1.0)) - 1, 0)
+    # Equal shares are no growth; a start whose end is not known may be on either side.
+    margins = -np.diff(rest[last:]) + 0.5 / starts
+    open_ends = shares[EndState.UNDECIDED][last:, 0]
+    return answers_of(
+        margins,
+        open_ends[:-1] + open_ends[1:],
+        source=f"Section 5; Fig. 5 but for ω; starts in {RECTANGLE}",
+        note=f"All come to the equilibrium up to ω = {speeds[last]:.3g} rad/s; {100.0 * rest[-1]:.2g} % still do at "
+        f"{speeds[-1]:g} rad/s.",
+    )

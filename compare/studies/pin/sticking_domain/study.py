@@ -1,0 +1,323 @@
+"""Eq. 6 to 9: where the pin sticks to the disc for ever, when it lets go elsewhere, and the resonance of both."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from compare.claims.error_estimates import ROUNDING, Measurement, refined
+from compare.claims.linearised_flow import rotated
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.pin.sticking_domain.theory import (
+    BRACKET,
+    CREEP,
+    CREEP_AT_EDGE,
+    DAMPINGS,
+    FAST,
+    INSIDE,
+    LATEST,
+    OUTSIDE,
+    PIN,
+    PRECISION,
+    RESONANCE,
+    REVOLUTIONS,
+    SEARCH_TOLERANCE,
+    SEARCHED,
+    SOURCE,
+    SPEEDS,
+    TOLERANCE,
+    curves,
+    pin_at,
+    predicted_turns,
+    top,
+    vertex,
+)
+from compare.studies.toolkit.sticking import first_release, safest_angle, stuck
+from reference_model.formulas.pin import release_time, resonant_disc_speed, sticking_radius
+from reference_model.systems import FloatArray, PinOnDisc
+
+STUDY = Study.beside(
+    __file__,
+    "sticking-domain",
+    source=SOURCE,
+    system=PIN,
+    seconds=6.0,
+)
+STUDY.provides(curves=curves)
+
+LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m − β²/2m²)"
+
+
+@functools.lru_cache(maxsize=4)
+def two_revolutions(
+    engine: Engine, speeds: tuple[float, ...], tolerance: float
+) -> tuple[FloatArray, list[bool]]:
+    """Return by how much pins inside of the radius (9) move on the disc, shape (n, 2), and which stick all the time.
+
+    The displacement is that over the distance from the axis.
+    """
+    pins = [pin_at(speed) for speed in speeds]
+    radii = [INSIDE * sticking_radius(pin) for pin in pins]
+    starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]
+    turn = REVOLUTIONS * 2.0 * math.pi
+    runs = engine.simulate_many(
+        [(pin, start, [0.0, turn / pin.disc_speed]) for pin, start in zip(pins, starts, strict=True)],
+        tolerance=tolerance,
+    )
+    displacements, sticks = [], []
+    for radius, start, run in zip(radii, starts, runs, strict=True):
+        on_disc = rotated(run.at_end, -turn)
+        displacements.append((on_disc - start)[:2] / radius)
+        sticks.append(all(phase.kind != "slip" for phase in run.phases))
+    return np.array(displacements), sticks
+
+
+def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement:
+    """Return the displacements of ``two_revolutions`` and their errors."""
+    found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
+    # Displacements of zero have no scale of their own for rounding: that of a turn is theirs.
+    return found.plus(ROUNDING)
+
+
+def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = CREEP) -> bool:
+    """Return whether pins may creep so far, where they should stick, that what is read off their stick is open."""
+    return displaced(engine, speeds).largest > most
+
+
+@STUDY.claim(
+    "A pin stuck at 0.98 of the radius (9) is at the same place of the disc two revolutions later",
+    equation="(9)",
+    resolution=CREEP,
+    note="Displacement on the disc over the distance from the axis; starts where the least force holds the pin. "
+    "Error: the change at a smaller tolerance, by which a law that only approximates stick shows its creep.",
+    swept=("disc_speed",),
+)
+def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
+    """Measure how far pins that start inside of the radius (9) are from their place in the end."""
+    found = displaced(engine, speeds)
+    return Measured(
+        predicted=np.zeros_like(found.value),
+        value=found.value,
+        error=found.rows,
+        size=1.0,
+        at={"ω in rad/s": speeds},
+        components=("x", "y"),
+    )
+
+
+@STUDY.claim(
+    "A pin stuck at 0.98 of the radius (9) does not slip within two revolutions",
+    equation="(8)",
+    note="Whether each of these motions has no slip phase.",
+    swept=("disc_speed",),
+)
+def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
+    """See whether pins that start inside of the radius (9) stick all the time."""
+    margins, errors = asked(lambda tolerance: two_revolutions(engine, speeds, tolerance)[1], TOLERANCE)
+    if np.any(margins < 0.0) and creeps(engine, speeds):
+        errors = np.full_like(margins, np.inf)
+    return answers_of(margins, errors)
+
+
+@STUDY.claim(
+    "A pin stuck at 1.02 and at 1.5 of the radius (9) is let go at the time that (7) predicts",
+    equation="(7)",
+    unit="rad",
+    resolution=1e-2,
+    note="Turn of the disc up to the end of the first stick phase, after a start where the least force holds the "
+    "pin. Error: the change at a smaller tolerance.",
+    swept=("disc_speed",),
+)
+def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+    """Measure by how much the disc turns until it lets go pins outside of the radius (9)."""
+
+    def turns(tolerance: float) -> FloatArray:
+        motions = []
+        for pin in map(pin_at, speeds):
+            for share in OUTSIDE:
+                radius, angle = share * sticking_radius(pin), safest_angle(pin)
+                end = LATEST * release_time(pin, radius, angle)
+                motions.append((pin, stuck(pin, radius, angle), [0.0, end]))
+        runs = engine.simulate_many(motions, tolerance=tolerance)
+        found = [run.system.disc_speed * first_release(run) for run in runs]
+        return np.array(found).reshape(len(speeds), len(OUTSIDE))
+
+    found = refined(turns, TOLERANCE)
+    return Measured(
+        predicted=predicted_turns(speeds),
+        value=found.value,
+        error=_unless_missing(engine, found.value, found.rows),
+        at={"ω in rad/s": speeds, "radius/(9)": OUTSIDE},
+        data={"speed": speeds, "turn": found.value, "turn_error": found.rows},
+    )
+
+
+@functools.lru_cache(maxsize=2)
+def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
+    """Return the largest sticking radii in m at ``searched`` ω in rad/s, found by bisection, shape (n,)."""
+    pins = [pin_at(speed) for speed in searched]
+    first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
+
+    def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
+        """Return where to look at another tolerance, which moves the radius by little."""
+        return near if np.all(np.isfinite(near)) else _anywhere(pin)
+
+    def radii(tolerance: float) -> FloatArray:
+        found = first
+        if tolerance != SEARCH_TOLERANCE:
+            found = [
+                _between(engine, pin, tolerance, around(pin, near))
+                for pin, near in zip(pins, first, strict=True)
+            ]
+        return np.asarray(np.sqrt(np.prod(found, axis=1)))
+
+    found = refined(radii, SEARCH_TOLERANCE)
+    error = found.error + PRECISION * found.value / 2.0
+    return Measurement(found.value, _unless_missing(engine, found.value, error))
+
+
+def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
+    """Return the errors of ``values``; where one is missing it is open if the engine creeps, else a mistake."""
+    missing = ~np.isfinite(values)
+    if not np.any(missing):
+        return errors
+    return np.where(
+        missing,
+        np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0,
+        np.where(np.isnan(errors), np.inf, errors),
+    )
+
+
+def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
+    return BRACKET[0] * pin.offset, BRACKET[1] * pin.offset
+
+
+def _between(
+    engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
+) -> tuple[float, float]:
+    """Return between which radii in m the largest lies at which the pin sticks, by bisection.
+
+    It is looked for between the radii ``around`` first, and ever farther away from them if it is not there. It is no
+    number if it is nowhere.
+    """
+    # From where the least force holds the pin to where the greatest has to is half a revolution.
+    end = 1.02 * math.pi / pin.disc_speed
+
+    @functools.cache
+    def sticks(radius: float) -> bool:
+        start = stuck(pin, radius, safest_angle(pin))
+        run = engine.simulate(pin, start, [0.0, end], tolerance=tolerance)
+        return all(phase.kind == "stick" for phase in run.phases)
+
+    (inside, outside), (least, most) = around, _anywhere(pin)
+    ratio = outside / inside
+    while not sticks(inside):
+        inside, outside, ratio = inside / ratio, inside, ratio**2
+        if inside < least:
+            return math.nan, math.nan
+    while sticks(outside):
+        inside, outside, ratio = outside, outside * ratio, ratio**2
+        if outside > most:
+            return math.nan, math.nan
+    while outside - inside > PRECISION * outside:
+        middle = math.sqrt(inside * outside)
+        if sticks(middle):
+            inside = middle
+        else:
+            outside = middle
+    return inside, outside
+
+
+@STUDY.claim(
+    "The largest radius at which a stuck pin does not slip is (9)",
+    equation="(9)",
+    resolution=1e-2,
+    note=f"By bisection to {PRECISION:g} of the radius over starts that pass the angle of the greatest force. In "
+    "units of (9). Error: that of the bisection, and the change at a smaller tolerance. Neither shows an error below "
+    "1e-3: just outside, the slip grows from zero like the power 3/2 of the distance, and regularised friction hides "
+    "it (Exudyn's radii are off by 2e-4 to 6e-4 at tolerances from 1e-6 to 1e-8).",
+    swept=("disc_speed",),
+)
+def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
+    """Compare the largest sticking radii with (9)."""
+    found = largest_radii(engine, searched)
+    predicted = np.array([sticking_radius(pin_at(speed)) for speed in searched])
+    return Measured(
+        predicted=np.ones(len(searched)),
+        value=found.value / predicted,
+        error=found.error / predicted,
+        at={"ω in rad/s": searched},
+        data={"searched": searched, "radius": found.value, "radius_error": found.error},
+    )
+
+
+@STUDY.claim(
+    LARGEST_AT,
+    equation="(9)",
+    unit="rad/s",
+    resolution=1e-3 * RESONANCE,
+    note="Where 1/A² is smallest on the parabola in ω² through the first three radii: by (9) it is one.",
+    implied_by=largest,
+    swept=("disc_speed",),
+)
+def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
+    """Compare where the measured radii are largest with ω*."""
+    radii, error = (each[:3] for each in largest_radii(engine, searched))
+    relative = np.where(np.isfinite(radii), error / radii, error)
+    found, error_of_vertex = vertex(np.array(searched[:3]) ** 2, 1.0 / radii**2, relative)
+    return Measured(predicted=RESONANCE, value=found, error=error_of_vertex)
+
+
+@STUDY.claim(
+    LARGEST_AT,
+    equation="(9)",
+    unit="rad/s",
+    resolution=1e-3 * RESONANCE,
+    note="Where the right side of (9) is largest, by differences.",
+    swept=("disc_speed", "damping"),
+)
+def resonance_of_9() -> Measured:
+    """Compare where the radius (9) is largest with ω*."""
+    found, errors, expected = [], [], []
+    for damping in DAMPINGS:
+        pin = replace(PIN, damping=damping)
+        expected.append(resonant_disc_speed(pin))
+        # The logarithm of the radius is a parabola at its top: its vertex, and the error of that by halving.
+        wide, narrow = (top(pin, expected[-1], width) for width in (2e-3, 1e-3))
+        found.append(narrow)
+        errors.append(abs(wide - narrow) + np.finfo(float).eps / (1e-3 * damping) ** 2)
+    return Measured(
+        predicted=expected,
+        value=found,
+        error=errors,
+        at={"β in N s/m": DAMPINGS},
+        source=f"Fig. 4; β = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g} N s/m is ours",
+    )
+
+
+@STUDY.claim(
+    "For large ω the sticking domain shrinks like 1/ω²",
+    equation="(9)",
+    resolution=0.05,
+    note="Right side of (9) over (μN − C·X0)/(mω²). Model error: twice the first term that is left out, (ω*/ω)² at "
+    "the smallest ω.",
+    swept=("disc_speed",),
+)
+def shrinks() -> Measured:
+    """Compare the radius (9) far above the resonance with its limit."""
+    speeds = np.array(FAST)
+    radii = np.array([sticking_radius(pin_at(speed)) for speed in FAST])
+    return Measured(
+        predicted=np.ones(len(FAST)),
+        value=PIN.mass * speeds**2 * radii / (PIN.friction_force - PIN.stiffness * PIN.offset),
+        error=4.0 * np.finfo(float).eps,
+        model=2.0 * (RESONANCE / FAST[0]) ** 2,
+        at={"ω in rad/s": FAST},
+        source="Fig. 4; the values of ω are ours",
+    )

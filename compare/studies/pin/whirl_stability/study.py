@@ -1,0 +1,400 @@
+"""The study itself, to which all claims belong."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from compare.claims.error_estimates import TIGHTEST, WORKING, Measurement, refined
+from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
+from compare.claims.measured import Measured, answers_of
+from compare.claims.study import Study
+from compare.engines import Engine
+from compare.studies.pin.whirl_stability.theory import (
+    CAUGHT,
+    CAUGHT_TOLERANCE,
+    DAMPINGS,
+    DELAY,
+    DEVIATION,
+    DEVIATION_TIMES,
+    DISPLACED,
+    DURATION,
+    FLOW_DURATION,
+    FORWARD,
+    INTERVAL,
+    PIN,
+    POINTS,
+    RATIOS,
+    SOURCE,
+    SPEEDS,
+    STARTS,
+    TOLERANCE,
+    K,
+    curves,
+    grid,
+    largest_real_parts,
+    linear_deviation,
+    on_circle,
+    pin_at,
+)
+from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
+from reference_model.formulas.pin import (
+    characteristic_coefficients,
+    coefficient_margins,
+    lower_branch_margin,
+    upper_branch_margin,
+    variational_matrix,
+    whirl_radius,
+)
+from reference_model.steady.stability import turning_frame_jacobian, whirl_eigenvalues
+from reference_model.systems import FloatArray
+from reference_model.trajectory import Trajectory
+
+STUDY = Study.beside(
+    __file__,
+    "whirl-stability",
+    source=SOURCE,
+    system=PIN,
+    seconds=2.5,
+    quick=True,
+    contact=True,
+)
+STUDY.provides(curves=curves)
+
+
+# --- Eq. 12 to 16 against each other: the conditions of stability.
+
+BoolArray = NDArray[np.bool_]
+
+
+@STUDY.claim(
+    "Corrected (13), the matrix of (12) and the Jacobian of (1) have the same eigenvalues",
+    equation="(12), (13)",
+    unit="1/s",
+    resolution=1e-9 * K,
+    note="All three eigenvalues of (12), and all four of the Jacobian in the frame that turns with the whirl, one of "
+    "which is the zero of the phase. Error: rounding, by the condition of each eigenvalue.",
+    swept=("disc_speed", "damping"),
+)
+def same_eigenvalues() -> Measured:
+    """Compare the roots of corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
+    pins = [
+        pin_at(float(speed), float(damping))
+        for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
+        for damping in np.geomspace(0.03, 3.0, 9)
+    ]
+    companion = np.zeros((len(pins), 3, 3))
+    companion[:, 1:, :2] = np.eye(2)
+    companion[:, :, 2] = [[-value for value in characteristic_coefficients(pin)[:0:-1]] for pin in pins]
+    roots, roots_error = eigenvalues_with_rounding(companion)
+    of_12, of_12_error = eigenvalues_with_rounding([variational_matrix(pin) for pin in pins])
+    of_1, of_1_error = eigenvalues_with_rounding([turning_frame_jacobian(pin) for pin in pins])
+    predicted, measured, errors = [], [], []
+    for i in range(len(pins)):
+        predicted.append([*roots[i], *matched([0.0, *roots[i]], of_1[i])])
+        measured.append([*matched(of_12[i], roots[i]), *of_1[i]])
+        errors.append(np.max(roots_error[i]) + max(np.max(of_12_error[i]), np.max(of_1_error[i])))
+    numbers = real_and_imaginary(measured)
+    return Measured(
+        predicted=real_and_imaginary(predicted),
+        value=numbers,
+        error=np.broadcast_to(np.array(errors)[:, np.newaxis, np.newaxis], numbers.shape),
+        components=PARTS,
+        source="Fig. 4 with X0 = 0; a grid of ω/k = 1.02 … 10 and β = 0.03 … 3 N s/m",
+    )
+
+
+def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
+    """Return in how many points of the grid a statement holds; one in a thousand may be open."""
+    return answers_of(
+        margins,
+        errors,
+        may_be_open=len(DAMPINGS) * len(RATIOS) // 1000,
+        source=f"assumption: a grid of {len(RATIOS)} values of ω/k = {RATIOS[0]:g} … {RATIOS[-1]:g} and "
+        f"{len(DAMPINGS)} of β/(mk) = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g}",
+    )
+
+
+def in_14() -> BoolArray:
+    """Return at which points of the grid (14) holds."""
+    return np.array([min(coefficient_margins(pin)) > 0.0 for pin in grid()])
+
+
+def in_16() -> BoolArray:
+    """Return at which points of the grid (16) holds."""
+    return np.array([upper_branch_margin(pin) > 0.0 for pin in grid()])
+
+
+@STUDY.claim(
+    "All roots of (13) have negative real parts exactly where (16) holds",
+    equation="(16)",
+    note="Whether the condition and the eigenvalues of (12) say the same at each grid point; rounding may leave one "
+    "in a thousand open. Below k this is about the matrix only: no whirl exists there.",
+    swept=("disc_speed", "damping"),
+)
+def hurwitz() -> Measured:
+    """Compare (16) with the largest real part of the eigenvalues."""
+    largest, error = largest_real_parts()
+    return counted(np.where(in_16(), -largest, largest), error)
+
+
+@STUDY.claim(
+    "Where (16) holds, (14) holds too",
+    equation="(14), (16)",
+    note="At each grid point. With q = 4k²m²/β² the bound of (16) is −q/(1 + q + √(1 + q²)), which is above −1 and "
+    "above −q.",
+    swept=("disc_speed", "damping"),
+)
+def implied() -> Measured:
+    """Look for points where (16) holds without (14)."""
+    return counted(~in_16() | in_14())
+
+
+@STUDY.claim(
+    "(14) and (15) never hold together",
+    equation="(14), (15)",
+    note="At each grid point. With q = 4k²m²/β² the bound of (15) is −(1 + q + √(1 + q²))/2, which is below "
+    "−min(1, q), where (14) fails.",
+    swept=("disc_speed", "damping"),
+)
+def incompatible() -> Measured:
+    """Look for points where both hold."""
+    in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in grid()])
+    return counted(~(in_14() & in_15))
+
+
+# --- Eq. 11 and 12: what engines show of the whirl without offset, and how deviations from it develop.
+
+SETTLING = (
+    f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s. Error: the change at a smaller "
+    f"tolerance, and what is left of the transient by its change in the last {DELAY:g} s."
+)
+
+
+def turning_speed(states: FloatArray) -> FloatArray:
+    """Return ψ̇ in rad/s of ``states``, shape (..., 4)."""
+    x, y, vx, vy = np.moveaxis(states, -1, 0)
+    return np.asarray((x * vy - y * vx) / (x**2 + y**2))
+
+
+@functools.lru_cache(maxsize=2)
+def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
+    """Return radius in m and frequency in rad/s in the end of long simulations, shape (n, 2)."""
+
+    def track(speed: float, times: list[float], tolerance: float) -> FloatArray:
+        pin = pin_at(speed)
+        run = engine.simulate(pin, on_circle(pin, DISPLACED), times, tolerance=tolerance)
+        return np.column_stack((run.radius, turning_speed(run.states)))[1:]
+
+    ends = [
+        settled(
+            functools.partial(track, speed),
+            duration=DURATION,
+            delay=DELAY,
+            period=np.pi / K,  # of the deviations in the frame that turns with the whirl, nearly
+            rate=-whirl_eigenvalues(pin_at(speed))[1].real,
+            tolerance=TOLERANCE,
+        )
+        for speed in speeds
+    ]
+    return Measurement(
+        np.array([end.value for end in ends]), np.array([end.error + end.left for end in ends])
+    )
+
+
+@STUDY.claim(
+    "A pin that starts beside the whirl comes to its radius μN/(βk) where ω > k",
+    equation="(11)",
+    unit="m",
+    resolution=1e-9 * whirl_radius(PIN),
+    note=SETTLING,
+    swept=("disc_speed",),
+)
+def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+    """Compare the radius in the end with (11)."""
+    found = whirls(engine, speeds)
+    return Measured(
+        predicted=np.full(len(speeds), whirl_radius(PIN)),
+        value=found.value[:, 0],
+        error=found.error[:, 0],
+        at={"ω in rad/s": speeds},
+    )
+
+
+@STUDY.claim(
+    "A pin that starts beside the whirl comes to its frequency k where ω > k",
+    equation="(11)",
+    unit="rad/s",
+    resolution=1e-9 * K,
+    note=SETTLING,
+    swept=("disc_speed",),
+)
+def frequency(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+    """Compare the frequency in the end with k."""
+    found = whirls(engine, speeds)
+    return Measured(
+        predicted=np.full(len(speeds), K),
+        value=found.value[:, 1],
+        error=found.error[:, 1],
+        at={"ω in rad/s": speeds},
+    )
+
+
+@STUDY.claim(
+    "On the circle (11) friction and damping cancel where ω > k, and brake alike where ω < k",
+    equation="(11)",
+    resolution=1e-5,
+    note="Change of the angular momentum in time over μN·ρ_c, from a one-sided difference. By (10) it is "
+    "sign(ω − k) − 1. The paper says that (11) always exists: see the errata. Error: the change at a smaller "
+    "tolerance and at a larger interval.",
+    swept=("disc_speed",),
+)
+def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
+    """Measure at which rate the angular momentum of a pin put on the circle (11) changes."""
+    if engine.contact_only:
+        return None
+
+    def rates_of(interval: float, tolerance: float) -> FloatArray:
+        pins = [pin_at(speed) for speed in starts]
+        runs = engine.simulate_many(
+            [(pin, on_circle(pin), interval * np.arange(5)) for pin in pins], tolerance=tolerance
+        )
+        found = []
+        for pin, run in zip(pins, runs, strict=True):
+            x, y, vx, vy = run.states.T
+            moment = FORWARD @ (pin.mass * (x * vy - y * vx)) / interval
+            found.append(moment / (pin.friction_force * on_circle(pin)[0]))
+        return np.array(found)
+
+    found = refined(functools.partial(rates_of, INTERVAL), 10.0 * TIGHTEST)
+    wide = np.abs(rates_of(2.0 * INTERVAL, 10.0 * TIGHTEST) - found.value)
+    rounding = 8.0 * np.finfo(float).eps * PIN.mass * K / (PIN.damping * INTERVAL)
+    return Measured(
+        predicted=[0.0 if speed > K else -2.0 for speed in starts],
+        value=found.value,
+        error=np.full(len(starts), found.largest + np.max(wide) + rounding),
+        at={"ω in rad/s": starts},
+    )
+
+
+@STUDY.claim(
+    "Where ω < k a pin put on the circle (11) leaves it and ends turning with the disc",
+    equation="(11)",
+    resolution=1e-3,
+    note=f"Speed at which it turns after {CAUGHT:g} s, over ω.",
+    swept=("disc_speed",),
+)
+def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
+    """Measure how fast a pin that left the circle (11) below k turns in the end."""
+    if engine.contact_only:
+        return None
+    below = [speed for speed in starts if speed < K]
+
+    def ends(tolerance: float) -> list[FloatArray]:
+        return [
+            turning_speed(_leave(engine, speed, [0.0, CAUGHT], tolerance).at_end) / speed for speed in below
+        ]
+
+    found = refined(ends, CAUGHT_TOLERANCE)
+    times = np.linspace(0.0, CAUGHT, 181)
+    return Measured(
+        predicted=np.ones(len(below)),
+        value=found.value,
+        error=np.full(len(below), found.largest),
+        at={"ω in rad/s": below},
+        data={
+            "start": starts,
+            "leaving_time": times,
+            "leaving": [_leave(engine, speed, times, CAUGHT_TOLERANCE).radius for speed in starts],
+        },
+    )
+
+
+def _leave(engine: Engine, speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
+    """Return the motion of a pin put on the circle (11)."""
+    pin = pin_at(speed)
+    return engine.simulate(pin, on_circle(pin), times, tolerance=tolerance)
+
+
+@functools.lru_cache(maxsize=2)
+def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
+    """Return the eigenvalues of the whirl at ``points``, ω in rad/s and β in N s/m."""
+    pins = [pin_at(*point) for point in points]
+    return measured_rates(
+        engine,
+        [(pin, on_circle(pin)) for pin in pins],
+        [whirl_eigenvalues(pin) for pin in pins],
+        duration=FLOW_DURATION,
+        frame_speed=K,
+    )
+
+
+@STUDY.claim(
+    "Small deviations from the whirl develop with the eigenvalues of (12), and a zero for the phase",
+    equation="(12)",
+    unit="1/s",
+    resolution=1e-6 * K,
+    note=f"Central differences of the motion over {FLOW_DURATION:g} s, in the frame that turns with the whirl, "
+    "extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
+    swept=("disc_speed", "damping"),
+)
+def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
+    """Compare all four eigenvalues with those of (12) and zero."""
+    if engine.contact_only:
+        return None
+    found = rates(engine, points)
+    return found.compared(
+        {"(ω, β)": [f"({speed:g} rad/s, {damping:g} N s/m)" for speed, damping in points]},
+        source=f"{SOURCE}; β too where it is not {PIN.damping:g}",
+        data={"point": points, "eigenvalue": real_and_imaginary(found.measured)},
+    )
+
+
+@STUDY.claim(
+    "No small deviation from the whirl grows where ω > k",
+    equation="(16)",
+    note="Whether the real part of each measured eigenvalue is below zero, but for one at each point, which belongs "
+    "to the phase.",
+    implied_by=eigenvalues,
+    swept=("disc_speed", "damping"),
+)
+def stable(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
+    """See whether all measured deviations but that of the phase decay."""
+    if engine.contact_only:
+        return None
+    return rates(engine, points).decaying(but=1, source=f"{SOURCE}; β too where it is not {PIN.damping:g}")
+
+
+@STUDY.claim(
+    "A small deviation of the radius decays over time as the linear equations (12) say",
+    equation="(12)",
+    resolution=1e-4,
+    note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {DEVIATION:g}·ρ_c; half the difference of the radii over a. "
+    "Model error: the change with a twice as large, three times what the next order of the deviation amounts to.",
+)
+def history(engine: Engine) -> Measured | None:
+    """Follow a deviation of the radius in time."""
+    if engine.contact_only:
+        return None
+    circle = whirl_radius(PIN)
+    shift = np.array([circle, 0.0, K * circle, K * circle])
+
+    def deviation(amplitude: float, tolerance: float) -> FloatArray:
+        starts = (on_circle(PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
+        runs = engine.simulate_many([(PIN, start, DEVIATION_TIMES) for start in starts], tolerance=tolerance)
+        outwards, inwards = (run.radius for run in runs)
+        return np.asarray((outwards - inwards) / (2.0 * amplitude * circle))
+
+    found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
+    nonlinear = np.abs(deviation(2.0 * DEVIATION, WORKING / 10) - found.value)
+    return Measured(
+        predicted=linear_deviation(DEVIATION_TIMES),
+        value=found.value,
+        error=np.full(len(DEVIATION_TIMES), found.largest),
+        model=float(np.max(nonlinear)),
+        at={"t in s": DEVIATION_TIMES},
+        data={"history_time": DEVIATION_TIMES, "history": found.value},
+    )

@@ -1,0 +1,394 @@
+"""A block on a plane at rest: thrown, held, let go, on a spring, and pulled."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import lambertw
+
+from compare.claims.error_estimates import WORKING, Measurement, refined
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.parameters import at_each
+from compare.claims.study import Data, Study
+from compare.engines import Engine
+from reference_model.systems import FloatArray, PinOnDisc
+
+# --- A block of 1 kg with friction of 1 N, how it is thrown and pulled, and how sharply it is looked at.
+
+SOURCE = "assumption: a block of 1 kg with friction of 1 N"
+
+BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
+"""Free, on a plane at rest."""
+
+FRICTION = BLOCK.friction_force
+DECELERATION = FRICTION / BLOCK.mass
+"""g in m/s² of a block that only friction acts on."""
+
+HEADINGS = (0.0, 22.5, 45.0, 67.5)
+"""In degrees from the x axis: sides, corners and neither of squares and octagons, however these lie."""
+
+SPEED = 1.0
+"""v₀ of a throw in m/s."""
+
+WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
+"""When a thrown block is looked at, as fractions of the time in which it stops."""
+
+AT_REST = 1.5
+"""When it rests, as such a fraction: a law that is smoothed has come to rest by then too."""
+
+SPRING = replace(BLOCK, stiffness=0.1)
+"""On a spring that is stretched by 10 m where it pulls as friction does: its pull changes slowly on the way."""
+
+LOADS = (0.1, 0.5, 0.9, 0.99)
+"""Pulls that friction holds, over μN."""
+
+BEYOND = 1.01
+"""A pull that it does not hold, over μN."""
+
+HELD = 10.0
+"""How long a block is held, in s: as long as it slides beyond the cone."""
+
+MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
+"""Way in m from which on it counts as moved: half of how far it slides beyond the cone."""
+
+SWINGING = replace(BLOCK, stiffness=1e4)
+RELEASED = 8.5
+"""Where the block on this spring is let go, over μN/C: half swings to 6.5, 4.5, 2.5 and 0.5, and there it rests."""
+
+SWINGS = 4
+"""Half swings up to rest."""
+
+DIAGONAL = 45.0
+"""Heading of the swings in degrees: between the axes."""
+
+PULL = 1.5
+"""Of a spring from afar on a block that is thrown along it, over μN."""
+
+AFAR = replace(BLOCK, stiffness=1e-2)
+"""Its spring is stretched by 150 m at the start. Any farther, and places have fewer digits than the motion needs."""
+
+PULLED = np.array([0.0, 1.0, 2.0])
+"""In s."""
+
+ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
+"""The block at the origin is pulled with μN along x, by a spring whose pull is constant to some 1e-6 of itself."""
+
+TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
+"""When a block that is thrown across the pull is looked at, in s: in the end it has all but turned."""
+
+
+def direction(degrees: float) -> complex:
+    """Return the unit vector of a heading, as x + iy."""
+    return cmath.rect(1.0, math.radians(degrees))
+
+
+def state_of(place: complex, velocity: complex = 0j) -> FloatArray:
+    """Return the state of a block, shape (4,), from x + iy in m and vx + ivy in m/s."""
+    return np.array([place.real, place.imag, velocity.real, velocity.imag])
+
+
+# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip.
+# Lengths are in m, speeds in m/s, times in s; s is the way along a line, and v = ds/dt.
+
+STOPPING_TIME = SPEED / DECELERATION
+STOPPING_DISTANCE = 0.5 * SPEED**2 / DECELERATION
+
+
+def thrown(times: ArrayLike) -> FloatArray:
+    """Return s and v of a block that only friction acts on, shape (n, 2): s = v₀t − gt²/2 until it rests."""
+    t = np.minimum(times, STOPPING_TIME)
+    return np.column_stack((SPEED * t - 0.5 * DECELERATION * t**2, SPEED - DECELERATION * t))
+
+
+def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
+    """Return s and v, shape (n, 2), of a block that is let go at rest at s = ``start`` > 0, s = 0 without a pull.
+
+    It does not rest there: start > f = μN/C. In half swing n (from 0) it moves as cos kt about (−1)^n·f, with the
+    amplitude start − (2n + 1)·f; it rests where the next amplitude would not be > 0.
+    """
+    k, f = pin.natural_frequency, pin.friction_force / pin.stiffness
+    last = math.ceil(0.5 * (start / f - 1.0))
+    t = np.minimum(times, last * math.pi / k)
+    n = np.minimum(np.floor(k * t / math.pi), last - 1)
+    amplitude = start - (2.0 * n + 1.0) * f
+    return np.column_stack(((-1.0) ** n * f + amplitude * np.cos(k * t), -amplitude * k * np.sin(k * t)))
+
+
+def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> FloatArray:
+    """Return s and v, shape (n, 2), of a block that slides towards the end of a spring stretched by ``stretch``.
+
+    s = a·(1 − cos kt) + (v₀/k)·sin kt with a = stretch − μN/C, as long as it slides on.
+    """
+    k, t = pin.natural_frequency, np.asarray(times, dtype=float)
+    a = stretch - pin.friction_force / pin.stiffness
+    way = 2.0 * a * np.sin(0.5 * k * t) ** 2 + speed / k * np.sin(k * t)
+    return np.column_stack((way, a * k * np.sin(k * t) + speed * np.cos(k * t)))
+
+
+def across(times: ArrayLike) -> FloatArray:
+    """Return the velocity along and across a constant pull μN, of a block thrown across it, shape (n, 2).
+
+    Speed and velocity along the pull have a constant sum v₀, since friction takes from the one what the pull gives to
+    the other. With the angle θ between both velocities and w = tan²(θ/2) they are v₀(1 ± w)/2, across there is
+    v₀√w, and Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
+    """
+    w = lambertw(np.exp(1.0 - 4.0 * DECELERATION * np.asarray(times, dtype=float) / SPEED)).real
+    return np.column_stack((0.5 * SPEED * (1.0 - w), SPEED * np.sqrt(w)))
+
+
+def bend_by_spring(times: FloatArray) -> float:
+    """Return how far in m/s the velocity of ``across`` can be off, since the spring's pull changes on the way.
+
+    The pull changes by C·r, r being the way in space. Friction brings two motions no farther apart, since it grows
+    against a larger slip, or turns with it: the difference of their velocities grows by no more than C·r/m, and r by
+    no more than v₀.
+    """
+    return float(0.5 * ACROSS.stiffness / ACROSS.mass * SPEED * times[-1] ** 2)
+
+
+def curves() -> Data:
+    """Return swings in units of μN/C over kt/π, and velocities across a pull over time."""
+    k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
+    swings, times = np.linspace(0.0, SWINGS + 1.0, 401), np.linspace(0.0, 2.0, 201)
+    return {
+        "half swings": swings,
+        "way": half_swings(SWINGING, RELEASED * length, swings * math.pi / k)[:, 0] / length,
+        "t": times,
+        "velocity": across(times),
+    }
+
+
+STUDY = Study.beside(
+    __file__,
+    "block",
+    source=SOURCE,
+    system=BLOCK,
+    seconds=1.5,
+    quick=True,
+    contact=True,
+)
+STUDY.provides(curves=curves)
+
+IN_SPACE = ("place along in m", "place across in m", "velocity along in m/s", "velocity across in m/s")
+
+
+def moved(
+    engine: Engine,
+    pin: PinOnDisc,
+    headings: Sequence[float],
+    start: tuple[complex, complex],
+    times: FloatArray,
+) -> Measurement:
+    """Return the states at ``times`` but the first, seen along and across each heading, shape (headings, n, 4).
+
+    ``start`` is place and velocity as seen that way; places are from (X0, 0), where the spring is relaxed.
+    """
+
+    def states(tolerance: float) -> FloatArray:
+        ways = [direction(heading) for heading in headings]
+        runs = engine.simulate_many(
+            [(pin, state_of(pin.offset + along * start[0], along * start[1]), times) for along in ways],
+            tolerance=tolerance,
+        )
+        found = []
+        for along, run in zip(ways, runs, strict=True):
+            seen = run.states[1:]
+            place, velocity = seen[:, 0] - pin.offset + 1j * seen[:, 1], seen[:, 2] + 1j * seen[:, 3]
+            turned = np.column_stack((place, velocity)) / along
+            found.append(np.ascontiguousarray(turned).view(float))
+        return np.array(found)
+
+    return refined(states)
+
+
+def on_a_line(motion: FloatArray, headings: Sequence[float]) -> FloatArray:
+    """Return the states of s and v, shape (n, 2), along each heading: nothing moves across, (headings, n, 4)."""
+    states = np.zeros((len(headings), len(motion), 4))
+    states[..., ::2] = motion
+    return states
+
+
+def largest_by_component(found: Measurement) -> FloatArray:
+    """Return the largest error of each component of a state: a single number may be right by chance."""
+    return np.asarray(np.max(found.error, axis=tuple(range(found.error.ndim - 1))))
+
+
+def along(
+    found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
+) -> Measured:
+    """Return states ``found`` beside ``way``, s and v at ``times`` (n, 2), along headings; ``more`` of Measured."""
+    return Measured(
+        predicted=on_a_line(way, headings),
+        value=found.value,
+        error=largest_by_component(found),
+        at={"heading in degrees": headings, "t in s": times},
+        components=IN_SPACE,
+        **more,
+    )
+
+
+@STUDY.claim(
+    "A thrown block is slowed down by μN/m, straight ahead, whatever its heading",
+    unit="m, m/s",
+    resolution=1e-6,
+    note="s = v₀t − μN·t²/2m.",
+)
+def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
+    """Follow throws up to nine tenths of the time in which they stop."""
+    times = STOPPING_TIME * WHILE_SLIDING
+    found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
+    return along(found, thrown(times[1:]), headings, times[1:])
+
+
+@STUDY.claim(
+    "A thrown block stops after mv₀²/2μN, straight ahead, whatever its heading",
+    unit="m, m/s",
+    resolution=1e-6,
+)
+def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
+    """Look at throws when they rest."""
+    times = STOPPING_TIME * np.array([0.0, AT_REST])
+    found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
+    rest, stops = np.array([[STOPPING_DISTANCE, 0.0]]), found.value[:, 0, :2]
+    return along(found, rest, headings, times[1:], data={"stops": stops})
+
+
+@STUDY.claim(
+    "A pull below μN holds a block for ever: it does not creep",
+    unit="μN/√(mC)",
+    resolution=1e-5,
+    note=f"Mean speed along and across the pull in {HELD:g} s; without friction a spring that pulls with μN would "
+    "bring the block to the speed μN/√(mC).",
+    swept=("stiffness",),
+)
+def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    """Leave a block on a stretched spring alone."""
+    stretch, rate = FRICTION / SPRING.stiffness, FRICTION / math.sqrt(SPRING.mass * SPRING.stiffness)
+    times = np.array([0.0, HELD])
+    crept, errors = [], []
+    for load in loads:
+        found = moved(engine, SPRING, HEADINGS, (-load * stretch + 0j, 0j), times)
+        crept.append((found.value[:, 0, :2] - (-load * stretch, 0.0)) / HELD / rate)
+        errors.append(largest_by_component(found)[:2] / HELD / rate)
+    return Measured(
+        predicted=np.zeros_like(crept),
+        value=crept,
+        error=np.max(errors),
+        at={"pull over μN": loads, "heading in degrees": HEADINGS},
+        components=("along", "across"),
+        system=SPRING,
+    )
+
+
+@STUDY.claim(
+    "A pull 1 % beyond μN moves a block from rest, straight ahead, by the closed form, until it is held again",
+    unit="m, m/s",
+    resolution=1e-4,
+    note="About the place at which the spring pulls with μN it moves as 0.01·μN/C·cos kt, k = √(C/m), for half a "
+    "swing.",
+)
+def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
+    """Look at a block that is let go in the middle of its way, and when it is held again."""
+    stretch = BEYOND * FRICTION / SPRING.stiffness
+    times = np.array([0.0, 0.5, 1.25]) * math.pi / SPRING.natural_frequency
+    found = moved(engine, SPRING, headings, (-stretch + 0j, 0j), times)
+    way = half_swings(SPRING, stretch, times[1:])
+    return along(found, -way, headings, times[1:], system=SPRING)
+
+
+@STUDY.claim(
+    "A pull of 99 % of μN holds a block, and one of 101 % moves it, whatever its direction",
+    note=f"Whether it has moved by less than {100.0 * MOVED:g} cm in {HELD:g} s, then whether by more: half of how "
+    f"far it slides at 101 %; {at_each('heading', HEADINGS)} degrees.",
+)
+def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
+    """Ask on which side of the cone a block is, at eight places beside it."""
+
+    def margins(tolerance: float) -> FloatArray:
+        places = [
+            -load * FRICTION / SPRING.stiffness * direction(heading)
+            for load in (LOADS[-1], BEYOND)
+            for heading in headings
+        ]
+        runs = engine.simulate_many(
+            [(SPRING, state_of(place), [0.0, HELD]) for place in places], tolerance=tolerance
+        )
+        moved = [abs(complex(*run.at_end[:2]) - place) for run, place in zip(runs, places, strict=True)]
+        return np.repeat((-1.0, 1.0), len(headings)) * (np.array(moved) - MOVED)
+
+    return answers_of(*asked(margins, WORKING), system=SPRING)
+
+
+@STUDY.claim(
+    "On a spring each half swing is shorter by 2μN/C, until the block rests where friction holds it",
+    unit="μN/C, k·μN/C",
+    resolution=1e-3,
+    note="Let go at 8.5·μN/C, at 45 degrees: it turns at 6.5, 4.5 and 2.5, and rests at 0.5·μN/C. Looked at each "
+    "quarter of a swing.",
+)
+def swings(engine: Engine) -> Measured:
+    """Follow a block on a stiff spring to rest, and a little on."""
+    k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
+    quarters = np.arange(2.0 * SWINGS + 2.0)
+    times = np.asarray(0.5 * math.pi / k * quarters)
+    found = moved(engine, SWINGING, (DIAGONAL,), (RELEASED * length + 0j, 0j), times)
+    unit = length * np.array([1.0, 1.0, k, k])
+    way = half_swings(SWINGING, RELEASED * length, times[1:])
+    return Measured(
+        predicted=on_a_line(way, (DIAGONAL,))[0] / unit,
+        value=found.value[0] / unit,
+        error=largest_by_component(found) / unit,
+        at={"half swing": 0.5 * quarters[1:]},
+        components=[name.replace("in m/s", "in k·μN/C").replace("in m", "in μN/C") for name in IN_SPACE],
+        system=SWINGING,
+        data={"half swings": 0.5 * quarters[1:], "way": found.value[0, :, 0] / length},
+    )
+
+
+@STUDY.claim(
+    "A weak spring from afar pulls a sliding block straight ahead, by the exact solution of spring and friction",
+    unit="m, m/s",
+    resolution=1e-4,
+    note="s = (P − μN)/C·(1 − cos kt) + v₀/k·sin kt with the pull P = 1.5·μN at the start, k = √(C/m): it speeds up "
+    "evenly to within a hundredth.",
+)
+def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
+    """Throw a block along the pull."""
+    stretch = PULL * FRICTION / AFAR.stiffness
+    found = moved(engine, AFAR, headings, (-stretch + 0j, SPEED + 0j), PULLED)
+    way = pulled(AFAR, SPEED, stretch, PULLED[1:])
+    from_start = Measurement(found.value + np.array([stretch, 0.0, 0.0, 0.0]), found.error)
+    return along(from_start, way, headings, PULLED[1:], system=AFAR)
+
+
+@STUDY.claim(
+    "Thrown across a pull equal to friction, a block comes down to half its speed, by the closed form",
+    unit="m/s",
+    resolution=1e-5,
+    note="Velocity along and across the pull, v₀(1 − w)/2 and v₀√w with w + ln w = 1 − 4μN·t/mv₀: the friction turns "
+    "with the velocity. Model error: what the spring's pull changes on the way.",
+)
+def pulled_across(engine: Engine) -> Measured:
+    """Throw a block along y, which is pulled along x."""
+    start = state_of(0j, SPEED * 1j)
+
+    def velocities(tolerance: float) -> FloatArray:
+        return np.asarray(engine.simulate(ACROSS, start, TURNING, tolerance=tolerance).states[1:, 2:])
+
+    found = refined(velocities)
+    return Measured(
+        predicted=across(TURNING[1:]),
+        value=found.value,
+        error=found.largest,
+        model=bend_by_spring(TURNING),
+        at={"t in s": TURNING[1:]},
+        components=("along", "across"),
+        system=ACROSS,
+        data={"t": TURNING[1:], "velocity": found.value},
+    )
