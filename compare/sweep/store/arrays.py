@@ -32,8 +32,12 @@ TYPES = {"float64", "uint8", "int64", "string"}
 CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
 """The data types and chains of codecs that sweeps write."""
 
-MISSING = {"f8": np.nan, "u1": 255, "i8": -1}
-"""What an array contains where nothing is written, by its type."""
+MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
+"""What an array contains where nothing is written, by its type.
+
+No result is like this: Zarr may leave out a piece in which nothing differs from it, and a piece that is not there
+counts as missing.
+"""
 
 CHECKSUM = "checksum"
 
@@ -109,7 +113,7 @@ class Group:
                 )
             dimensions = (*region, "component")
             written = xr.Dataset({name: (dimensions[: one.ndim], one) for name, one in values.items()})
-            written.to_zarr(self.files.url, mode="r+", region=region, write_empty_chunks=True, **self._place)
+            written.to_zarr(self.files.url, mode="r+", region=region, **self._place)
 
     def array(self, name: str) -> Any:
         """Return an array, of which nothing is read yet."""
