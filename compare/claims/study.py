@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -12,9 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
+from compare.claims.declared import Declared, takes_engine
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
-from compare.claims.prose import Prose, Table, slug
+from compare.claims.prose import Prose, Table
 from compare.engines import Engine, UnsupportedSystemError
 from compare.engines.finer_steps import decided
 from reference_model.systems import FloatArray, System
@@ -77,70 +77,6 @@ class Recorded:
     claims: tuple[Claim, ...]
     own: bool = True
     cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Declared:
-    """A claim as it is known before anything is measured: all that does not vary with the engine.
-
-    Parameters
-    ----------
-    function : callable
-        ``function(engine) -> Measured``, or without an engine for a claim of the theory; None where the claim is not
-        made of an engine. Of a family it takes one of ``each`` besides.
-    sentence, equation, kind, unit, note, basis, implied_by, named
-        As in :class:`compare.claims.claim.Claim`; in a family the sentence has braces for the name of each, and
-        ``implied_by`` is the sentence of the same one.
-    resolution : float, optional
-        The largest total error with which agreement still says something; None where the function says it.
-    swept : tuple of str
-        Parameters of the system that are varied, so that it stands for none of their values.
-    each : mapping
-        Of a family the name and the value of each; empty for a single claim.
-
-    """
-
-    function: Callable[..., Measured | None]
-    sentence: str
-    equation: str
-    kind: Kind
-    unit: str
-    resolution: float | None
-    note: str
-    basis: Basis
-    implied_by: str
-    named: Mapping[str, int | None]
-    swept: tuple[str, ...]
-    each: Mapping[str, Any]
-
-    @property
-    def of_engine(self) -> bool:
-        """Whether an engine takes part."""
-        return _takes_engine(self.function)
-
-    def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and what its function takes besides the engine."""
-        if not self.each:
-            yield "", ()
-        for name, value in self.each.items():
-            yield name, (value,)
-
-    def sentence_of(self, case: str) -> str:
-        """Return the sentence of one member of the family."""
-        return self.sentence.format(case) if self.each else self.sentence
-
-    def part(self, case: str) -> str:
-        """Return what chooses one member of the family, "function/case", or the claim, "function"."""
-        return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
-
-    def identity(self, study: str, case: str) -> str:
-        """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
-        parts = (study, self.function.__name__.strip("_"), case)
-        return "/".join(slug(part) for part in parts if part)
-
-
-def _takes_engine(function: Callable[..., Any]) -> bool:
-    return next(iter(inspect.signature(function).parameters), "") == "engine"
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded")
@@ -278,7 +214,7 @@ class Study:
                 unit=unit,
                 resolution=resolution,
                 note=note,
-                basis=basis or usual_basis(kind, "" if _takes_engine(function) else THEORY),
+                basis=basis or usual_basis(kind, "" if takes_engine(function) else THEORY),
                 implied_by="" if implied_by is None else self._declared_by(implied_by).sentence,
                 named=dict(named or {}),
                 swept=tuple(swept),

@@ -18,7 +18,7 @@ os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError
 from compare.engines.built_in import compiled, exudyn, exudyn_native, plain, reference
-from compare.engines.by_name import ByName
+from compare.engines.by_name import ByName, one_of
 from compare.engines.engine import (
     EVERY_KIND,
     KINDS,
@@ -27,7 +27,6 @@ from compare.engines.engine import (
     UnsupportedSystemError,
 )
 from compare.engines.live.installed import INSTALLED, installed_engine
-from compare.engines.names import one_of
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program

@@ -1,10 +1,11 @@
-"""A function that is known by its name, of a module that is imported when it is called, here or elsewhere."""
+"""Names that a user types, and functions that are known by the name of their module."""
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,3 +41,13 @@ class ByName:
             sys.path.append(self.folder)
         function: Callable[..., Any] = getattr(importlib.import_module(self.module), self.function)
         return function
+
+
+def one_of(kind: str, name: str, names: Iterable[str]) -> str:
+    """Return ``name`` if it is among ``names``; raise ``ValueError`` that suggests the nearest otherwise."""
+    names = list(names)
+    if name in names:
+        return name
+    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
+    hint = f"did you mean {nearest[0]!r}?" if nearest else f"known are {', '.join(names)}"
+    raise ValueError(f"unknown {kind} {name!r}: {hint}")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import BadTrajectoryError, as_many_as, checked
-from compare.engines.names import one_of
+from compare.engines.by_name import one_of
 from compare.engines.precision import LEAST_PRECISE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.tolerances import USUAL_TOLERANCE

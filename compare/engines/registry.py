@@ -9,9 +9,8 @@ from dataclasses import replace
 from importlib.metadata import entry_points
 from typing import NamedTuple
 
-from compare.engines.by_name import ByName
+from compare.engines.by_name import ByName, one_of
 from compare.engines.engine import Engine
-from compare.engines.names import one_of
 
 ENTRY_POINTS = "friction_discs.engines"
 """The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from types import MappingProxyType
 
-from compare.engines.by_name import ByName
+from compare.engines.by_name import ByName, one_of
 from compare.engines.engine import Engine
-from compare.engines.names import one_of
 from compare.engines.registry import Scheme, register_scheme
 
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import PHASES
+from compare.engines.by_name import one_of
 from compare.engines.engine import UnsupportedSystemError
-from compare.engines.names import one_of
 from compare.engines.registry import DECLARED
 from compare.output.outside_text import one_line, printable
 from reference_model.systems import PinOnDisc, System, finite_number
