@@ -18,7 +18,7 @@ from setuptools.build_meta import *  # noqa: F403  all hooks but those below
 PLATFORM = "manylinux_2_17_x86_64"
 """Of a wheel with kernels: they call memory and mathematics of the C library, as it has been since long before."""
 
-NEEDED = ["numba>=0.68", "numpy>=1.25", "scipy>=1.12"]
+NEEDED = ["numba>=0.68", "numpy>=1.26", "scipy>=1.12"]
 """What compiles them."""
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from compare.engines import ByName
-from compare.engines.code_files import code_below
+from compare.engines.outside.code_files import code_below
 
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 """This project's own."""

@@ -14,8 +14,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from compare.engines.code_files import MODULES, code_below
 from compare.engines.engine import Engine
+from compare.engines.outside.code_files import MODULES, code_below
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory

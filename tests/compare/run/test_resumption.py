@@ -11,7 +11,7 @@ import fake_studies
 import pytest
 
 from compare.engines import ByName, Engine, reference
-from compare.engines.code_files import code_below
+from compare.engines.outside.code_files import code_below
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program
