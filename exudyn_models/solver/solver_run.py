@@ -58,7 +58,10 @@ NOT_FINITE = "the state is not finite any more"
 """Where Exudyn itself would go on and report success."""
 
 FIRST_STEP = 1e-6
-"""Of DOPRI5, in units of time of the model; it finds the size of the others by itself."""
+"""Of DOPRI5, in units of time of the model; it finds the size of the others by itself.
+
+Runs with Exudyn's built-in contact fail if they start with the largest step. A factor of a thousand changes nothing.
+"""
 
 
 @dataclass

@@ -60,6 +60,13 @@ def test_any_slip_has_the_eigenvalues_of_the_plain_equations(system):
     assert largest_difference(eigenvalues(system, state.tolist()), np.linalg.eigvals(matrix)) < 1e-6
 
 
+def test_the_slowest_slip_is_damped_the_most():
+    """Across the slip friction is a damper of μN/|u|, and along it a constant force."""
+    slow = replace(PIN, disc_speed=0.0)
+    fastest = eigenvalues(slow, [PIN.offset, 0.0, 1e-11, 0.0]).real.min()
+    assert fastest == pytest.approx(-PIN.friction_force / PIN.mass / 1e-11, rel=1e-6)
+
+
 def test_without_friction_and_shaft_the_disc_is_an_oscillator_that_turns_freely():
     disc = replace(DISC, friction_force=0.0, shaft_damping=0.0)
     decay, k = disc.damping / disc.mass / 2.0, disc.natural_frequency

@@ -59,21 +59,13 @@ def motion(node, master_axes, disc_axes, points):
     )
 
 
-def sample_of_orientations():
-    """Every orientation of either body, also with the other turned back, and some of both."""
-    some = np.random.default_rng(1).integers(len(AXES), size=(24, 2))
-    still = np.eye(3)
-    for axes in AXES:
-        yield from ((axes, still), (still, axes), (axes, axes.T))
-    yield from ((AXES[i], AXES[j]) for i, j in some)
-
-
 @pytest.mark.parametrize("points", [None, 4])
 @NODES
 def test_all_orientations_of_both_bodies_give_the_same_motion(node, points):
+    """No smaller sample would do: a fault of rotations once spoilt 46 of these pairs, scattered over all of them."""
     expected = motion(node, np.eye(3), np.eye(3), points)
-    for axes in sample_of_orientations():
-        np.testing.assert_allclose(motion(node, *axes, points), expected, rtol=0.0, atol=1e-12)
+    found = [motion(node, *axes, points) for axes in product(AXES, AXES)]
+    np.testing.assert_allclose(found, np.broadcast_to(expected, (576, 18)), rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("inertia", [0.5, 0.0])

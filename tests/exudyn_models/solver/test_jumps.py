@@ -79,11 +79,12 @@ def test_no_jump_is_told_of_a_load_that_the_steps_resolve_nor_of_the_end_of_slip
 
 
 @SOLVERS
-def test_jumps_near_each_other_and_a_rise_within_a_step_are_told(solver):
+def test_jumps_near_each_other_a_small_one_and_a_rise_within_a_step_are_told(solver):
     jumps = 20.5 * STEP, 23.5 * STEP
     (message,), _ = run(lambda time: 400.0 * ((time > jumps[0]) + 2.0 * (time > jumps[1])), solver)
     assert "and powers do so in 2 steps of this run" in message
     assert len(run(rise(0.3), solver)[0]) == 1
+    assert len(run(lambda time: 800.0 + 80.0 * (time > jumps[0]), solver)[0]) == 1
 
 
 @pytest.mark.parametrize("step", range(5, 14))
