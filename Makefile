@@ -10,14 +10,14 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report findings test lint docs paper dist benchmarks clean
 
-report: $(VENV)/kernels
+report: $(VENV)/installed
 	$(BIN)/friction-discs report
 
 # Writes docs/findings.md and its numbers from the last report; .ci/run fails where a report deviates from them.
 findings: $(VENV)/installed
 	$(BIN)/python builders/findings.py write report/results.json
 
-test: $(VENV)/for-tests $(VENV)/kernels
+test: $(VENV)/for-tests
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/for-tests
@@ -40,7 +40,7 @@ dist: $(VENV)/installed
 	rm -rf dist
 	$(BIN)/python builders/release.py dist
 
-benchmarks: $(VENV)/for-tests $(VENV)/kernels
+benchmarks: $(VENV)/for-tests
 	$(BIN)/python benchmarks/exudyn_contact.py
 	$(BIN)/python benchmarks/exudyn_solvers.py
 	$(BIN)/python benchmarks/reference_evaluations.py
@@ -58,11 +58,6 @@ $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(INSTALL) '.[sweep]'
-	touch $@
-
-# The kernels of ensembles for this machine, which a wheel would bring; those that are there already stay.
-$(VENV)/kernels: $(VENV)/installed $(shell find reference_model -name '*.py')
-	$(BIN)/python builders/kernels.py
 	touch $@
 
 # Whoever only wants a report does not wait for what tests need.

@@ -1,8 +1,7 @@
 """Build wheel and source archive, and check that each holds what it should: ``python builders/release.py [DIST]``.
 
-The wheel has every file of the packages that is under version control, data and templates too, compiled kernels where
-there are any for this machine, and no other; the source archive has, besides, all that a reader needs to test and to
-build the documentation.
+The wheel has every file of the packages that is under version control, data and templates too, and no other. The
+source archive also has all that a reader needs to test and to build the documentation.
 """
 
 from __future__ import annotations
@@ -16,8 +15,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
-LEVELS = ("x86-64-v4", "x86-64-v3")
-KERNELS = ("run_pins", "run_rings", "run_points")
 REPOSITORY_ONLY = (".ci", ".github", ".gitignore")
 
 
@@ -31,9 +28,7 @@ def tracked() -> set[str]:
 
 def complaints_of_wheel(names: Iterable[str], files: set[str]) -> list[str]:
     """Return a sentence for each file of the packages that a wheel lacks, and for each that it has in vain."""
-    inside = {
-        name for name in names if not name.split("/")[0].endswith(".dist-info") and "/built/" not in name
-    }
+    inside = {name for name in names if not name.split("/")[0].endswith(".dist-info")}
     wanted = {name for name in files if name.split("/")[0] in PACKAGES}
     return _complaints("the wheel", wanted - inside, inside - wanted)
 
@@ -43,19 +38,6 @@ def complaints_of_archive(names: Iterable[str], files: set[str]) -> list[str]:
     inside = {name.partition("/")[2] for name in names}
     wanted = {name for name in files if name.split("/")[0] not in REPOSITORY_ONLY}
     return _complaints("the source archive", wanted - inside, set())
-
-
-def complaints_of_kernels(names: Iterable[str]) -> list[str]:
-    """Return a sentence for each kernel that a wheel for Linux lacks at a level, or has more than once."""
-    names = list(names)
-    found = {
-        (level, kernel): sum(f"/built/{level}/{kernel}-" in name for name in names)
-        for level in LEVELS
-        for kernel in KERNELS
-    }
-    return [
-        f"the wheel has {n} files of {kernel} for {level}" for (level, kernel), n in found.items() if n != 1
-    ]
 
 
 def _complaints(what: str, lacking: set[str], vain: set[str]) -> list[str]:
@@ -74,8 +56,6 @@ def main(folder: Path) -> int:
         in_archive = [each.name for each in opened_archive if each.isfile()]
     files = tracked()
     complaints = complaints_of_wheel(in_wheel, files) + complaints_of_archive(in_archive, files)
-    if "linux" in wheel.name:
-        complaints += complaints_of_kernels(in_wheel)
     for path, names in ((wheel, in_wheel), (archive, in_archive)):
         print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")
     print("\n".join(complaints) or "each holds what it should")

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import reference_model
-from reference_model.numerics import machine_code
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -41,26 +40,6 @@ def test_a_wheel_or_archive_that_lacks_a_file_or_has_one_too_many_is_noticed(rel
         ["x-1/compare/a.py", "x-1/compare/page.html", "x-1/PKG-INFO"], files
     )
     assert complaints == ["the source archive lacks docs/b.png"]
-
-
-def test_a_wheel_for_linux_has_every_kernel_once_for_every_level(release):
-    files = [
-        f"reference_model/built/{level}/{kernel}-0.o"
-        for level in machine_code.LEVELS
-        for kernel in ("run_pins", "run_rings", "run_points")
-    ]
-    assert not release["complaints_of_kernels"](files)
-    complaints = release["complaints_of_kernels"]([*files[1:], files[-1]])
-    assert complaints == [
-        "the wheel has 0 files of run_pins for x86-64-v4",
-        "the wheel has 2 files of run_points for x86-64-v3",
-    ]
-
-
-def test_what_compiles_kernels_for_a_wheel_is_what_runs_them():
-    backend = runpy.run_path(str(ROOT / "builders" / "backend.py"))
-    ranges = lower_ends(PROJECT["project"]["dependencies"])
-    assert lower_ends(backend["NEEDED"]).items() <= ranges.items()
 
 
 def lower_ends(requirements):

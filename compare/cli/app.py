@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Annotated
 try:
     import typer
 
-    from compare.cli.compiling import compile_kernels
     from compare.cli.door.command import (
         BAD_INPUT,
         FINE,
@@ -52,7 +51,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command("list", cls=Command)(list_studies)
-app.command("compile", cls=Command)(compile_kernels)
 for command in (report, diff, matrix, plan, errata):
     app.command(cls=Command)(command)
 app.add_typer(export_fmu, name="export-fmu")
@@ -122,7 +120,6 @@ def friction_discs(
       friction-discs sweep basin pin
       friction-discs export-fmu clutch --set plates=4 --output clutch.fmu
       friction-discs errata
-      friction-discs compile
     """
     if version:
         from compare.run.provenance import version_of

@@ -7,22 +7,28 @@ finding out their types, and Python 60 ns on unpacking and packing lists: ``taki
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-import numba.core.datamodel.models
 import numba.extending
 
-from reference_model.numerics.compiled_parts import Part
+from reference_model.numerics.compiled_once import compiled_for, digest_of
 
 extending: Any = numba.extending  # not typed throughout
+
+SOURCES = Path(__file__).parents[1]
+"""The folder of all sources of a compiled function."""
+
+digest_of(SOURCES)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compiled(function: Function) -> Function:
-    """Compile ``function`` into what is compiled and calls it; and by itself, and keep it, if Python calls it."""
-    return cast(Function, Part(function, targetoptions={"error_model": "numpy"}))
+    """Compile ``function`` into compiled functions that call it; ``taking_lists`` compiles it for Python."""
+    return cast(Function, numba.njit(error_model="numpy")(function))
 
 
 class Floats(numba.types.UniTuple):
@@ -37,10 +43,11 @@ def _tuple_of_list(kind: Floats, argument: Any, context: Any) -> Any:
     return extending.NativeValue(value, is_error=api.c_api_error())
 
 
-extending.register_model(Floats)(numba.core.datamodel.models.UniTupleModel)
+extending.register_model(Floats)(extending.models.UniTupleModel)
 extending.unbox(Floats)(_tuple_of_list)
 
 
+@cache
 def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
     """Return a compiled function of tuples as one of lists of as many floats, without numba's choice by type.
 
@@ -54,4 +61,5 @@ def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any
     signature = tuple(
         floats(numba.float64, size) if isinstance(size, int) else kinds.get(size, size) for size in sizes
     )
-    return cast(Callable[..., Any], cast(Any, function).called_by_python.compile(signature))
+    dispatcher = compiled_for(signature, cast(Any, function).py_func, SOURCES)
+    return cast(Callable[..., Any], dispatcher.get_overload(signature))

@@ -1,86 +1,168 @@
-"""Functions that Python calls: compiled once on a machine, whoever needs them, and kept on disk.
+"""Functions that Python calls: compiled once on a machine and kept on disk while their sources stay the same.
 
-Of several processes that need one at once, the first compiles it and the others wait for that and load it.
+numba's cache checks only the file of the function itself, but functions and constants of other files are compiled
+into it. So each package keeps its compiled functions in a folder named after the content of all of its sources.
 """
 
 from __future__ import annotations
 
 import gc
+import hashlib
 import multiprocessing
+import shutil
 import sys
+import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from numba.core.registry import CPUDispatcher
-from numba.core.sigutils import normalize_signature
-
-from reference_model.numerics.compiled_cache import known_by_content
-from reference_model.numerics.vector_width import WideCompiler
-
-LONG = 1.0
-"""Time in s after which a terminal is told that something is being compiled, here or by another process."""
-
+import numba
 
 with suppress(ImportError):  # of Windows
     import fcntl
 
+LONG = 1.0
+"""Time in s after which a line on standard error says that something is being compiled; loading takes less."""
 
-class Kept(CPUDispatcher):
-    """A compiled function that is taken from disk if all that it is made of is as it was."""
+VERSIONS = 4
+"""Number of versions of the sources for which compiled functions are kept."""
 
-    def __init__(
-        self,
-        py_func: Callable[..., Any],
-        locals: dict[str, Any] | None = None,
-        targetoptions: dict[str, Any] | None = None,
-    ) -> None:
-        super().__init__(
-            py_func,
-            locals or {},
-            {"nopython": True, "boundscheck": None, **(targetoptions or {})},
-            WideCompiler,
+UNUSED = 86_400.0
+"""Age in s from which older versions are deleted; a running process may still need a younger one."""
+
+config: Any = numba.config  # built from the environment, so type checkers do not know its names
+
+_one_at_a_time = threading.Lock()
+_told_already = threading.Lock()
+
+
+class CompiledOnce:
+    """A function without result that Python calls, compiled for the types of its arguments when they first occur.
+
+    Parameters
+    ----------
+    function : callable
+        A function that numba can compile. It runs without Python's lock.
+    package : Path
+        The folder of all sources from which the function is compiled.
+
+    Attributes
+    ----------
+    kinds : dict
+        Compiled functions by the types of their arguments.
+
+    """
+
+    def __init__(self, function: Callable[..., None], package: Path) -> None:
+        self.py_func, self.package = function, package
+        self.kinds: dict[tuple[Any, ...], Any] = {}
+        self.__doc__ = function.__doc__
+        digest_of(package)
+
+    def __call__(self, *arguments: Any) -> None:
+        """Call it; the first call with arguments of new types compiles it or loads it from disk."""
+        kind = tuple(map(numba.typeof, arguments))
+        if kind not in self.kinds:
+            self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
+        self.kinds[kind](*arguments)
+
+
+def compiled_for(
+    kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
+) -> Any:
+    """Return numba's dispatcher of a function, compiled for arguments of these types or loaded from disk.
+
+    Threads and processes that need it at the same time wait for the first one and load its result.
+    """
+    with _one_at_a_time, ExitStack() as stack:
+        folder = folder_of(package)
+        if folder:
+            stack.enter_context(_locked(Path(folder) / f"{function.__name__}.lock"))
+        stack.enter_context(_told())
+        stack.enter_context(_without_garbage_collection())
+        stack.enter_context(_cached_in(folder))
+        compiling = numba.njit(kind, error_model="numpy", nogil=nogil, cache=bool(folder))
+        return compiling(function)
+
+
+@contextmanager
+def _cached_in(folder: str) -> Iterator[None]:
+    """Let numba keep functions in ``folder`` that are decorated meanwhile."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = folder
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+@cache
+def digest_of(package: Path) -> str:
+    """Return a digest of all sources of a package.
+
+    The first call must come when the package is imported: compiled functions belong to the sources of that moment.
+    """
+    digest = hashlib.sha256()
+    for file in sorted(package.rglob("*.py")):
+        digest.update(
+            f"{file.relative_to(package)} {hashlib.sha256(file.read_bytes()).hexdigest()}\n".encode()
         )
-        self.enable_caching()
-        known_by_content(self)
+    return digest.hexdigest()[:16]
 
-    def compile(self, sig: Any) -> Any:
-        """Return the compiled function for arguments of these types."""
-        arguments, _ = normalize_signature(sig)
-        if arguments in self.overloads or self._is_kept(sig):  # looking at the disk takes a millisecond
-            return super().compile(sig)
-        folder = Path(self._files.cache_path)
-        lock = folder / f"{self._files._cache_file._index_name}.lock"
-        with _told(folder), _locked(lock), _without_garbage_collection():
-            return super().compile(sig)  # or what another process has kept by now
 
-    def _is_kept(self, sig: Any) -> bool:
-        target: Any = self.targetctx
-        return self._files._index_key(sig, target.codegen()) in self._files._cache_file._load_index()
+@cache
+def folder_of(package: Path) -> str:
+    """Return the folder of compiled functions for the present sources of a package, "" if none is writable.
 
-    @property
-    def _files(self) -> Any:
-        """The cache, numba's own."""
-        return self._cache  # type: ignore[attr-defined]
+    It lies in the folder that ``NUMBA_CACHE_DIR`` names, or else with the sources, or in the user's cache if the
+    sources are read-only.
+    """
+    for place in _places(package):
+        folder = place / f"{package.name}-{digest_of(package)}"
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+            folder.touch()
+            _delete_old(place, package)
+            return str(folder)
+    return ""
+
+
+def _places(package: Path) -> Iterator[Path]:
+    if config.CACHE_DIR:
+        yield Path(config.CACHE_DIR)
+        return
+    yield package / "__pycache__"
+    with suppress(RuntimeError):  # the user has no home folder
+        yield Path.home() / ".cache" / "friction-discs"
+
+
+def _delete_old(place: Path, package: Path) -> None:
+    with suppress(OSError):  # another process deletes them too
+        used = sorted((folder.stat().st_mtime, folder) for folder in place.glob(f"{package.name}-*"))
+        for last, folder in used[:-VERSIONS]:
+            if time.time() - last > UNUSED:
+                shutil.rmtree(folder, ignore_errors=True)
 
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes, which ends with its owner. Where there is none, work may be done twice."""
+    """Hold a lock between processes, which ends with its owner. Without one, work may be done twice."""
     with ExitStack() as held:
         with suppress(OSError, NameError):
-            lock.parent.mkdir(parents=True, exist_ok=True)
             file = held.enter_context(lock.open("w"))
             fcntl.flock(file, fcntl.LOCK_EX)
         yield
 
 
 @contextmanager
-def _told(folder: Path) -> Iterator[None]:
-    """Tell a terminal, once, if compiling takes long, or waiting for a process that compiles."""
-    timer = threading.Timer(LONG, _tell, (folder,))
+def _told() -> Iterator[None]:
+    """Print a line, once in a process, if compiling takes long; worker processes are silent."""
+    timer = threading.Timer(LONG, _tell)
     timer.daemon = True
     timer.start()
     try:
@@ -89,16 +171,10 @@ def _told(folder: Path) -> Iterator[None]:
         timer.cancel()
 
 
-_told_already = threading.Lock()
-
-
-def _tell(folder: Path) -> None:
-    if (
-        sys.stderr.isatty()
-        and multiprocessing.parent_process() is None
-        and _told_already.acquire(blocking=False)
-    ):
-        print(f"Compiling for this machine, once: it is kept in {folder}", file=sys.stderr)
+def _tell() -> None:
+    if multiprocessing.parent_process() is None and _told_already.acquire(blocking=False):
+        text = "Compiling for this machine, once for each kind of system (up to 15 s of processor time) ..."
+        print(text, file=sys.stderr, flush=True)
 
 
 @contextmanager

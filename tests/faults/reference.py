@@ -1,4 +1,4 @@
-"""The reference about which mistakes are made: where kernels come compiled, by these, for much is simulated.
+"""The reference about which mistakes are made: by compiled kernels if they serve many runs, for much is simulated.
 
 Plain and compiled runs are two implementations of one physics, and agree within the tolerance. What a mistake changes
 must not hide behind the tolerance, of which compiled runs use up more.
@@ -17,7 +17,7 @@ SHARE = 0.1
 """Of the tolerance, for runs that may be compiled."""
 
 POINTS = (None, 6)
-"""Of contacts whose kernels come compiled: to compile one for another number takes longer than to do without."""
+"""Of contacts whose kernels serve many runs: to compile one for another number takes longer than to do without."""
 
 
 def simulate(

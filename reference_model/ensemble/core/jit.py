@@ -7,70 +7,65 @@ nothing here may be reordered or contracted (``fastmath`` stays off; FMA would m
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import numba.extending
 
-from reference_model.numerics.compiled_once import Kept
-from reference_model.numerics.compiled_parts import Part, PartCompiler
-from reference_model.numerics.machine_code import kind_of, machine_code
+from reference_model.numerics.compiled_once import CompiledOnce
 
-PART: Any = {"error_model": "numpy", "pipeline_class": PartCompiler}
+extending: Any = numba.extending  # not typed throughout
+
+PART: Any = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""For functions that only compiled code calls: wrappers for Python would take time to compile."""
+
 INLINED: Any = {**PART, "forceinline": True}
 """Of overloads, to be compiled as what is ``scalar`` or ``inlined``."""
+
+SOURCES = Path(__file__).parents[2]
+"""The folder of all sources of a kernel; some of its constants stand outside of ``ensemble``."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def inlined(function: Function) -> Function:
     """Compile ``function`` into each of its callers, so that a loop over lanes that calls it can be vectorised."""
-    return cast(Function, Part(function, targetoptions={"error_model": "numpy", "forceinline": True}))
+    return cast(Function, extending.register_jitable(**INLINED)(function))
 
 
 def scalar(function: Function) -> Function:
-    """Compile ``function`` as one that its callers call: it is rare, and large."""
-    return cast(Function, Part(function, targetoptions={"error_model": "numpy"}))
+    """Compile ``function`` as one that its callers call: it is large, or has several callers.
+
+    numba compiles it again with each function that calls it, directly or through others. So in a chain of calls only
+    some functions should be scalar, and the others ``written_out``.
+    """
+    return cast(Function, extending.register_jitable(**PART)(function))
 
 
 def written_out(function: Function) -> Function:
-    """Write ``function`` into its one caller before that is compiled, with the functions that it is handed over.
+    """Write ``function`` into its only caller before numba compiles that, with the functions passed to it.
 
-    So it is compiled once, where one that is called would be compiled by itself and then again with its caller.
+    So it is compiled once. A function that is called would be compiled by itself and then again with its caller.
     """
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 
-class Outermost:
-    """A function that Python calls: as it came with the package, or else compiled at its first call and kept.
+def outermost(function: Callable[..., None]) -> CompiledOnce:
+    """Compile ``function`` as one that Python calls."""
+    return CompiledOnce(function, SOURCES)
 
-    Attributes
-    ----------
-    py_func : function
-        As it was written.
-    kinds : dict
-        What it is compiled to, for each kind of arguments with which it was called.
 
+@extending.intrinsic  # type: ignore[untyped-decorator]
+def wide_vectors(typing: Any) -> Any:
+    """Let the calling function use the widest vectors of the processor.
+
+    LLVM uses 256 bits on many processors that have 512, because wide vectors once slowed their clock. Lanes full of
+    arithmetic gain more than that costs (figures: ``benchmarks/ensemble.py``). Results do not depend on the width.
     """
 
-    def __init__(self, function: Callable[..., None]) -> None:
-        self.py_func = function
-        self.kinds: dict[str, Callable[..., None]] = {}
-        self.__doc__ = function.__doc__
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')  # ``add`` takes no value
+        return context.get_dummy_value()
 
-    def __call__(self, *arguments: Any) -> None:
-        """Call it without Python's lock; the arguments are numbers, C-contiguous arrays, and tuples of these."""
-        kind = kind_of(arguments)
-        if kind not in self.kinds:
-            self.kinds[kind] = machine_code(self.py_func, kind) or self.compiled_here
-        self.kinds[kind](*arguments)
-
-    @cached_property
-    def compiled_here(self) -> Kept:
-        """The function, compiled for this machine, or taken from what an earlier process left."""
-        return Kept(self.py_func, targetoptions={"error_model": "numpy", "nogil": True})
-
-
-def outermost(function: Callable[..., None]) -> Outermost:
-    """Let Python call ``function``, compiled."""
-    return Outermost(function)
+    return numba.void(), generate

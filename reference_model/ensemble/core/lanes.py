@@ -19,7 +19,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.records import LANES
 from reference_model.systems import FloatArray
 
@@ -85,6 +85,7 @@ def run(
         where results go.
 
     """
+    wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
     active = 0

@@ -168,12 +168,12 @@ def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, n
     return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
 
 
-@scalar
+@written_out
 def _ring_strides(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw) -> None:
     disc_stride_with(lanes, memory, lane, law, ring_rates, ring_edge, collocate_ring)
 
 
-@scalar
+@written_out
 def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw) -> None:
     disc_stride_with(lanes, memory, lane, law, points_rates, no_edge, collocate_points)
 
@@ -181,7 +181,7 @@ def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw
 # The compiler takes functions from globals only: so there are those of rings and of points.
 
 
-@scalar
+@written_out
 def _load_ring(
     lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, aims: DiscAims
 ) -> bool:
@@ -198,12 +198,12 @@ def _advance_ring_alone(lanes: DiscLanes, around: Tuple) -> None:
     advance_with(lanes, around, ring_rates, ring_edge, 0.0, 1)
 
 
-@scalar
+@written_out
 def _attend_ring(lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims) -> bool:
     return attend_with(lanes, memory, lane, aims, _ring_strides, ring_slow, _ring_shows)
 
 
-@scalar
+@written_out
 def _load_points(
     lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, aims: DiscAims
 ) -> bool:
@@ -220,7 +220,7 @@ def _advance_points_alone(lanes: DiscLanes, around: Tuple) -> None:
     advance_with(lanes, around, points_rates, no_edge, WATCHED_STEP, 1)
 
 
-@scalar
+@written_out
 def _attend_points(lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims) -> bool:
     return attend_with(lanes, memory, lane, aims, _points_stride, points_slow, _points_show)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from reference_model.ensemble.core.contact_shares import LEAST
-from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import Record, Row, Rows, at, put
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
@@ -112,6 +112,7 @@ def advance_with(
     Where the step crosses the ``edge`` of friction, an error estimate would tell little: it is to end there. The same
     at the end. A lane wants to be attended, too, where steps are smaller than ``small_step``.
     """
+    wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):
         state, k = state_at(now, lane), rates_at(now, lane)

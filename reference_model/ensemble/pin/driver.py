@@ -12,7 +12,7 @@ from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_step
 from reference_model.ensemble.end_states import Ensemble, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
-from reference_model.ensemble.pin.memory import nothing_known
+from reference_model.ensemble.pin.memory import aims_of, nothing_known
 from reference_model.ensemble.pin.trapping import known_ends
 from reference_model.ensemble.recording import Recording
 from reference_model.systems import FloatArray, PinOnDisc
@@ -41,7 +41,7 @@ def simulate_pins(
     nowhere = room_for(0, pin.state_size)
 
     def run(first: int, last: int) -> None:
-        run_pins(task, local, early_end, False, known, nowhere, results, first, last)
+        run_pins(task, aims_of(local, early_end, False, known, nowhere), results, first, last)
 
     in_chunks(run, n, threads)
     return results.ensemble(varied.get("friction_force", pin.friction_force))
@@ -57,7 +57,7 @@ def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: R
     ) -> Results:
         results = Results.empty(len(starts), pin.state_size)
         task = PinTask(table, starts, paces, durations)
-        run_pins(task, local, False, False, known, checkpoints, results, 0, len(starts))
+        run_pins(task, aims_of(local, False, False, known, checkpoints), results, 0, len(starts))
         return results
 
     recording.follow(run, run, state, 0.0)

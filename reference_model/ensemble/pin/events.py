@@ -7,7 +7,7 @@ import math
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
 from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import ACCURACY, converged
-from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import (
     PinLaw,
     creeps_by_turns,
@@ -79,7 +79,7 @@ AFTER_START = 1e-3
 """In units of time: a crossing before it is the start itself, on the section but for rounding."""
 
 
-@scalar
+@written_out
 def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
     """See to what the flag of a lane says; return whether its trajectory ends here."""
     law = law_of(lanes, lane)
@@ -147,7 +147,7 @@ def in_well(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
     return depth(place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
 
 
-@scalar
+@written_out
 def turn_made(
     lanes: PinLanes, memory: PinMemory, lane: int, step: DenseOutput, u: float, law: PinLaw, aims: Aims
 ) -> bool:
@@ -210,7 +210,7 @@ def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aim
     return True
 
 
-@scalar
+@written_out
 def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims: Aims) -> bool:
     """Bring the pin to rest if what is left of slip can be told; return whether the trajectory ends."""
     z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP, Checkpoints
+from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
 from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.jit import inlined, outermost, scalar
+from reference_model.ensemble.core.jit import inlined, outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
-from reference_model.ensemble.core.stepping.linear import complex_zeros
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
 from reference_model.ensemble.pin.end_states import well_of
 from reference_model.ensemble.pin.events import attend, rest
@@ -42,7 +40,6 @@ from reference_model.ensemble.pin.memory import (
     put_state,
     take_checkpoint,
 )
-from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
@@ -77,7 +74,7 @@ class PinTask(NamedTuple):
     durations: FloatArray
 
 
-@scalar
+@written_out
 def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTask, aims: Aims) -> bool:
     """Put the start of a trajectory into the trial of a lane."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
@@ -168,28 +165,8 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
 
 
 @outermost
-def run_pins(
-    task: PinTask,
-    tolerance: float,
-    early: bool,
-    once: bool,
-    known: NDArray[Any],
-    checkpoints: Checkpoints,
-    results: Results,
-    first: int,
-    last: int,
-) -> None:
-    """Run the trajectories ``first`` to ``last`` (excluded).
-
-    ``known`` (1,) are ``KnownEnds``; the others are the items of ``Aims``.
-    """
-    series = complex_zeros(6 * (MOST_TERMS + 2)).reshape(6, MOST_TERMS + 2)
-    _run_with(task, Aims(tolerance, early, once, known[0], series, checkpoints), results, first, last)
-
-
-@inlined
-def _run_with(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
-    """Do so; in a function of its own, which costs time to compile, the rounds of pins are a tenth faster."""
+def run_pins(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
+    """Run the trajectories ``first`` to ``last`` (excluded)."""
     run(
         load, advance, advance_alone, attend, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, aims, results,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import LANES, Record, Row, Rows, at, put
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output, size_of
@@ -79,6 +79,7 @@ FIRST_STEP = 0.3
 @written_out
 def _advance_in(lanes: PinLanes, count: int) -> None:
     """Make a trial step in the first ``count``; where its error is too large the trial is the old state."""
+    wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):
         state, k, h = state_at(now, lane), rates_at(now, lane), now.step[lane]

@@ -16,6 +16,7 @@ from reference_model.ensemble.core.records import Record, fill, layout
 from reference_model.ensemble.core.window import NO_WINDOW, Measures, Window, measured, see_radius
 from reference_model.ensemble.pin.end_states import Form
 from reference_model.ensemble.pin.lanes import Moment, PinLanes, place_at, slip_at
+from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray
 
 OF_TURN, OF_RELEASE = 1, 2
@@ -121,6 +122,12 @@ class Aims(NamedTuple):
 def nothing_known() -> NDArray[Any]:
     """Return ``KnownEnds`` of which nothing is known, shape (1,)."""
     return np.zeros(1, layout(KnownEnds))
+
+
+def aims_of(tolerance: float, early: bool, once: bool, known: NDArray[Any], checkpoints: Checkpoints) -> Aims:
+    """Return the aims of one call of the kernel, with room for series; ``known``, shape (1,), are ``KnownEnds``."""
+    series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
+    return Aims(tolerance, early, once, known[0], series, checkpoints)
 
 
 @inlined

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import CREEP, PinLaw, pull
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.systems import FloatArray
@@ -115,7 +115,7 @@ def creeping_ends(z: complex, law: PinLaw) -> complex:
     return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 
 
-@scalar
+@written_out
 def begin_slip(
     z: complex, law: PinLaw, tolerance: float, longest: float, work: ComplexArray
 ) -> tuple[complex, complex, float, float]:

@@ -11,7 +11,7 @@ x is largest, are followed for one turn together with the motion itself by the c
 from __future__ import annotations
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.jit import scalar, written_out
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.stepping.dense_output import size_of
 from reference_model.ensemble.core.stepping.linear import (
@@ -37,7 +37,7 @@ COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 
 """Of each stage: how far its rates carry the next, and their weight in the step."""
 
 
-@scalar
+@written_out
 def orbit_attracts(
     z: complex, v: complex, period: float, law: PinLaw, came: tuple[float, float, float], near: float
 ) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.jit import written_out
 from reference_model.ensemble.core.laws import DiscLaw, PinLaw, pull
 from reference_model.ensemble.core.stepping.implicit import (
     WORTH,
@@ -26,7 +26,7 @@ from reference_model.ensemble.pin.lanes import (
 from reference_model.ensemble.pin.memory import PinMemory
 
 
-@scalar
+@written_out
 def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     """Put an implicit step in the place of the one on trial, with its flags, if that brings the pin much further."""
     now, trial = lanes.now, lanes.trial

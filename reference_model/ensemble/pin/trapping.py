@@ -23,7 +23,7 @@ from reference_model.ensemble.checkpoints import from_the_start, room_for
 from reference_model.ensemble.end_states import EndState, Results
 from reference_model.ensemble.parameters import parameter_table
 from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
-from reference_model.ensemble.pin.memory import nothing_known
+from reference_model.ensemble.pin.memory import aims_of, nothing_known
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc
 
@@ -141,7 +141,8 @@ def _run(
     results = Results.empty(len(starts), pin.state_size)
     task = PinTask(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
     checkpoints = room_for(0, pin.state_size)
-    run_pins(task, TOLERANCE, early, once, nothing_known(), checkpoints, results, 0, len(starts))
+    aims = aims_of(TOLERANCE, early, once, nothing_known(), checkpoints)
+    run_pins(task, aims, results, 0, len(starts))
     return results
 
 

@@ -80,15 +80,6 @@ def test_help_starts_without_the_heavy_libraries():
     assert process.stdout.splitlines()[-1] == "[]"
 
 
-def test_compile_makes_every_kernel_once(monkeypatch, capsys):
-    made = []
-    every = [(name, lambda name=name: made.append(name)) for name in ("pins", "rings")]
-    monkeypatch.setattr("compare.run.kernels.kernels", lambda: iter(every))
-    assert cli.status(["compile"]) == 0
-    assert made == ["pins", "rings"]
-    assert capsys.readouterr() == ("All 2 kernels are compiled and kept.\n", "")
-
-
 def test_errata_prints_both_forms_and_both_errors(capsys):
     assert cli.status(["errata"]) == 0
     out = capsys.readouterr().out

@@ -8,7 +8,6 @@ import typer
 from processes import ROOT
 
 import compare.cli.sweep.run
-import compare.run.kernels
 import compare.run.runner
 import compare.run.workers
 import compare.sweep.store.files
@@ -81,7 +80,6 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr("fmu_models.export", stop)
     monkeypatch.setattr("compare.report.machines.results_json.read_results", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
-    monkeypatch.setattr(compare.run.kernels, "kernels", stop)
 
 
 def at_hand(arguments):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from reference_model import DiscOnDisc, PinOnDisc, simulate
-from reference_model.motion import stepper as stepping
 
 CREEPING = PinOnDisc(mass=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0)
 HARDENING = PinOnDisc(

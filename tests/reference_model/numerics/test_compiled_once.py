@@ -1,42 +1,141 @@
-"""Of those that need a compiled function at once the first compiles it and the others wait; a terminal is told."""
+"""Compiled functions are kept on disk for the sources that they are made of; one process compiles, others load."""
 
-import importlib
+import os
 import subprocess
 import sys
 import threading
 import time
 from pathlib import Path
 
+import numba
 import pytest
 
 from reference_model.numerics import compiled_once
-from reference_model.numerics.compiled_once import Kept
+
+FACTOR = "FACTOR = {}\n"
+KERNEL = """
+from pathlib import Path
+from reference_model.numerics.compiled_once import CompiledOnce
+from a_package_of_a_test.factor import FACTOR
+
+def scale(x):
+    x[0] *= FACTOR
+
+SCALE = CompiledOnce(scale, Path(__file__).parent)
+"""
+RUN = """
+import numpy as np
+from a_package_of_a_test.kernel import SCALE
+from reference_model.numerics import compiled_once
+compiled_once.LONG = {long}
+x = np.ones(1)
+SCALE(x)
+(dispatcher,) = SCALE.kinds.values()
+print(x[0], sum(dispatcher.stats.cache_hits.values()), sum(dispatcher.stats.cache_misses.values()))
+"""
 
 
 @pytest.fixture
-def function(tmp_path, monkeypatch):
-    """Return a function of a module with an empty cache."""
-    (tmp_path / "kept_for_a_test.py").write_text("def half(x):\n    return 0.5 * x\n")
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.delitem(sys.modules, "kept_for_a_test", raising=False)
-    return importlib.import_module("kept_for_a_test").half
+def package(tmp_path):
+    """Return a package of which a kernel takes a factor from another file."""
+    folder = tmp_path / "a_package_of_a_test"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    (folder / "factor.py").write_text(FACTOR.format(2.0))
+    (folder / "kernel.py").write_text(KERNEL)
+    return folder
 
 
-def test_who_needs_what_another_process_compiles_waits_and_loads_it(function):
-    other, waiting = Kept(function), Kept(function)
-    assert other(3.0) == 1.5
-    index = Path(other._cache._cache_file._index_path)
-    away, lock = index.with_suffix(".away"), index.with_suffix(".nbi.lock")
-    index.rename(away)
-    found = []
-    thread = threading.Thread(target=lambda: found.append(waiting(3.0)))
-    with compiled_once._locked(lock):  # as if the other were not done yet
-        thread.start()
-        thread.join(0.3)
-        away.rename(index)
-    thread.join()
-    assert found == [1.5]
-    assert sum(waiting.stats.cache_misses.values()) == 0
+def start(package, long=600.0, **environment):
+    around = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(package.parent)}
+    around.pop("NUMBA_CACHE_DIR", None)
+    return subprocess.Popen(
+        [sys.executable, "-c", RUN.format(long=long)],
+        env={**around, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def printed(process):
+    """Return the factor, whether the kernel was loaded, and whether it was compiled."""
+    output, errors = process.communicate()
+    assert process.returncode == 0, errors
+    factor, loaded, made = output.split()
+    return float(factor), loaded == "1", made == "1"
+
+
+def test_a_kernel_is_compiled_again_if_another_file_of_its_package_changes(package):
+    compiled, loaded = (False, True), (True, False)
+    assert printed(start(package)) == (2.0, *compiled)
+    assert printed(start(package)) == (2.0, *loaded)
+    (package / "factor.py").write_text(FACTOR.format(3.0))
+    assert printed(start(package)) == (3.0, *compiled)
+    (package / "factor.py").write_text(FACTOR.format(2.0))
+    assert printed(start(package)) == (2.0, *loaded)
+
+
+def test_of_processes_that_need_a_kernel_at_once_one_compiles_and_the_others_load(package):
+    runs = [printed(each) for each in [start(package) for _ in range(3)]]
+    assert sorted(runs) == [(2.0, False, True), (2.0, True, False), (2.0, True, False)]
+
+
+def test_a_package_that_cannot_be_written_keeps_kernels_in_the_cache_of_the_user(package, tmp_path):
+    (package / "__pycache__").touch()  # no folder can be made in it, whoever runs the test
+    home = {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
+    for expected in ((2.0, False, True), (2.0, True, False)):
+        assert printed(start(package, **home)) == expected
+    assert list((tmp_path / "home" / ".cache" / "friction-discs").rglob("*.nbi"))
+
+
+def test_a_kernel_runs_where_nothing_can_be_kept(package, tmp_path):
+    (tmp_path / "file").touch()
+    for _ in range(2):
+        run = start(package, NUMBA_CACHE_DIR=str(tmp_path / "file"))
+        assert printed(run) == (2.0, False, True)
+
+
+@pytest.mark.parametrize(("long", "lines"), [(0.0, 1), (600.0, 0)])
+def test_a_line_says_that_something_is_compiled_if_that_takes_long(package, long, lines):
+    _, errors = start(package, long).communicate()
+    assert errors.count("Compiling for this machine") == len(errors.splitlines()) == lines
+
+
+def test_a_line_is_printed_once_in_a_process(monkeypatch, capsys):
+    monkeypatch.setattr(compiled_once, "_told_already", threading.Lock())
+    for _ in range(2):
+        compiled_once._tell()
+    assert capsys.readouterr().err.count("Compiling") == 1
+
+
+def test_numba_keeps_functions_of_others_where_it_did(package, tmp_path, monkeypatch):
+    def fill(x):
+        x[0] = 1.0
+
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    compiled_once.compiled_for((numba.float64[::1],), fill, package)
+    assert str(tmp_path) == numba.config.CACHE_DIR
+    assert list(tmp_path.glob(f"{package.name}-*/**/*.nbi"))
+
+
+@pytest.mark.parametrize(
+    ("days", "kept"),
+    [((0.1, 0.3, 0.6, 0.9, 1.2, 1.5), 4), ((10.0, 11.0, 12.0, 13.0, 14.0), compiled_once.VERSIONS - 1)],
+    ids=["used during the last day", "the newest"],
+)
+def test_versions_of_the_sources_that_nobody_used_for_long_are_deleted(days, kept, tmp_path, monkeypatch):
+    package = tmp_path / "package"
+    package.mkdir()
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    for age in days:
+        old = tmp_path / f"package-{age}"
+        old.mkdir()
+        last = time.time() - 86_400.0 * age
+        os.utime(old, (last, last))
+    now = Path(compiled_once.folder_of(package))
+    expected = {now.name, *(f"package-{age}" for age in days[:kept])}
+    assert {path.name for path in tmp_path.glob("package-*")} == expected
 
 
 HOLDS_A_LOCK = """
@@ -50,7 +149,7 @@ with _locked(Path(sys.argv[1])):
 
 
 def test_a_lock_ends_with_a_failure_and_with_a_process_that_is_killed(tmp_path):
-    lock = tmp_path / "new" / "lock"
+    lock = tmp_path / "lock"
     with pytest.raises(KeyError), compiled_once._locked(lock):
         raise KeyError
     arguments = [sys.executable, "-c", HOLDS_A_LOCK, str(lock)]
@@ -63,19 +162,5 @@ def test_a_lock_ends_with_a_failure_and_with_a_process_that_is_killed(tmp_path):
 
 
 def test_where_no_lock_can_be_it_is_done_without(tmp_path):
-    (tmp_path / "file").touch()
-    with compiled_once._locked(tmp_path / "file" / "lock"):
+    with compiled_once._locked(tmp_path / "nowhere" / "lock"):
         pass
-
-
-def test_a_terminal_is_told_once_where_it_is_kept(function, monkeypatch, capsys):
-    monkeypatch.setattr(compiled_once, "_told_already", threading.Lock())
-    monkeypatch.setattr(compiled_once, "LONG", 0.0)
-    Kept(function)(1.0)
-    assert capsys.readouterr().err == ""  # no terminal
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    for number in (1, 1j):
-        Kept(function)(number)
-    told = capsys.readouterr().err
-    assert told.count("Compiling") == 1
-    assert str(Kept(function)._cache.cache_path) in told

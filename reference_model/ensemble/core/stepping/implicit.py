@@ -197,7 +197,7 @@ def pin_friction(
     return -ux / s, -uy / s, 0.0, s
 
 
-@scalar
+@written_out
 def collocate_pin(
     z: complex,
     angle: float,
@@ -227,7 +227,7 @@ def collocate_ring(
     return float(collocate_with(z, angle, start, step, law, w, f, power, ring_friction))
 
 
-@scalar
+@written_out
 def collocate_points(
     z: complex,
     angle: float,
