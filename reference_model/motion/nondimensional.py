@@ -27,19 +27,21 @@ class Units:
     def of(cls, system: System, state: FloatArray) -> Units:
         """Return those of the motion of ``system`` from ``state``.
 
-        Time goes by the fastest of springs and master disc; without them by the dampers of the support; and without
-        these by the time in which friction takes the slip away. Length goes by the motion of the centre: a fast spin
-        must not hide it. Hardening and stop make time faster where the motion may reach them, and length smaller as
-        much, which leaves the unit of speed.
+        Time goes by the fastest of springs and master disc; without them by the dampers; and without these by the
+        time in which friction takes the slip away. Length goes by the motion of the centre: a fast spin must not
+        hide it. Hardening and stop make time faster where the motion may reach them, and length smaller as much,
+        which leaves the unit of speed.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
         speed = math.hypot(*state[velocities : velocities + 2])
         slip = speed
+        decay = system.damping / system.mass
         if isinstance(system, DiscOnDisc):
             gyration = math.sqrt(system.polar_inertia / system.mass)
             slip = math.hypot(speed, gyration * (state[5] - system.disc_speed))
-        rate = max(system.natural_frequency, abs(system.disc_speed)) or system.damping / system.mass
+            decay = max(decay, system.shaft_damping / system.polar_inertia)
+        rate = max(system.natural_frequency, abs(system.disc_speed)) or decay
         place = max(math.hypot(*state[:2]), abs(system.offset))
         support = Support.of(system).scaled(1.0 / system.mass)
         hard = 0.0

@@ -46,6 +46,9 @@ INTERPOLANT_ORDER = 7
 MOST_PARTS = 8
 """Shorter steps to begin with in place of one; stability allows no more, unless slip ends within the step."""
 
+SPOILT = 1.5
+"""Stiffness of a step from which what decays fast may spoil the interpolant, whatever its last term is."""
+
 
 class StepError(SimulationError):
     """An integrator could not take a step."""
@@ -289,12 +292,12 @@ class Stepper:
         dense = solver.dense_output()
         self._run.evaluations += solver.nfev - evaluations
         tolerated = self._tolerated(solver.y)
-        error = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated))
-        if error > AS_GOOD:
+        error, stiffness = LAST_TERM * float(np.max(abs(dense.F[-1]) / tolerated)), solver.stiffness
+        if error > AS_GOOD or stiffness > SPOILT:
             error = self._defect(dense, tolerated)
         if error <= AS_GOOD:
             return dense
-        parts = 1 + math.ceil(min(max(error ** (1.0 / INTERPOLANT_ORDER), solver.stiffness), MOST_PARTS))
+        parts = 1 + math.ceil(min(max(error ** (1.0 / INTERPOLANT_ORDER), stiffness), MOST_PARTS))
         return self._finer(solver, parts)
 
     def _defect(self, dense: DenseOutput, tolerated: FloatArray) -> float:
