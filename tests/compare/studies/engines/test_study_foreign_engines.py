@@ -20,7 +20,7 @@ from compare.run.runner import run
 from compare.studies import STUDIES
 from compare.studies.engines.foreign_engines import study as foreign_engines
 from compare.studies.engines.foreign_engines import theory
-from compare.studies.engines.foreign_engines.study import STUDY, draw
+from compare.studies.engines.foreign_engines.study import STUDY
 from compare.studies.engines.foreign_engines.theory import (
     BY_AXIS,
     FIRST_ORDER,
@@ -263,8 +263,8 @@ def test_columns_of_a_file_that_are_others_are_refused(tmp_path, monkeypatch):
 
 def test_figures_show_every_recording():
     with paper_style():
-        figures = draw({"theory": STUDY.measure_theory().data})
-        assert draw({}) == {}
+        figures = STUDY.draw({"theory": STUDY.measure_theory().data})
+        assert STUDY.draw({}) == {}
     assert set(figures) == set(STUDY.figures)
     for name, figure in figures.items():
         (legend,) = figure.legends

@@ -126,7 +126,7 @@ class TestPowerBalance(StudyTests):
     def test_every_motion_is_balanced_in_exudyn(self):
         found = study.STUDY.measure(engine_named("exudyn"), SHORT)
         assert verdicts(found) == {study.SENTENCE.format(motion): Verdict.AGREES for motion in PINS + DISCS}
-        assert set(study.draw({"exudyn": found.data})) == set(study.STUDY.figures)
+        assert set(study.STUDY.draw({"exudyn": found.data})) == set(study.STUDY.figures)
 
     @pytest.mark.parametrize("motion", sorted(SLIDING))
     def test_every_sliding_motion_is_balanced_in_the_engine_that_faults_are_put_into(self, motion):

@@ -6,8 +6,8 @@ from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.whirl_stability import theory
-from compare.studies.pin.whirl_stability.study import STUDY, conditions
+from compare.studies.pin.whirl_stability import study
+from compare.studies.pin.whirl_stability.study import STUDY
 from reference_model.formulas.pin import characteristic_coefficients_as_printed
 
 SPEEDS, STARTS, POINTS = {"speeds": (1.5,)}, {"starts": (0.8, 1.5)}, {"points": ((1.5, 0.1), (1.5, 1.0))}
@@ -50,18 +50,18 @@ def verdict(function):
 
 def test_the_count_of_disagreements_sees_a_wrong_condition(monkeypatch):
     """The margin of (16) shifted a little disagrees with the eigenvalues at some points of the grid."""
-    margin = conditions.upper_branch_margin
-    monkeypatch.setattr(conditions, "upper_branch_margin", lambda pin: margin(pin) + 0.02)
+    margin = study.upper_branch_margin
+    monkeypatch.setattr(study, "upper_branch_margin", lambda pin: margin(pin) + 0.02)
     assert verdict("hurwitz") is Verdict.DIFFERS
 
 
 def test_the_printed_equation_13_does_not_pass(monkeypatch):
-    monkeypatch.setattr(conditions, "characteristic_coefficients", characteristic_coefficients_as_printed)
+    monkeypatch.setattr(study, "characteristic_coefficients", characteristic_coefficients_as_printed)
     assert verdict("same_eigenvalues") is Verdict.DIFFERS
 
 
 def test_the_linear_deviation_solves_the_linear_equations():
     times = np.linspace(0.0, 2.0, 201)
-    deviation = theory.linear_deviation(times)
+    deviation = study.linear_deviation(times)
     assert deviation[0] == 1.0
-    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(theory.K, rel=0.01)
+    assert (deviation[1] - deviation[0]) / times[1] == pytest.approx(study.K, rel=0.01)
