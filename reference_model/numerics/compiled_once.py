@@ -173,7 +173,7 @@ def _told() -> Iterator[None]:
 
 def _tell() -> None:
     if multiprocessing.parent_process() is None and _told_already.acquire(blocking=False):
-        text = "Compiling for this machine, once for each kind of system (up to 15 s of processor time) ..."
+        text = "Compiling for this machine, once for each kind of system (about 20 s of processor time) ..."
         print(text, file=sys.stderr, flush=True)
 
 

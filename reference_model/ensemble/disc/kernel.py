@@ -10,7 +10,7 @@ import numpy as np
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
 from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.jit import outermost, scalar, written_out
+from reference_model.ensemble.core.jit import inlined, outermost, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
@@ -237,6 +237,12 @@ def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last
 @outermost
 def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
+    _run_points(task, aims, results, first, last)
+
+
+@inlined
+def _run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
+    """Do so. As a function of its own it takes a fifth longer to compile, and runs a sixth faster."""
     run(
         _load_points, _advance_points, _advance_points_alone, _attend_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, aims.around, task, aims, results,
