@@ -9,10 +9,9 @@ from enum import Enum
 from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
-from compare.claims.evidence import evidence_of
 from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
-from compare.engines import repeated_by
+from compare.engines import repeated_by, shares_code
 from compare.report.worst import deciding, in_short
 from compare.run.runner import Run
 from compare.run.workers import Failure
@@ -307,6 +306,15 @@ def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
     ):
         return replace(cell, evidence="implied", implied_by=sentence)
     return replace(cell, evidence=own)
+
+
+def evidence_of(claim: Claim) -> Evidence:
+    """Return what agreement is evidence of if the claim does not follow from another verdict."""
+    if claim.basis != "reference":
+        return claim.basis
+    # The reference simulates what is predicted in the name of the theory.
+    same = claim.engine == THEORY or shares_code(claim.engine, "reference")
+    return "self-check" if same else "independent"
 
 
 def _agrees(cell: Cell | None) -> bool:

@@ -10,10 +10,9 @@ import pytest
 from fake_studies import GOOD, claim, fake, straight
 
 from compare.claims.claim import BASES, THEORY, Verdict
-from compare.claims.evidence import evidence_of
 from compare.claims.study import Findings
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
-from compare.report.matrix import State
+from compare.report.matrix import State, evidence_of
 from compare.report.page import summary
 from compare.report.write import write_report
 from compare.run.runner import Run, run

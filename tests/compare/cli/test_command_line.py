@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 def test_help_of_every_command_has_an_example(capsys):
-    for name in ("list", "report", "simulate", "simulate pin", "simulate disc", "errata", "compile"):
+    for name in ("list", "report", "simulate", "simulate pin", "simulate disc", "errata"):
         assert cli.status([*name.split(), "--help"]) == 0
         assert f"friction-discs {name}" in capsys.readouterr().out
 
