@@ -104,7 +104,8 @@ def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True)
 
     It is infinite where only one of them has a number: what comes and goes with the tolerance is not known.
     """
-    change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
+    with np.errstate(invalid="ignore"):  # of two infinite numbers
+        change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
     numbers = np.where(np.isfinite(change), change, 0.0)
     largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
     rounding = ROUNDING * np.max(np.abs(found), where=np.isfinite(found), initial=0.0)
