@@ -21,8 +21,13 @@ def unfinished(interrupted, tmp_path):
 
 
 def test_an_interrupt_from_the_keyboard_is_told(interrupted):
-    message = "Interrupted. The same command with --resume goes on.\n"
-    assert interrupted[1] == (130, "", message)
+    code, out, err = interrupted[1]
+    assert (code, out, said(err)) == (130, "", ["Interrupted. The same command with --resume goes on."])
+
+
+def said(err):
+    """Return the lines on standard error without a library's warnings, which old versions print at import."""
+    return [line for line in err.splitlines() if "Warning" not in line and not line.startswith(" ")]
 
 
 def test_killed_again_and_again_a_sweep_comes_to_the_same_results(undisturbed, unfinished):
@@ -52,8 +57,8 @@ def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undis
     code, out, err = finished_by(long_sweep(unfinished, "--resume", limit=100))
     assert (code, out) == (2, "")
     path = unfinished / "sweep.zarr"
-    assert err.startswith(f"can't write to {str(path)!r}: File too large. What is written stays")
-    assert err.count("\n") == 1
+    (line,) = said(err)
+    assert line.startswith(f"can't write to {str(path)!r}: File too large. What is written stays")
     assert marks(unfinished) == before
     assert resumed(unfinished) == 0
     assert_same(content(path), undisturbed)
