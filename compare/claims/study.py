@@ -137,14 +137,14 @@ class Study:
     def provides(self, **functions: Callable[..., Any]) -> None:
         """Add functions of a module (no lambdas, because they are sent to other processes) under these names.
 
-        =============  ===========================================================================================
-        ``figures``    ``draw(data: ByEngine) -> Figures``; must cope with a missing engine
+        ==============  ==========================================================================================
+        ``figures``     ``draw(data: ByEngine) -> Figures``; must cope with a missing engine
         ``animations``  ``animate(data: ByEngine) -> {name: GIF}``, see ``compare.report.animation``
-        ``curves``     ``curves() -> Data``: curves of formulas, for the figures
-        ``tables``     ``tables() -> (Table, ...)``: what the report shows in addition, none of it measured
-        ``recorded``   ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart; all make
-                       the same claims, in the same order
-        =============  ===========================================================================================
+        ``curves``      ``curves() -> Data``: curves of formulas, for the figures
+        ``tables``      ``tables() -> (Table, ...)``: what the report shows in addition, none of it measured
+        ``recorded``    ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart; all make
+                        the same claims, in the same order
+        ==============  ==========================================================================================
 
         Raises ``TypeError`` for another name.
         """
