@@ -22,10 +22,10 @@ from exudyn_models.solver.solver_run import FIRST_STEP, StepCount, Steps, solve
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import LOOK_BACK
 
-NEWTON_TOLERANCE = 1e-6
-"""Residual of Newton's iteration, relative to the forces at the start, and to μN (or μN·R, if less) while creeping.
+CREEP_NEWTON_TOLERANCE = 1e-6
+"""Residual of Newton's iteration while creeping, relative to μN (and μN·R, where that is less).
 
-That is a millionth of the creep, and above rounding down to ε ~ 1e-11.
+It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
@@ -373,4 +373,4 @@ def _newton_tolerance(system: System) -> float:
     A moment counts as a force at R, or at 1 if that is less.
     """
     lever = min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0
-    return NEWTON_TOLERANCE * system.friction_force * lever
+    return CREEP_NEWTON_TOLERANCE * system.friction_force * lever

@@ -11,6 +11,9 @@ import numpy as np
 from exudyn_models.paper.scales import hardened_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
+RIM_SHARE = 1e-4
+"""The least length in contact radii: rounding of the rim's speed, 1e-16·R·ω, is to stay well below ε."""
+
 
 @dataclass(frozen=True)
 class Units:
@@ -41,8 +44,8 @@ class Units:
         rate = max(spring, abs(system.disc_speed)) or math.sqrt(system.stop_stiffness / system.mass) or decay
         if rate == 0.0:
             rate = push / slip if push > 0.0 < slip else 1.0
-        length = max(place, speed / rate, push / rate**2) or radius or 1.0
-        return cls(length, 1.0 / rate, system.mass)
+        length = max(place, speed / rate, push / rate**2, RIM_SHARE * radius)
+        return cls(length if length > 0.0 else 1.0, 1.0 / rate, system.mass)
 
     @property
     def speed(self) -> float:

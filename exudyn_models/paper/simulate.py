@@ -10,7 +10,6 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from exudyn_models.paper.alternating_solvers import (
-    NEWTON_TOLERANCE,
     RING_FRICTION,
     Friction,
     SlipSolver,
@@ -50,6 +49,9 @@ SMALLEST_STEP_TOLERANCE = 1e-13
 
 LARGEST_STEP = 6.0
 """DOPRI5's largest step is 6·tolerance^(1/5) time scales: its order is 5, so errors fall where that binds too."""
+
+NEWTON_TOLERANCE = 1e-9
+"""Residual at which Newton's iteration ends, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
 
