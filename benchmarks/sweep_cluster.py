@@ -93,9 +93,9 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
 def written() -> str:
     """Return what docs/sweeps.md says, measured."""
     lines = [
-        f"On {cores()} workers, chunks of starts of Fig. 5, in seconds of all processors together:",
+        f"On {cores()} workers, with starts of Fig. 5, in seconds of all processors together:",
         "",
-        "| chunks | starts a chunk | in process | workers | throughput |",
+        "| chunks | starts per chunk | in process | workers | throughput |",
         "|---|---|---|---|---|",
     ]
     with (
@@ -117,9 +117,10 @@ def written() -> str:
     busy, command = each * PROJECTED / (NODES * CORES), own * PROJECTED
     lines += [
         "",
-        f"Projected from these, not measured, for {PROJECTED:,} such trajectories on {NODES} nodes of {CORES} cores: "
-        f"the workers take {busy:.0f} s ({1e6 * each:.1f} µs of a core a trajectory), the command {command:.0f} s of "
-        f"its own beside them ({1e6 * own:.2f} µs a trajectory, what it takes longer for {many:,} than for {few:,}).",
+        f"Projected from these numbers, not measured, for {PROJECTED:,} such trajectories on {NODES} nodes of "
+        f"{CORES} cores: the workers take {busy:.0f} s ({1e6 * each:.1f} µs of one core per trajectory), and the "
+        f"command takes another {command:.0f} s ({1e6 * own:.2f} µs per trajectory, from the difference between "
+        f"{many:,} and {few:,}).",
     ]
     return "\n".join(lines) + "\n"
 

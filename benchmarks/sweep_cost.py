@@ -62,7 +62,7 @@ LOADS = FIG5.friction_force * np.random.default_rng(2).uniform(0.9, 1.1, 50_000)
 WAYS: dict[str, tuple[int, Callable[[int], Ensemble]]] = {
     "pin, basin of Fig. 5": (200_000, pins),
     f"the same, each to t = {SHORT:g} s": (50_000, pins_to_the_end),
-    "pin whose load differs by trajectory, within a tenth": (50_000, lambda n: pins(n, LOADS)),
+    "pin, load varied by up to a tenth": (50_000, lambda n: pins(n, LOADS)),
     f"disc on the continuous ring, basin of Fig. 11, t = {SHORT:g} s": (
         16_000,
         lambda n: discs(n, None, SHORT),
@@ -97,16 +97,16 @@ def command() -> tuple[float, float]:
 
 def main() -> None:
     """Measure, print and write."""
-    lines = ["| | µs of a core a trajectory | end is certain |", "|---|---|---|"]
+    lines = ["| | µs of one core per trajectory | decided |", "|---|---|---|"]
     for name, (n, run) in WAYS.items():
         each, certain = cost(n, run)
         lines.append(f"| {name} | {each:.{0 if each >= 10.0 else 1}f} | {100.0 * certain:.0f} % |")
     spent, disk = command()
     lines += [
         "",
-        f"`friction-discs sweep basin pin --random {COMMAND}` takes {spent:.0f} s of all cores together: libraries "
-        "and compiled code are loaded, some trajectories are checked by the plain reference, results are written, "
-        f"labelled and drawn. It takes {disk:.0f} bytes of disk a trajectory.",
+        f"`friction-discs sweep basin pin --random {COMMAND}` takes {spent:.0f} s of processor time on "
+        "all cores together. This includes loading the libraries and the compiled code, the check by the plain "
+        f"reference, and writing and drawing the results. It takes {disk:.0f} bytes of disk per trajectory.",
     ]
     text = "\n".join(lines) + "\n"
     print(text)
