@@ -1,7 +1,7 @@
-"""Write ``docs/equations.md``: who has which equation of the paper; run as ``python docs/write_equations.py``.
+"""Write ``docs/equations.md``, a table of functions and claims by equation: ``python docs/write_equations.py``.
 
-Functions are those of the reference whose docstrings cite an equation, claims those that are declared for it, and
-what is wrong as printed is from the errata. A test tells when the table is out of date.
+The functions are those of the reference whose docstrings cite the equation. The claims are those declared for it, and
+the corrections come from the errata. A test fails if the page is out of date.
 """
 
 import ast
@@ -18,21 +18,21 @@ EQUATIONS = {
     1: "motion of the pin",
     2: "polar coordinates",
     3: "the self-centred equilibrium",
-    4: "the circle on which it lies",
-    5: "the greatest load with that equilibrium",
+    4: "the circle of these equilibria",
+    5: "the largest load with that equilibrium",
     6: "motion in stick",
     7: "friction needed to stick on a circle",
-    8: "when it sticks for ever",
-    9: "the circle in which it does",
+    8: "the condition for permanent stick",
+    9: "the radius of permanent stick",
     10: "motion of the pin in polar coordinates",
     11: "the whirl without offset",
-    12: "small motions about it",
+    12: "small deviations from the whirl",
     13: "their characteristic polynomial",
-    14: "Hurwitz: a first pair of conditions for stability",
-    15: "Hurwitz: one that contradicts (14)",
-    16: "Hurwitz: the one that is necessary and sufficient",
-    17: "the whirl with a small offset: a circle beside the axis",
-    18: "where its centre is",
+    14: "Hurwitz: first pair of stability conditions",
+    15: "Hurwitz: a condition that contradicts (14)",
+    16: "Hurwitz: the necessary and sufficient condition",
+    17: "the whirl with a small offset: an eccentric circle",
+    18: "the centre of this circle",
     19: "motion of the disc",
     20: "friction on a ring",
     21: "slip of a point of the ring",
@@ -40,15 +40,15 @@ EQUATIONS = {
     23: "simplified friction on a ring",
     24: "spherical coordinates of the self-centred disc",
     25: "abbreviations",
-    26: "where it rests, by (23)",
+    26: "equilibrium position according to (23)",
 }
-"""What each is about."""
+"""Subject of each equation."""
 
 MOST = 4
-"""Functions, and claims of a study, that are named."""
+"""Largest number of functions, and of claims per study, in a row."""
 
 PREFERRED = ("plain", "formulas", "contact", "systems", "steady", "motion", "orbits")
-"""Rooms of the reference in which one looks first."""
+"""Modules of the reference, the most useful first."""
 
 CITED = re.compile(r"\((\d+)\)(?:(?: to |–)\((\d+)\))?|\b[Ee]qs?\. (\d+(?:(?:, | and | to |–)\d+)*)")
 ALIKE = re.compile(r"(\d+)(?:(?: to |–)(\d+))?")
@@ -64,11 +64,11 @@ def cited(text):
 
 
 def functions():
-    """Return for each equation what is public in the reference and cites it: the module and the name."""
+    """Return the module and the name of each public object of the reference that cites an equation."""
     found = {number: [] for number in EQUATIONS}
     for path in sorted((ROOT / "reference_model").rglob("*.py")):
         module = path.relative_to(ROOT)
-        if "ensemble" in module.parts:  # the same once more, compiled
+        if "ensemble" in module.parts:  # compiled copies
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in tree.body:
@@ -87,7 +87,7 @@ def functions():
 
 
 def _first(function):
-    """Return the order of functions: as printed first, then those about few equations, then by their rooms."""
+    """Return the sort key: equations as printed, then functions that cite few equations, then by module."""
     numbers, module, name = function
     room = module.parts[1].removesuffix(".py")
     return (
@@ -100,19 +100,19 @@ def _first(function):
 
 
 def claims():
-    """Return for each equation the identities of the claims that are declared for it, by study."""
+    """Return the identities of the claims declared for each equation, by study."""
     found = {number: {} for number in EQUATIONS}
     for study in STUDIES:
         for declared in study.declared:
             for number in cited(declared.equation):
                 known = found[number].setdefault(study.name, [])
-                if (identity := declared.identity(study.name, "")) not in known:  # of a family once
+                if (identity := declared.identity(study.name, "")) not in known:  # one of a family
                     known.append(identity)
     return found
 
 
 def errata():
-    """Return what is wrong as printed, by equation."""
+    """Return the errata by equation."""
     found = {}
     for erratum in ERRATA:
         for number in cited(erratum.equation):
@@ -125,12 +125,13 @@ def text():
     lines = [
         "# Equations",
         "",
-        "Which function and which claim has each equation of the paper. `python docs/write_equations.py` writes this",
-        "page from docstrings and declared claims. A claim is measured by `friction-discs report STUDY`, where STUDY",
-        "stands before the stroke. What is wrong or incomplete as printed is [corrected](#corrected) below. (2),",
-        "(24) and (25) define coordinates and abbreviations: no claim is about them.",
+        "This page lists the functions and claims for each equation of the paper, and [corrects](#corrected) the",
+        "equations that are wrong or incomplete as printed. `friction-discs report STUDY` measures a claim, where",
+        "STUDY is the part of its name before the slash. No claim covers (2), (24) and (25), which define",
+        "coordinates and abbreviations. `python docs/write_equations.py` writes this page from docstrings and",
+        "declared claims.",
         "",
-        "| | about | functions | claims |",
+        "| | subject | functions | claims |",
         "|---|---|---|---|",
     ]
     by_function, by_claim, wrong = functions(), claims(), errata()
@@ -150,11 +151,11 @@ def text():
         "",
         "## Corrected",
         "",
-        "`friction-discs errata` shows each of these with the numbers that prove it.",
+        "`friction-discs errata` proves each correction with numbers.",
     ]
     for erratum in ERRATA:
         lines += ["", f"**{erratum.heading}.** {erratum.explanation}", "", f"- as printed: {erratum.printed}"]
-        lines += [f"- as it has to be: {erratum.correct}"]
+        lines += [f"- correct: {erratum.correct}"]
     return "\n".join(lines) + "\n"
 
 

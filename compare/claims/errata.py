@@ -169,53 +169,54 @@ ERRATA: tuple[Erratum, ...] = (
         '(11), "always exists"',
         printed="ψ̇ = k, ρ = μN/(βk) for every ω",
         correct="only for ω > k",
-        explanation="The tangential balance of (10) is βρk = μN·sign(ω − k). Below k friction brakes the pin "
-        "as the damping does, and there is nothing that drives it round.",
+        explanation="The tangential balance of (10) is βρk = μN·sign(ω − k). Below k, friction brakes the pin as "
+        "the damping does, so nothing drives the whirl.",
         evidence=_force_on_the_circle,
     ),
     Erratum(
         "(13), coefficient of λ²",
         printed="1 + (β/m)·ω/(ω − k)",
         correct="(β/m)·(1 + ω/(ω − k))",
-        explanation="It is the negative trace of the matrix of (12). The printed form adds a number without "
-        "unit to a rate. Only the corrected form leads to (14)–(16), which are right as printed.",
+        explanation="The coefficient is the negative trace of the matrix of (12). The printed form adds a "
+        "dimensionless number to a rate. Only the corrected form leads to (14)–(16), which are correct as "
+        "printed.",
         evidence=_characteristic_coefficient,
     ),
     Erratum(
-        "(18), what is left out",
+        "(18), neglected harmonic",
         printed="x_s = X0/(1 + β²ω²/(4mC(ω−k)²)), y_s = βωx_s/(2mk(ω−k))",
         correct="x_s + iy_s = X0·conj[(6 − id(w+2)) / (6 + 2d²w + 2id(w−1))], d = β/(mk), w = ω/(ω−k)",
         explanation="The offset excites a second harmonic of the same first order in X0, coupled to the mean "
-        "through friction; (18) keeps the first harmonic only. The correction solves (12) with the offset "
-        "as its forcing. The relative error of (18) does not vanish as X0 → 0: nothing at ω = 2k, all of the "
-        "shift as ω → k.",
+        "through friction. (18) keeps the first harmonic only. The correction solves (12) with the offset as "
+        "forcing. The relative error of (18) does not vanish as X0 → 0. It is zero at ω = 2k and tends to 1 as ω "
+        "→ k.",
         evidence=_shift_of_the_whirl,
     ),
     Erratum(
         "(22), first line",
         printed="ν̃_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r²",
         correct="ν̄_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r² + (3/2)R²(ω − φ̇)²ν̃_xy²/ν̄_r⁴",
-        explanation="|ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², so that the right side is an "
-        "expansion of ν̄_r/|ν_r|, where ν̄_r is the root mean square of |ν_r| over the ring. (23) is the average "
-        "of the slip velocity times three terms: its ¾Φ comes from the third, which the printed line leaves out. "
-        "As printed the moment would not depend on the slip of the centre at all.",
+        explanation="Because |ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², the right side is an "
+        "expansion of ν̄_r/|ν_r|. Here ν̄_r is the root mean square of |ν_r| over the ring. (23) is the average "
+        "of the slip velocity times three terms. Its ¾Φ comes from the third term, which the printed line omits. "
+        "With the printed line the moment would not depend on the slip of the centre at all.",
         evidence=_moment_of_the_expansion,
     ),
     Erratum(
         "(26), bracket in A",
         printed="1 − ½cos²α + (3/16)sin²α",
         correct="1 − ½sin²α + (3/16)sin²2α",
-        explanation="(24) put into (23) gives F = μN·cos α·(1 − ½sin²α + ¾cos²α·sin²α), and the springs balance it: "
-        "C²A²cos²α + F² = C²X0². The δ and θ lines of (26) are right as printed.",
+        explanation="Inserting (24) into (23) gives F = μN·cos α·(1 − ½sin²α + ¾cos²α·sin²α), and the springs "
+        "balance it: C²A²cos²α + F² = C²X0². The δ and θ lines of (26) are correct as printed.",
         evidence=_spin_of_the_self_centred_disc,
     ),
     Erratum(
         'Section 5, "still remains stable"',
         printed="the self-centred equilibrium of the disc is stable at high speeds too",
         correct="for ω > k only up to a load: 0.0210 N at Fig. 9's parameters with X0 = 0.1 m",
-        explanation="Friction on a ring grows with the slip of the centre along its direction, by μN·∂F/∂U > 0, "
-        "which for a pin is zero. That couples the radial motion back to the tangential one, and beyond the natural "
-        "frequency it feeds a circular motion, as on the axis, where the rotation loses its stability.",
+        explanation="Friction on a ring increases with the slip of the centre in its direction, by μN·∂F/∂U > 0; "
+        "for a pin this derivative is zero. It couples the radial motion back to the tangential motion. Above "
+        "the natural frequency it drives a circular motion, just as it destabilises the rotation on the axis.",
         evidence=_growth_beside_the_equilibrium,
     ),
 )
