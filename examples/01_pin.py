@@ -1,4 +1,4 @@
-"""The pin of Fig. 5: nearly the same start, two motions; and what it can do for ever, each found as such."""
+"""The pin of Fig. 5: two nearly equal starts that end in different motions, and all its steady motions."""
 
 from dataclasses import replace
 
@@ -21,17 +21,17 @@ times = np.linspace(0.0, 400.0, 4001)
 
 to_equilibrium = simulate(pin, [0.1, 0.0, 0.00, 0.0], times)  # x, y, vx, vy
 to_whirl = simulate(pin, [0.1, 0.0, 0.03, 0.0], times)
-in_exudyn = exudyn_models.simulate(pin, [0.1, 0.0, 0.03, 0.0], times)  # same call, same result
+in_exudyn = exudyn_models.simulate(pin, [0.1, 0.0, 0.03, 0.0], times)  # same call, same type of result
 
-(equilibrium,) = self_centred_equilibria(pin)  # eq. 3; an empty tuple where there is none
-(whirl,) = whirls(replace(pin, offset=0.0))  # eq. 11, without the offset
-orbit = whirl_orbit(pin)  # with it: a periodic orbit, found by shooting
-radius = sticking_radius(replace(pin, friction_force=0.12))  # eq. 9; this load is too small for it
+(equilibrium,) = self_centred_equilibria(pin)  # eq. 3; an empty tuple if there is none
+(whirl,) = whirls(replace(pin, offset=0.0))  # eq. 11, for zero offset
+orbit = whirl_orbit(pin)  # with offset: a periodic orbit, found by shooting
+radius = sticking_radius(replace(pin, friction_force=0.12))  # eq. 9; needs a larger load
 power = power_balance(orbit.trajectory)  # of one turn of the whirl
 
 
 def describe(trajectory: Trajectory) -> str:
-    """Say where a motion ends, and how often it stuck on the way."""
+    """Return the final radius and the number of stick phases in words."""
     sticks = trajectory.stick_phases
     return (
         f"radius {trajectory.radius[-1]:.6f} m after {len(sticks)} stick phases, the first from "
@@ -45,6 +45,6 @@ if __name__ == "__main__":
     print("Exudyn, to the whirl:         ", describe(in_exudyn))
     print(f"rests at ({equilibrium.x:.4f}, {equilibrium.y:.4f}) m, stable: {equilibrium.stable}")
     print(f"whirls at {whirl.radius:.4f} m with {whirl.frequency:.4f} rad/s, stable: {whirl.stable}")
-    print(f"with the offset about {orbit.mean.round(6)} m with {orbit.frequency:.6f} rad/s")
-    print(f"the drive gives {power.drive_power:.4f} W")
-    print(f"sticks for ever within {radius:.4f} m once μN = 0.12 N")
+    print(f"with the offset it whirls about {orbit.mean.round(6)} m with {orbit.frequency:.6f} rad/s")
+    print(f"the drive supplies {power.drive_power:.4f} W")
+    print(f"sticks permanently within {radius:.4f} m if μN = 0.12 N")

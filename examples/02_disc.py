@@ -1,4 +1,4 @@
-"""The friction disc of Fig. 11: its steady whirl is unstable, and a modulated cycle takes its place."""
+"""The friction disc of Fig. 11: its steady whirl is unstable, and a modulated cycle replaces it."""
 
 import numpy as np
 
@@ -15,9 +15,9 @@ disc = DiscOnDisc(
     contact_radius=0.12,
     shaft_damping=0.015,
     shaft_speed=1.25,
-)  # on a continuous ring; contact_points=6 is the paper's own discretisation
+)  # on a continuous ring; the paper uses contact_points=6
 
-(whirl,) = whirls(disc)  # all there are, each with its eigenvalues
+(whirl,) = whirls(disc)  # all whirls, each with its eigenvalues
 (by_23,) = whirls(disc, ThreeTermRing(disc.contact_radius))  # the paper's simplified equations (23)
 
 start = whirl.state  # x, y, angle, vx, vy, spin
@@ -28,11 +28,11 @@ in_exudyn = exudyn_models.simulate(disc, start, times)
 
 if __name__ == "__main__":
     for name, steady in (("ring", whirl), ("(23)", by_23)):
-        slowest = steady.eigenvalues[1]  # the first is the zero of the phase
+        slowest = steady.eigenvalues[1]  # the first is zero and belongs to the phase
         print(
             f"{name}: radius {steady.radius:.6f} m, spin {steady.spin:.6f} rad/s, eigenvalue {slowest:.5f} 1/s"
         )
-    print(f"there is a whirl from {onset_load(disc):.6f} N on")
+    print(f"the whirl starts at {onset_load(disc):.6f} N")
     for name, motion in (("reference", trajectory), ("Exudyn", in_exudyn)):
-        last = motion.radius[-2500:]  # one period of the modulation and some more
-        print(f"{name}: the radius swings from {last.min():.6f} to {last.max():.6f} m")
+        last = motion.radius[-2500:]  # a little more than one period of the modulation
+        print(f"{name}: the radius oscillates from {last.min():.6f} to {last.max():.6f} m")

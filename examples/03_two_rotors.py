@@ -1,7 +1,7 @@
-"""Friction in a model of your own: a motor's flywheel drags a clutch disc, whose shaft drives a load.
+"""Friction in your own model: a motor's flywheel drags a clutch disc, and the disc's shaft drives a load.
 
-The shaft is elastic, and its axis lies 1 mm beside that of the flywheel. Once the clutch is engaged, friction pulls
-the disc's centre towards the flywheel's axis: self-centring. With a path as argument a picture of it goes there.
+The shaft is elastic, and its axis is 1 mm off the axis of the flywheel. When the clutch engages, friction pulls the
+disc's centre towards the flywheel's axis (self-centring). Pass a path to save a figure.
 """
 
 import sys
@@ -22,7 +22,7 @@ from exudyn.itemInterface import (
 
 from exudyn_models import add_energy_balance, add_radial_support, add_ring_friction, solve_dynamic
 
-MOTOR_TORQUE, MOTOR_DROOP = 240.0, 2.4  # N m, N m s/rad: 100 rad/s without load
+MOTOR_TORQUE, MOTOR_DROOP = 240.0, 2.4  # N m, N m s/rad; 100 rad/s without load
 DRAG = 0.28  # N m s/rad, of the load
 OFFSET = 1e-3  # m, from the axis of the flywheel to that of the shaft
 VELOCITIES = exu.OutputVariableType.Coordinates_t
@@ -30,13 +30,13 @@ VELOCITIES = exu.OutputVariableType.Coordinates_t
 container = exu.SystemContainer()
 mbs = container.AddSystem()
 
-# Two bodies: nodes of kind Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz will do.
+# Two bodies. Their nodes may be Node1D, NodeRigidBody2D, NodeRigidBodyRotVecLG or NodeRigidBodyRxyz.
 flywheel = mbs.AddNode(Node1D(initialVelocities=[100.0]))
 mbs.AddObject(ObjectRotationalMass1D(nodeNumber=flywheel, inertia=0.2))
 disc = mbs.AddNode(NodeRigidBody2D(initialCoordinates=[OFFSET, 0.0, 0.0]))
 mbs.AddObject(ObjectRigidBody2D(nodeNumber=disc, mass=0.6, inertia=0.01))
 
-# Motor and load, of Exudyn's own items.
+# Motor and load from Exudyn's own items.
 ground = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0))
 motor = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=flywheel, coordinate=0))
 load = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=disc, coordinate=2))
@@ -44,7 +44,7 @@ mbs.AddLoad(LoadCoordinate(markerNumber=motor, load=MOTOR_TORQUE))
 mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, motor], damping=MOTOR_DROOP))
 mbs.AddObject(CoordinateSpringDamper(markerNumbers=[ground, load], damping=DRAG))
 
-# The elastic shaft, and the friction between the two.
+# The elastic shaft, and the friction between flywheel and disc.
 shaft = add_radial_support(mbs, None, disc, stiffness=1e4, damping=20.0, offset=(OFFSET, 0.0))
 clutch = add_ring_friction(
     mbs,
@@ -58,17 +58,17 @@ clutch = add_ring_friction(
 
 
 def motor_power(mbs, t):
-    """Return what goes in, in W."""
+    """Return the power of the motor in W."""
     speed = mbs.GetNodeOutput(flywheel, VELOCITIES)
     return (MOTOR_TORQUE - MOTOR_DROOP * speed) * speed
 
 
 def load_power(mbs, t):
-    """Return what goes out, in W."""
+    """Return the power of the load in W."""
     return DRAG * mbs.GetNodeOutput(disc, VELOCITIES)[2] ** 2
 
 
-# With it the run itself shows whether it is right.
+# The residual of the balance is the error of the run.
 read_balance = add_energy_balance(
     mbs,
     gains={"motor": motor_power},
@@ -92,14 +92,14 @@ options = settings.timeIntegration
 options.verboseMode = 0
 options.endTime, options.numberOfSteps, options.initialStepSize = 2.0, 400, 1e-6
 options.absoluteTolerance, options.relativeTolerance = 1e-8, 0.0
-solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)  # mbs.SolveDynamic with more checks
+solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)  # mbs.SolveDynamic with additional checks
 
 balance = read_balance()
 flywheel_speed, disc_velocity, place = (mbs.GetSensorStoredData(sensor)[:, 1:] for sensor in sensors)
 
 
 def draw(path):
-    """Draw the way of the disc's centre, the speeds, and where the energy goes."""
+    """Draw the path of the disc's centre, the speeds and the energy balance."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12.0, 3.6), layout="constrained")
@@ -115,7 +115,7 @@ def draw(path):
     speeds.set(title="speeds", xlabel="t in s", ylabel="rad/s", xlim=(0.0, 0.4), ylim=(0.0, None))
     heats.stackplot(times, *balance.losses.values(), labels=balance.losses, alpha=0.5)
     given = balance.gains["motor"] - (balance.stored - balance.stored[0])
-    heats.plot(times, given, "k--", label="motor less stored")
+    heats.plot(times, given, "k--", label="motor minus stored")
     heats.set(title="energy balance", xlabel="t in s", ylabel="J", xlim=(0.0, 0.4), ylim=(0.0, 800.0))
     for panel, corner in ((way, "upper right"), (speeds, "lower right"), (heats, "upper left")):
         panel.legend(loc=corner, frameon=False)
@@ -124,8 +124,8 @@ def draw(path):
 
 if __name__ == "__main__":
     print(f"the disc's centre is {1e3 * np.hypot(*place[-1, :2]):.4f} mm from the axis of the flywheel")
-    print(f"it slips with {flywheel_speed[-1, 0] - disc_velocity[-1, 2]:.4f} rad/s")
-    print(f"the motor's {balance.gains['motor'][-1]:.1f} J are accounted for", end=" ")
+    print(f"the contact slips at {flywheel_speed[-1, 0] - disc_velocity[-1, 2]:.4f} rad/s")
+    print(f"the balance accounts for the motor's {balance.gains['motor'][-1]:.1f} J", end=" ")
     print(f"to {np.max(np.abs(balance.residual)):.1g} J")
     if len(sys.argv) > 1:
         draw(sys.argv[1])

@@ -1,7 +1,8 @@
-"""Slip control: the load on a clutch follows the slip that a sensor of the clutch shows.
+"""Slip control: a controller sets the load on a clutch from the measured slip.
 
-An engine drags a vehicle through a clutch. A proportional controller N = N₀ + K·(s − 5 rad/s) brings the slip s from
-30 to 5 rad/s. As the clutch transmits M = μNR at any slip, s falls exponentially, with the rate μRK·(1/J₁ + 1/J₂).
+An engine drives a vehicle through a clutch. A proportional controller N = N₀ + K·(s − 5 rad/s) reduces the slip s
+from 30 to 5 rad/s. The clutch transmits M = μNR at any slip, so s decays exponentially at the rate
+μRK·(1/J₁ + 1/J₂).
 """
 
 import exudyn as exu
@@ -11,12 +12,12 @@ from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate, Node1D, O
 from exudyn_models import add_ring_friction, solve_dynamic
 
 ENGINE, VEHICLE = 0.2, 0.75  # kg m²
-TORQUE = 100.0  # N m, of the engine
+TORQUE = 100.0  # N m, engine torque
 RADIUS, FRICTION_COEFFICIENT = 0.1, 0.6  # m; two facings of μ = 0.3
-START, TARGET = 30.0, 5.0  # rad/s, of slip
+START, TARGET = 30.0, 5.0  # rad/s, slip
 GAIN = 50.0  # N s/rad
-ARM = FRICTION_COEFFICIENT * RADIUS  # m, transmitted moment over load
-HOLDING = TORQUE / ARM * VEHICLE / (ENGINE + VEHICLE)  # N₀ in N, which keeps the slip as it is
+ARM = FRICTION_COEFFICIENT * RADIUS  # m, transmitted moment divided by load
+HOLDING = TORQUE / ARM * VEHICLE / (ENGINE + VEHICLE)  # N₀ in N, holds the slip constant
 RATE = ARM * GAIN * (1.0 / ENGINE + 1.0 / VEHICLE)  # 1/s
 
 container = exu.SystemContainer()
@@ -30,7 +31,7 @@ mbs.AddLoad(LoadCoordinate(markerNumber=crank, load=TORQUE))
 
 
 def controlled_load(time):
-    """Return the normal load in N; the slip is that of the disc, so negative where the engine is faster."""
+    """Return the normal load in N. The sensor gives the slip of the disc, negative if the engine is faster."""
     slip = -mbs.GetSensorValues(rim_slip) / RADIUS
     return max(0.0, HOLDING + GAIN * (slip - TARGET))
 
@@ -42,7 +43,7 @@ clutch = add_ring_friction(
     contact_radius=RADIUS,
     friction_coefficient=FRICTION_COEFFICIENT,
     normal_load=controlled_load,
-    regularisation=0.2,  # m/s, less than any slip here: RK44 with this step would not stick with less
+    regularisation=0.2,  # m/s, below any slip here; RK44 with this step is unstable in stick for smaller values
 )
 rim_slip = clutch.add_sensor("rim_slip")  # in m/s
 moment = clutch.add_sensor("transmitted_moment")

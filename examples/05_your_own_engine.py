@@ -1,4 +1,4 @@
-"""A third engine for the comparison: implement one function. Judge it with
+"""Your own engine in one function. Judge it with
 
 cd examples && friction-discs report fig03 --engine 05_your_own_engine:simulate
 """  # noqa: D400, D415

@@ -1,7 +1,7 @@
-"""A clutch in its drivetrain runs up from 2000 to 4000 turns a minute at controlled slip.
+"""A clutch in a drivetrain runs up from 2000 to 4000 rpm at controlled slip.
 
-Below the disc's critical speed friction centres it, near 2900 turns a minute its unbalance shakes it, and from about
-3200 on friction drives a whirl that only the stop on the shaft limits. With a path as argument a picture goes there.
+Friction centres the disc below its critical speed. Near 2900 rpm the unbalance excites it, and above about 3200 rpm
+friction drives a whirl that only the stop on the shaft limits. Pass a path to save a figure.
 """
 
 import math
@@ -12,11 +12,11 @@ import numpy as np
 from exudyn_models import PASSENGER_CAR, build_drivetrain, four_cylinder
 
 RPM = math.pi / 30.0  # rad/s
-TORQUE = 150.0  # N m, of the engine
-SLIP = 20.0  # rad/s, to be held
+TORQUE = 150.0  # N m, engine torque
+SLIP = 20.0  # rad/s, target
 
 vehicle, engine = PASSENGER_CAR.vehicle_inertia, PASSENGER_CAR.engine_inertia
-TRANSMITTED = TORQUE * vehicle / (vehicle + engine)  # N m, while both speed up alike
+TRANSMITTED = TORQUE * vehicle / (vehicle + engine)  # N m, at equal acceleration of both sides
 HOLDING = PASSENGER_CAR.normal_load(TRANSMITTED)  # N
 
 model = build_drivetrain(
@@ -31,11 +31,12 @@ model = build_drivetrain(
 motion = model.run(1.4, sample_every=1e-3, tolerance=1e-6)
 speed = motion.engine_speed / RPM
 x, y = motion.disc[:, :2].T
-radius, deflection = np.hypot(x, y), np.hypot(x - PASSENGER_CAR.offset, y)  # from engine's and shaft's axis
+# From the engine's axis and from the shaft's axis.
+radius, deflection = np.hypot(x, y), np.hypot(x - PASSENGER_CAR.offset, y)
 
 
 def draw(path):
-    """Draw the speeds and the way of the disc's centre over time."""
+    """Draw the speeds and the deflection of the disc's centre against time."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.0, 5.0), layout="constrained")
@@ -45,7 +46,7 @@ def draw(path):
     speeds.set(ylabel="speed in 1/min")
     ways.plot(motion.times, 1e3 * radius, linewidth=0.7, label="from the engine's axis")
     ways.plot(motion.times, 1e3 * deflection, linewidth=0.7, label="from the shaft's axis")
-    ways.axhline(1e3 * PASSENGER_CAR.stop_gap, color="k", linestyle=":", label="play of the shaft")
+    ways.axhline(1e3 * PASSENGER_CAR.stop_gap, color="k", linestyle=":", label="clearance of the shaft")
     ways.set(xlabel="t in s", ylabel="disc's centre in mm")
     for panel in (speeds, ways):
         panel.legend(loc="upper left", frameon=False)
@@ -60,6 +61,6 @@ if __name__ == "__main__":
     for name, heat in motion.energy.losses.items():
         print(f"{name}: {heat[-1]:.1f} J of heat")
     residual = np.max(np.abs(motion.energy.residual)) / motion.energy.turnover
-    print(f"energy is accounted for to {residual:.1g} of what was turned over")
+    print(f"residual of the energy balance: {residual:.1g} of the energy turnover")
     if len(sys.argv) > 1:
         draw(sys.argv[1])

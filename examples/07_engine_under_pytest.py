@@ -1,4 +1,4 @@
-"""Euler's method fails, Runge and Kutta's passes: pytest --pyargs compare --engine 07_engine_under_pytest:euler."""
+"""Euler's method fails, Runge–Kutta passes: pytest --pyargs compare --engine 07_engine_under_pytest:euler."""
 
 from functools import partial
 
@@ -8,7 +8,7 @@ from reference_model import Phase, Solution, Trajectory
 
 
 def euler(pin, initial_state, times, *, tolerance=1e-9, step=1e-3, advance=lambda f, y, h: y + h * f(y)):
-    """Integrate eq. 1 with a fixed step, which ``tolerance`` does not change: so no error can be seen."""
+    """Integrate eq. 1 with a fixed step. It ignores ``tolerance``, so its error cannot be estimated."""
 
     def eq1(y):
         (z, v), X0 = y.tolist(), pin.offset

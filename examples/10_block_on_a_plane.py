@@ -1,4 +1,4 @@
-"""An engine without a turntable, which steps through time: a cone for its friction passes, a box does not.
+"""A time-stepping engine without a turntable: it passes with a friction cone and fails with a box.
 
 cd examples && friction-discs report block --engine 10_block_on_a_plane:cone --engine 10_block_on_a_plane:box
 """
@@ -12,11 +12,11 @@ from reference_model import Trajectory
 
 
 def time_stepping(block, initial_state, times, *, step, bounded):
-    """Brake by the impulse that would stop the block in a step, bounded by that of μN (Moreau and Jean)."""
+    """Apply the impulse that would stop the block within a step, bounded by that of μN (Moreau and Jean)."""
     m, friction = block.mass, block.friction_force
     states = [np.array(initial_state, dtype=float)]
     for span in np.diff(times):
-        z, v = states[-1].view(complex).tolist()  # place and velocity, x + iy
+        z, v = states[-1].view(complex).tolist()  # position and velocity, x + iy
         steps = ceil(span / step)
         h = span / steps
         for _ in range(steps):

@@ -1,8 +1,8 @@
-"""Exudyn's modified Newton method loses the rates of first-order coordinates when it starts a step over.
+"""Exudyn's modified Newton method loses the rates of first-order coordinates when it restarts a step.
 
-Exudyn 1.13 resets ODE1Coords to the start of the step, but not ODE1Coords_t (CSolverBase::Newton), from which the
-next predictor takes h/2·ẋ (ComputeNewtonUpdate): the step begins with the rate of the iterate that diverged. It
-happens with a fixed step too, wherever a Jacobian changes fast, as here. Full Newton is right.
+Exudyn 1.13 resets ODE1Coords to the start of the step, but not ODE1Coords_t (CSolverBase::Newton). The next predictor
+h/2·ẋ (ComputeNewtonUpdate) therefore uses the rate of the diverged iterate. This also happens with a fixed step,
+wherever a Jacobian changes rapidly, as here. Full Newton is correct.
 """
 
 import exudyn as exu
@@ -12,12 +12,12 @@ STEPS, STEP = 60, 0.01
 
 
 def rate(t, x):
-    """Return ẋ in 1/s: a decay that becomes a thousand times as fast."""
+    """Return ẋ in 1/s, a decay whose rate increases a thousandfold."""
     return -x if t < 0.555 else -1000.0 * x
 
 
 def obtained(modified_newton):
-    """Return x at the end by Exudyn's TrapezoidalIndex2 from x(0) = 1."""
+    """Return the final x from Exudyn's TrapezoidalIndex2 with x(0) = 1."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     coordinates = {"referenceCoordinates": [0.0], "initialCoordinates": [1.0], "numberOfODE1Coordinates": 1}
@@ -35,7 +35,7 @@ def obtained(modified_newton):
 
 
 def expected():
-    """Return x at the end by the trapezoidal rule, whose first rate is 0 as in Exudyn."""
+    """Return the final x from the trapezoidal rule with an initial rate of 0, as in Exudyn."""
     x, before = 1.0, 0.0
     for step in range(1, STEPS + 1):
         x = (x + STEP / 2 * before) / (1.0 - STEP / 2 * rate(step * STEP, 1.0))

@@ -1,7 +1,7 @@
-"""A dual clutch changes from the first gear to the second while the engine pulls.
+"""A dual clutch changes from the first to the second gear under load.
 
-The first clutch opens while the second closes, both linearly, until the second one has slowed the engine down to the
-speed of its own shaft. The gears are elastic. An energy balance checks the run.
+The first clutch opens while the second closes, both linearly. The second clutch then slows the engine down to the
+speed of its shaft. The gears are elastic. An energy balance checks the run.
 """
 
 import exudyn as exu
@@ -17,16 +17,16 @@ from exudyn.itemInterface import (
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
 
-ENGINE, SHAFTS, VEHICLE = 0.2, (0.02, 0.025), 150.0  # kg m², the vehicle at its wheels
-RATIOS = (13.0, 8.0)  # speed of a shaft over that of the wheels
-STIFFNESS, DAMPING = 5000.0, 10.0  # N m/rad, N m s/rad, of each gear
-TORQUE, RESISTANCE = 150.0, 400.0  # N m, of the engine and against the wheels
+ENGINE, SHAFTS, VEHICLE = 0.2, (0.02, 0.025), 150.0  # kg m², the vehicle reduced to its wheels
+RATIOS = (13.0, 8.0)  # speed of a shaft divided by the speed of the wheels
+STIFFNESS, DAMPING = 5000.0, 10.0  # N m/rad, N m s/rad, per gear
+TORQUE, RESISTANCE = 150.0, 400.0  # N m, on the engine and against the wheels
 RADIUS, FRICTION_COEFFICIENT, PLATES = 0.07, 0.12, 8  # m; wet clutches of 8 pairs of faces
-LOAD = 4500.0  # N, under which a clutch holds 302 N m, twice the engine's torque
-BEGIN, END = 0.2, 0.5  # s, of the change
+LOAD = 4500.0  # N; a clutch then holds 302 N m, twice the engine's torque
+BEGIN, END = 0.2, 0.5  # s, of the gear change
 UNTIL = 0.9  # s
-START = 200.0  # rad/s, of the engine in the first gear
-EPSILON = 0.02  # m/s: a clutch that holds the engine's torque creeps with half of it
+START = 200.0  # rad/s, initial speed of the engine
+EPSILON = 0.02  # m/s; a clutch that holds the engine's torque creeps at half of this
 VELOCITIES = exu.OutputVariableType.Coordinates_t
 
 container = exu.SystemContainer()
@@ -34,14 +34,14 @@ mbs = container.AddSystem()
 
 
 def add_rotor(inertia, speed, angle=0.0):
-    """Return the node of a rotor."""
+    """Add a rotor and return its node."""
     node = mbs.AddNode(Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
     mbs.AddObject(ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
     return node
 
 
 def add_torque(node, torque):
-    """Let a constant torque act on a rotor."""
+    """Add a constant torque to a rotor."""
     marker = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
     mbs.AddLoad(LoadCoordinate(markerNumber=marker, load=torque))
 
@@ -56,7 +56,7 @@ def closing(time):
     return LOAD - opening(time)
 
 
-# At the start the first shaft is wound up by what accelerates all that it drives, so nothing swings.
+# The first shaft starts with the twist of steady acceleration, so that nothing oscillates.
 behind = (SHAFTS[1] * RATIOS[1] ** 2 + VEHICLE) / RATIOS[0] ** 2
 rate = (TORQUE - RESISTANCE / RATIOS[0]) / (ENGINE + SHAFTS[0] + behind)
 twist = (behind * rate + RESISTANCE / RATIOS[0]) / STIFFNESS
@@ -69,9 +69,8 @@ add_torque(wheels, -RESISTANCE)
 
 clutches, gears = [], []
 for shaft, load, ratio in zip(shafts, (opening, closing), RATIOS, strict=True):
-    wound = np.outer(
-        (1.0, -ratio), (1.0, -ratio)
-    )  # by the angle of the shaft less ratio times that of the wheels
+    twisting = (1.0, -ratio)  # twist = angle of the shaft − ratio·(angle of the wheels)
+    wound = np.outer(twisting, twisting)
     mbs.AddObject(
         ObjectGenericODE2(
             nodeNumbers=[shaft, wheels],
@@ -105,7 +104,7 @@ def angle(node):
 
 
 def gear_power(mbs, t):
-    """Return what the dampers of both gears take, in W."""
+    """Return the power of the dampers of both gears in W."""
     rates = [speed(shaft) - ratio * speed(wheels) for shaft, ratio in zip(shafts, RATIOS, strict=True)]
     return DAMPING * float(np.dot(rates, rates))
 
@@ -147,10 +146,8 @@ speeds = np.column_stack([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in se
 
 
 if __name__ == "__main__":
-    print(
-        f"the engine turns with {speeds[-1, 0]:.2f} rad/s, in the second gear {RATIOS[1] * speeds[-1, 3]:.2f} rad/s"
-    )
+    print(f"engine {speeds[-1, 0]:.2f} rad/s, second gear {RATIOS[1] * speeds[-1, 3]:.2f} rad/s")
     for name in ("first clutch", "second clutch"):
         print(f"{name}: {balance.losses[name][-1]:.0f} J of heat")
     residual = np.max(np.abs(balance.residual)) / balance.turnover
-    print(f"energy is accounted for to {residual:.1g} of what was turned over")
+    print(f"residual of the energy balance: {residual:.1g} of the energy turnover")

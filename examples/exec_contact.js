@@ -1,11 +1,11 @@
-/* Rapier and Jolt as engines for friction-discs: a ball with contact of their own on a plate that turns.
+/* Rapier and Jolt as engines for friction-discs: a ball on a rotating plate, with the contact of each engine.
  *
  *     npm install @dimforge/rapier3d-compat jolt-physics
  *     friction-discs matrix --engine "exec:node exec_contact.js rapier" --engine "exec:node exec_contact.js jolt"
  *
- * A ball that does not turn is pressed on the plate by its weight m*g = N, with a coefficient of friction of 1. The
- * plate is kinematic and turns at the speed of the disc. Springs and dampers are a force that is set before each step.
- * Both engines compute in single precision. Bodies must not sleep. They know a pin here, and no disc. */
+ * A ball with locked rotations is pressed on the plate by its weight m*g = N, with a coefficient of friction of 1. The
+ * plate is kinematic and rotates at the disc speed. Springs and dampers are a force that is set before each step. Both
+ * engines compute in single precision. Bodies must not sleep. These adapters simulate a pin but not a disc. */
 "use strict";
 const path = require("path");
 
@@ -22,10 +22,10 @@ const versionOf = (name) => {
   return file ? file.version : "";
 };
 
-const RADIUS = 0.5; /* of the ball in m: contact below 0.1 m is for details */
-const PLATE = [20, 20, 1]; /* half of its edges in m */
+const RADIUS = 0.5; /* of the ball in m; the engines are made for contacts above 0.1 m */
+const PLATE = [20, 20, 1]; /* half edge lengths in m */
 
-/* Returns the force of springs, stop and damper. */
+/* Returns the force of springs, stop and dampers. */
 function support(pin, x, y, vx, vy) {
   const w = Math.hypot(x - pin.offset, y);
   const stop = w > pin.stop_gap ? pin.stop_stiffness * (1 - pin.stop_gap / w) : 0;
@@ -39,7 +39,7 @@ const engines = {
     await R.init();
     const build = (pin, [x, y, vx, vy]) => {
       const world = new R.World({ x: 0, y: 0, z: -pin.friction_force / pin.mass });
-      world.numSolverIterations = 1; /* each is a step of its own, in which the force stays as it was */
+      world.numSolverIterations = 1; /* more iterations are substeps with a constant force */
       const plate = world.createRigidBody(R.RigidBodyDesc.kinematicVelocityBased().setTranslation(0, 0, -PLATE[2]));
       plate.setAngvel({ x: 0, y: 0, z: pin.disc_speed }, true);
       const sticky = (shape) => shape.setFriction(1).setRestitution(0);
@@ -80,7 +80,7 @@ const engines = {
       const bodies = system.GetBodyInterface();
       system.SetGravity(new J.Vec3(0, 0, -pin.friction_force / pin.mass));
       const physics = system.GetPhysicsSettings();
-      physics.mUseBodyPairContactCache = false; /* or places of contact are a millimetre old, and with them the slip */
+      physics.mUseBodyPairContactCache = false; /* otherwise contact positions and slip lag by up to a millimetre */
       system.SetPhysicsSettings(physics);
       const body = (shape, at, motion, layer, more) => {
         const made = new J.BodyCreationSettings(shape, new J.RVec3(...at), new J.Quat(0, 0, 0, 1), motion, layer);

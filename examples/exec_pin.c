@@ -1,9 +1,9 @@
 /* A pin on a turning disc, in C, as an engine for friction-discs: one line of JSON in, one out.
        cc -std=c99 -O2 -o exec_pin exec_pin.c -lm
        friction-discs report trajectories --engine "exec:./exec_pin"
-   Eq. 1 by Shampine's Rosenbrock method of order 4(3), ACM Trans. Math. Softw. 8 (1982) 93. Friction at the slip s is
-   -load*s/r*(2 - |s|/r), r = max(|s|, eps). eps falls with the tolerance, and so does the error of a step, which is
-   far smaller: a step into stick has to end well inside. */
+   Solves eq. 1 with Shampine's Rosenbrock method of order 4(3), ACM Trans. Math. Softw. 8 (1982) 93. Friction at slip s
+   is -load*s/r*(2 - |s|/r), r = max(|s|, eps). eps and the error per step decrease with the tolerance. The error per
+   step is far smaller than eps, because a step into stick must end well inside eps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,14 +21,14 @@ static void rates(const double y[4], double f[4]) {
     f[3] = (-hold * sy - stiffness * y[1] - damping * y[3]) / mass;
 }
 
-/* Tries a step of h from y, writes its end, and returns its error as a share of what is allowed. */
+/* Tries a step h from y, writes its end, and returns its error relative to the allowed error. */
 static double step(const double y[4], double h, double end[4]) {
     static const double D[4][3] = {{0}, {-8}, {14.88, 2.4}, {-.896, -.432, -.4}}, A[3][2] = {{0}, {2}, {1.92, .24}};
     static const double B[4] = {19 / 9., .5, 25 / 108., 125 / 108.}, E[4] = {17 / 54., 7 / 36., 0, 125 / 108.};
     double sx = y[2] + omega * y[1], sy = y[3] - omega * y[0], s = hypot(sx, sy) + 1e-99, r = fmax(s, eps);
     double hold = load * (2 - s / r) / r, bend = load / (r * r * s), a = 2 / h, M[4], f[4], at[4], g[4][4], error = 0;
     double H[3] = {hold - bend * sx * sx, -bend * sx * sy, hold - bend * sy * sy}; /* -dF/ds: xx, xy, yy */
-    double V[4] = {-H[0] - damping, -H[1], -H[1], -H[2] - damping}; /* of the force, by velocity and by place */
+    double V[4] = {-H[0] - damping, -H[1], -H[1], -H[2] - damping}; /* V, P: derivatives of the force by velocity and position */
     double P[4] = {H[1] * omega - stiffness, -H[0] * omega, H[2] * omega, -H[1] * omega - stiffness};
     for (int i = 0; i < 4; i++) P[i] /= mass, M[i] = (i % 3 ? 0 : a) - V[i] / mass - P[i] / a;
     for (int k = 0; k < 4; k++) {
@@ -56,7 +56,7 @@ int main(void) {
     puts("{\"protocol\":1,\"name\":\"exec_pin\",\"version\":\"1\",\"kinds\":[\"pin\"],\"nonlinear\":false}");
     for (fflush(stdout); fgets(line + used, size - used, stdin); fflush(stdout)) {
         used += strlen(line + used);
-        if (line[used - 1] != '\n') { line = realloc(line, size *= 2); continue; } /* there is more of it */
+        if (line[used - 1] != '\n') { line = realloc(line, size *= 2); continue; } /* the line continues */
         mass = number(line, "\"mass\""), stiffness = number(line, "\"stiffness\""), used = 0;
         damping = number(line, "\"damping\""), load = number(line, "\"friction_force\"");
         omega = number(line, "\"disc_speed\""), offset = number(line, "\"offset\"");

@@ -2,11 +2,11 @@
  *
  *     friction-discs report trajectories --engine "exec:node exec_pin.js"
  *
- * Eq. 1 as it stands, by the method of Runge and Kutta with a fixed step. It knows no stick and says so: only motions
- * that slide are asked for. The step in s of its greeting is that for a tolerance of 1e-9; each question names its own. */
+ * Solves eq. 1 with the Runge-Kutta method and a fixed step. The greeting declares that it cannot stick, so it gets only
+ * sliding motions. The greeting also gives the step in s for a tolerance of 1e-9; each request contains its own step. */
 "use strict";
 
-/* Returns the change of a state in a second. */
+/* Returns the time derivative of a state. */
 function rates(pin, [x, y, vx, vy]) {
   const [sx, sy] = [vx + pin.disc_speed * y, vy - pin.disc_speed * x];
   const hold = pin.friction_force / Math.hypot(sx, sy);
