@@ -1,11 +1,11 @@
-# `make report` and `make test` each do all that a fresh machine needs: Python >= 3.11 with venv, and make.
+# `make report` and `make test` set everything up on a fresh machine with Python >= 3.11 (with venv) and make.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# What is imported is compiled then: most of what libraries have is not. The warning is about folders beside this one's.
+# Imports compile the few modules that we use, so pip need not compile all. The warning concerns sibling folders.
 INSTALL = PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --no-compile --editable
 
-# Where it is set, as in many images, each of the many processes would compile all of these modules anew.
+# If it is set, as in many images, every process compiles all these modules again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report findings test lint docs paper dist benchmarks clean
@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
 
-# Writes docs/findings.md and its numbers from the last report; .ci/run fails where a report deviates from them.
+# Writes docs/findings.md and its numbers from the last report. .ci/run fails if a report deviates from them.
 findings: $(VENV)/installed
 	$(BIN)/python builders/findings.py write report/results.json
 
@@ -26,15 +26,15 @@ lint: $(VENV)/for-tests
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# The site: site/index.html, with the last report if there is one. A warning is an error.
+# Builds the site in site/index.html, with the last report if it exists. A warning is an error.
 docs: $(VENV)/for-docs
 	$(BIN)/python docs/site/build.py
 
-# The paper about the findings, docs/paper/paper.pdf, with the figures of the last report.
+# Builds the paper about the findings, docs/paper/paper.pdf, with the figures of the last report.
 paper: $(VENV)/for-docs
 	$(BIN)/python docs/paper/build.py
 
-# Wheel and source archive, and a check that each holds what it should.
+# Builds and checks the wheel and the source archive.
 dist: $(VENV)/installed
 	$(INSTALL) '.[release]'
 	rm -rf dist
@@ -60,7 +60,7 @@ $(VENV)/installed: pyproject.toml
 	$(INSTALL) '.[sweep]'
 	touch $@
 
-# Whoever only wants a report does not wait for what tests need.
+# A report does not need the packages for tests.
 $(VENV)/for-tests: $(VENV)/installed
 	$(INSTALL) '.[test,lint]'
 	touch $@

@@ -1,7 +1,6 @@
-"""Draw the matrix of engines, the README's first picture, from what is recorded.
+"""Draw the matrix of engines, the figure in README, from the recordings: ``python docs/draw_engines.py``.
 
-Run as ``python docs/draw_engines.py``. ``engines.png`` says in its metadata what it was drawn from, so that a test
-can tell when it is out of date.
+The metadata of ``engines.png`` contains its data, so a test can detect an outdated figure.
 """
 
 import json
@@ -20,19 +19,19 @@ COLUMNS = {
     "slip": "pin slides",
     "stick-slip": "pin sticks and slips",
     "whirl": "pin whirls",
-    "stuck": "pin is carried round",
-    "release": "pin lets go",
+    "stuck": "pin sticks permanently",
+    "release": "pin releases",
     "disc": "disc on six points",
 }
-"""What the motions of ``compare.foreign.cases`` are called here."""
+"""Column titles of the motions of ``compare.foreign.cases``."""
 
-LAW = "law of friction"
+LAW = "friction law"
 COLOURS = {"✓": "#bfe3cf", "?": "#fff3bf", "✗": "#e0796b", "": "white"}
-"""From light to dark, so that they differ in grey as well."""
+"""From light to dark, so that they also differ in grey."""
 
 
 def cells():
-    """Return for each engine and setting the mark and the text of each column."""
+    """Return the mark and the text of each column, by engine and setting."""
     table = {}
     for recording in recordings():  # ours first
         row = row_of(recording)
@@ -46,12 +45,12 @@ def cells():
 
 
 def drawn_from():
-    """Return in a line what the picture shows."""
+    """Return the contents of the figure as one line of JSON."""
     return json.dumps(cells(), ensure_ascii=False)
 
 
 def draw():
-    """Return the picture."""
+    """Return the figure."""
     table = cells()
     names = [*COLUMNS, LAW]
     figure = Figure(figsize=(9.0, 0.235 * len(table) + 1.0), layout="constrained")

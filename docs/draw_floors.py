@@ -1,8 +1,7 @@
-"""Draw the floors of the house from its real imports: run as ``python docs/draw_floors.py``.
+"""Draw the layers of the packages from the actual imports: ``python docs/draw_floors.py``.
 
-The floors are the contracts in ``pyproject.toml``, which import-linter checks; the arrows are what the files of one
-room import from another. ``floors.svg`` has in its description what it was drawn from, so that a test can tell when
-it is out of date.
+The layers are the contracts in ``pyproject.toml``, which import-linter checks. The arrows are the imports between the
+modules of a package. The description in ``floors.svg`` contains its data, so a test can detect an outdated figure.
 """
 
 import ast
@@ -22,7 +21,7 @@ PLACES = {
     "fmu_models": (8.0, 6.9),
     "reference_model": (13.8, 0.0),
 }
-"""Left lower corner of each package, which imports from those to its right only."""
+"""Lower left corner of each package. A package imports only from packages to its right."""
 
 COLOURS = {
     "compare": "tab:blue",
@@ -31,7 +30,7 @@ COLOURS = {
     "reference_model": "tab:green",
 }
 WIDTH, HEIGHT, LINE, GAP = 2.0, 0.6, 1.2, 0.25
-"""Of a room; from floor to floor; between rooms."""
+"""Size of a module; distance between layers; gap between modules."""
 
 
 BETWEEN = {
@@ -41,14 +40,14 @@ BETWEEN = {
     ("fmu_models", "reference_model"): ((12.3, 7.5), (14.9, 7.5), 0.2),
     ("exudyn_models", "reference_model"): ((12.3, 1.8), (13.7, 1.8), 0.2),
 }
-"""Start and end of the arrows between packages, and how far above them their words stand."""
+"""Start and end of the arrows between packages, and the height of their labels above them."""
 
 MOST_NAMED = 3
-"""Rooms that stand beside such an arrow."""
+"""Largest number of modules named next to such an arrow."""
 
 
 def floors():
-    """Return for each package its floors, the highest first, each a list of rooms."""
+    """Return the layers of each package, top layer first, each a list of modules."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"][
         "contracts"
     ]
@@ -62,7 +61,7 @@ def floors():
 
 
 def imports():
-    """Return the pairs of rooms, as "package.room", of which the files of the first import from the second."""
+    """Return the pairs of modules ("package.module") whose first member imports from the second."""
     found = set()
     for package in PLACES:
         for path in (ROOT / package).rglob("*.py"):
@@ -76,19 +75,19 @@ def imports():
 
 
 def room_of(parts):
-    """Return "package.room" of a module or of what is in it; what a package itself hands out is in no room."""
+    """Return "package.module" for a dotted name, or "" for a name that the package itself exports."""
     package, room = [*parts, ""][:2]
     inside = (ROOT / package / room).is_dir() or (ROOT / package / f"{room}.py").is_file()
     return f"{package}.{room}" if room and room != "__init__" and inside else ""
 
 
 def drawn_from():
-    """Return all that the picture shows, as text."""
+    """Return the contents of the figure as JSON."""
     return json.dumps({"floors": floors(), "imports": imports()})
 
 
 def places():
-    """Return the middle of each room, by "package.room"."""
+    """Return the centre of each module, by "package.module"."""
     found = {}
     for package, layers in floors().items():
         left, low = PLACES[package]
@@ -101,7 +100,7 @@ def places():
 
 
 def needed(arrows):
-    """Return the arrows that do not follow from others, by way of a room in between."""
+    """Return the arrows that no path through another module implies."""
     return {
         (here, there)
         for here, there in arrows
@@ -112,19 +111,19 @@ def needed(arrows):
 
 
 def reaches(arrows, here, there):
-    """Tell whether there is a way along ``arrows``, which has no circles."""
+    """Return whether a path along ``arrows``, which have no cycles, connects two modules."""
     return any(begin == here and (end == there or reaches(arrows, end, there)) for begin, end in arrows)
 
 
 def draw():
-    """Return the picture."""
+    """Return the figure."""
     figure = Figure(figsize=(11.0, 6.6), layout="constrained")
     panel = figure.subplots()
     middle = places()
     inside = {pair for pair in imports() if pair[0].split(".")[0] == pair[1].split(".")[0]}
     for here, there in sorted(inside):
         (x, y), (to_x, to_y) = middle[here], middle[there]
-        far = y - to_y > 1.5 * LINE and abs(x - to_x) < WIDTH  # past the rooms in between
+        far = y - to_y > 1.5 * LINE and abs(x - to_x) < WIDTH  # bend around the modules in between
         look = {
             "arrowstyle": "-|>",
             "color": COLOURS[here.split(".")[0]],
@@ -158,7 +157,7 @@ def draw():
         words = (
             "\n".join(room.split(".")[1] for room in rooms)
             if len(rooms) <= MOST_NAMED
-            else f"{len(rooms)} rooms"
+            else f"{len(rooms)} modules"
         )
         panel.text(
             (x + to_x) / 2, (y + to_y) / 2 + beside, words, ha="center", va="bottom", fontsize=8, color="0.4"

@@ -1,4 +1,4 @@
-"""Draw the picture of the guide that is no result of a run: run as ``python docs/make_pictures.py``."""
+"""Draw the figure of symbols in the guide: ``python docs/make_pictures.py``."""
 
 from pathlib import Path
 
@@ -8,23 +8,23 @@ from matplotlib.patches import Circle
 
 MASTER, DISC, FRICTION = "tab:blue", "tab:orange", "tab:red"
 CENTRE, SHAFT, RADIUS = 0.55 + 0.5j, 1.3 + 0.0j, 0.9
-SLIP = -0.75j * CENTRE  # of a centre at rest
+SLIP = -0.75j * CENTRE  # slip of a centre at rest
 
 
 def xy(place):
-    """Return a complex place as Matplotlib takes it."""
+    """Return the coordinates of a complex position for Matplotlib."""
     return place.real, place.imag
 
 
 def arrow(panel, start, end, colour, name="", beside=0j):
-    """Draw an arrow, with its name beside the end."""
+    """Draw an arrow with its name next to the end."""
     look = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 15}
     panel.annotate("", xy=xy(end), xytext=xy(start), arrowprops=look)
     panel.text(*xy(end + beside), name, color=colour, ha="center", va="center", fontsize=13)
 
 
 def turning(panel, centre, radius, degrees, colour, name):
-    """Draw an arrow round a centre from the first to the last of ``degrees``."""
+    """Draw an arc with an arrowhead around a centre, from the first to the last of ``degrees``."""
     way = centre + radius * np.exp(1j * np.radians(np.linspace(*degrees, 50)))
     panel.plot(way.real, way.imag, color=colour)
     arrow(panel, way[-2], way[-1] + (way[-1] - way[-2]), colour)

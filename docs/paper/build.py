@@ -1,6 +1,6 @@
-"""Build the paper: ``python docs/paper/build.py``, from the report in ``report/``, whose figures it has.
+"""Build the paper: ``python docs/paper/build.py``.
 
-Its numbers are those of ``docs/numbers.json``, which ``make findings`` takes from a report.
+The figures come from ``report/``. The numbers come from ``docs/numbers.json``, which ``make findings`` writes.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ FIGURES = ROOT / "report" / "figures"
 
 
 def figures() -> list[str]:
-    """Return the names of the figures that the paper has."""
+    """Return the names of the figures in the paper."""
     return re.findall(r'#shown\("([^"]+)"', SOURCE.read_text(encoding="utf-8"))
 
 
 def main() -> int:
-    """Write ``paper.pdf`` beside its source and return the exit status."""
+    """Write ``paper.pdf`` next to its source and return the exit status."""
     missing = [name for name in figures() if not (FIGURES / f"{name}.svg").exists()]
     if missing:
-        print(f"no {', '.join(missing)} in {FIGURES}: make report", file=sys.stderr)
+        print(f"missing in {FIGURES}: {', '.join(missing)}; run make report first", file=sys.stderr)
         return 2
     import typst
 

@@ -1,8 +1,7 @@
 """Build the site: ``python docs/site/build.py [FOLDER]``; a warning is an error.
 
-The pages are those of ``docs/``, as they are. A page may link to any file of the repository, which the site shows as
-a page of code. Changelog and the guide for contributors are pages too, and where there is a report in ``report/``,
-the site has it with its figures.
+The site contains the pages of ``docs/``, the changelog and the guide for contributors. A file of the repository
+that a page links to becomes a page of code. If ``report/`` contains a report, the site includes it with its figures.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ DOCS = ROOT / "docs"
 REPORT = ROOT / "report"
 
 WHOLE = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "README.md": "index.md"}
-"""What stands outside of docs, by its page of the site; the README has a page of its own there."""
+"""Pages outside docs, with their names on the site. The site has its own start page instead of the README."""
 
 LINK = re.compile(r"\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 LANGUAGES = {".py": "python", ".c": "c", ".js": "javascript"}
@@ -42,7 +41,7 @@ SECTIONS = {
     ),
     "Development": ("architecture", "contributing", "changelog"),
 }
-"""Pages in the order of the navigation."""
+"""Pages by section, in the order of the navigation."""
 
 API = {
     "reference-model": ("reference_model",),
@@ -58,10 +57,10 @@ API = {
         "compare.output.figures",
     ),
 }
-"""What is public, by page."""
+"""Public modules by page."""
 
 DATA = {"exudyn_models": ("exudyn_models.drivetrain.parameters.PASSENGER_CAR",)}
-"""What is public, is no function, and has its words where it comes from."""
+"""Public data by module, documented where it is defined."""
 
 
 def gather(folder: Path) -> None:
@@ -93,7 +92,7 @@ def _repository_path(link: str, source: str) -> str:
 
 
 def _outside(text: str, source: str) -> Iterator[str]:
-    """Yield the files of the repository that a page links to and that are no pages of the site."""
+    """Yield the files that a page links to and that are not pages of the site."""
     for link, _ in LINK.findall(text):
         path = _repository_path(link, source)
         if path not in WHOLE and not _is_of_docs(path) and (ROOT / path).is_file():
@@ -101,7 +100,7 @@ def _outside(text: str, source: str) -> Iterator[str]:
 
 
 def _is_of_docs(path: str) -> bool:
-    """Tell whether a file of the repository is a page or a picture of the site."""
+    """Return whether a file of the repository is a page or a figure of the site."""
     return posixpath.dirname(path) == "docs" and not path.endswith(".py")
 
 
@@ -110,7 +109,7 @@ def _page_of(path: str) -> str:
 
 
 def moved(text: str, source: str, uri: str) -> str:
-    """Return a page whose links lead to pages of the site, from ``source`` in the repository to its place there."""
+    """Return a page with its links changed from files of the repository to pages of the site."""
 
     def replaced(found: re.Match[str]) -> str:
         path = _repository_path(found[1], source)
@@ -123,14 +122,14 @@ def moved(text: str, source: str, uri: str) -> str:
         elif (ROOT / path).is_dir():
             to = "gallery.md"
         else:
-            return found[0]  # of which Sphinx complains
+            return found[0]  # Sphinx reports it
         return f"]({posixpath.relpath(to, posixpath.dirname(uri) or '.')}{found[2] or ''})"
 
     return LINK.sub(replaced, text)
 
 
 def _navigation() -> str:
-    """Return what Sphinx makes the navigation of."""
+    """Return the tables of contents from which Sphinx builds the navigation."""
     blocks = [
         f":caption: {caption}\n:hidden:\n:maxdepth: 1\n\n" + "\n".join(names)
         for caption, names in SECTIONS.items()
@@ -160,7 +159,7 @@ def _report() -> str:
     """Return the page about the latest report, with its figures."""
     if not (REPORT / "results.json").exists():
         return (
-            "# Latest report\n\nThere was none when this site was built: `make report`, then `make docs`.\n"
+            "# Latest report\n\nThis site was built without a report: run `make report`, then `make docs`.\n"
         )
     results = json.loads(_text(REPORT / "results.json"))
     totals = ", ".join(

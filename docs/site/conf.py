@@ -1,4 +1,4 @@
-"""Sphinx's settings for the site; ``build.py`` beside it gathers the pages."""
+"""Sphinx settings of the site; ``build.py`` gathers the pages."""
 
 import re
 
@@ -17,7 +17,7 @@ highlight_language = "text"
 
 myst_heading_anchors = 3
 myst_links_external_new_tab = False
-suppress_warnings = ["myst.header"]  # of the changelog, whose headings leave out a level
+suppress_warnings = ["myst.header"]  # the headings of the changelog skip a level
 
 autodoc_default_options = {"members": True, "member-order": "bysource", "show-inheritance": False}
 autodoc_typehints = "description"
@@ -30,12 +30,12 @@ LITERAL = re.compile(r"(``.*?``)")
 
 
 def setup(app):
-    """Let bars in docstrings be bars, |v| for a size, before anything else reads them."""
+    """Escape bars such as |v| in docstrings before other extensions read them."""
     app.connect("autodoc-process-docstring", escape_bars, priority=100)
 
 
 def escape_bars(app, what, name, thing, options, lines):
-    """Escape bars in place, but in literals, and in blocks below a line that ends with two colons."""
+    """Escape bars in place, except in literals and in blocks after a line that ends with two colons."""
     margin = None
     for place, line in enumerate(lines):
         indent = len(line) - len(line.lstrip())
