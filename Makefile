@@ -25,6 +25,7 @@ lint: $(VENV)/for-tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python builders/check_prose.py
 
 # Builds the site in site/index.html, with the last report if it exists. A warning is an error.
 docs: $(VENV)/for-docs

@@ -110,7 +110,7 @@ def gear_power(mbs, t):
 
 
 def gear_energy(mbs):
-    """Return what the springs of both gears store, in J."""
+    """Return the energy in the springs of both gears in J."""
     twists = [angle(shaft) - ratio * angle(wheels) for shaft, ratio in zip(shafts, RATIOS, strict=True)]
     return STIFFNESS * float(np.dot(twists, twists)) / 2.0
 

@@ -129,7 +129,7 @@ def moved(text: str, source: str, uri: str) -> str:
 
 
 def _navigation() -> str:
-    """Return the tables of contents from which Sphinx builds the navigation."""
+    """Return the tables of contents for the navigation by Sphinx."""
     blocks = [
         f":caption: {caption}\n:hidden:\n:maxdepth: 1\n\n" + "\n".join(names)
         for caption, names in SECTIONS.items()
