@@ -29,7 +29,7 @@ RESULT = "what a string says"  # with which it begins
 def root(tmp_path):
     (tmp_path / "docs").mkdir()
     (tmp_path / "builders").mkdir()
-    (tmp_path / "docs" / "page.md").write_text(PAGE, encoding="utf-8")
+    (tmp_path / "docs" / "sweeps.md").write_text(PAGE, encoding="utf-8")
     (tmp_path / "docs" / "module.py").write_text(MODULE, encoding="utf-8")
     return tmp_path
 
@@ -39,27 +39,27 @@ def budgets(root, text):
 
 
 def test_a_file_above_its_budget_fails_with_its_sentences(root, capsys):
-    budgets(root, "1 docs/page.md\n2 docs/module.py\n")
+    budgets(root, "1 docs/sweeps.md\n2 docs/module.py\n")
     assert CHECK["main"]([], root) == 1
     assert capsys.readouterr().out.splitlines() == [
-        "docs/page.md: 2 unclear constructions, budget 1",
+        "docs/sweeps.md: 2 unclear constructions, budget 1",
         "  3: A page about friction, which is no pass.",
         "  6: Of Drake, creep is not recorded.",
     ]
 
 
 def test_a_file_below_its_budget_passes_with_the_command_that_lowers_it(root, capsys):
-    budgets(root, "3 docs/page.md\n2 docs/module.py\n1 docs/gone.md\n")
+    budgets(root, "3 docs/sweeps.md\n2 docs/module.py\n1 docs/glossary.md\n")
     assert CHECK["main"]([], root) == 0
     assert capsys.readouterr().out == (
-        "below budget: docs/page.md, docs/gone.md; run python builders/check_prose.py lower\n"
+        "below budget: docs/sweeps.md, docs/glossary.md; run python builders/check_prose.py lower\n"
     )
 
 
 def test_budgets_are_lowered_and_never_raised(root):
-    budgets(root, "3 docs/page.md\n1 docs/module.py\n1 docs/gone.md\n")
+    budgets(root, "3 docs/sweeps.md\n1 docs/module.py\n1 docs/glossary.md\n")
     assert CHECK["main"](["lower"], root) == 0
-    assert (root / CHECK["BUDGET"]).read_text() == "1 docs/module.py\n2 docs/page.md\n"
+    assert (root / CHECK["BUDGET"]).read_text() == "1 docs/module.py\n2 docs/sweeps.md\n"
 
 
 def test_an_empty_table_stays_empty_but_a_missing_one_is_written(root):
@@ -68,4 +68,4 @@ def test_an_empty_table_stays_empty_but_a_missing_one_is_written(root):
     assert (root / CHECK["BUDGET"]).read_text() == ""
     (root / CHECK["BUDGET"]).unlink()
     CHECK["main"](["lower"], root)
-    assert (root / CHECK["BUDGET"]).read_text() == "2 docs/module.py\n2 docs/page.md\n"
+    assert (root / CHECK["BUDGET"]).read_text() == "2 docs/module.py\n2 docs/sweeps.md\n"

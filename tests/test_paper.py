@@ -42,7 +42,9 @@ def test_the_paper_without_a_report_says_what_it_lacks(monkeypatch, capsys, tmp_
     script = runpy.run_path(str(PAPER / "build.py"))
     monkeypatch.setitem(script["main"].__globals__, "FIGURES", tmp_path)
     assert script["main"]() == 2
-    assert capsys.readouterr().err.startswith("no basins, fig06-branches, stability-map in ")
+    assert capsys.readouterr().err == (
+        f"missing in {tmp_path}: basins, fig06-branches, stability-map; run make report first\n"
+    )
 
 
 def test_what_the_paper_cites_is_among_its_references():

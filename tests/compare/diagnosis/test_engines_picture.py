@@ -14,5 +14,5 @@ def test_the_picture_of_the_engines_is_drawn_from_what_is_recorded():
 
 def test_a_law_that_is_no_cone_is_marked_in_the_picture():
     cells = runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))["cells"]()
-    assert cells["MuJoCo, pyramidal cone"]["law of friction"] == ["✗", "pyramid"]
+    assert cells["MuJoCo, pyramidal cone"]["friction law"] == ["✗", "pyramid"]
     assert {mark for mark, _ in cells["reference"].values()} == {"✓"}
