@@ -1,8 +1,8 @@
-"""The numbers in README, in docs/findings.md and in the paper, taken from a report.
+"""Take the numbers in README, docs/findings.md and the paper from a report.
 
-``builders/findings.md`` and the paper's source name each number by ``#n("fig05: dividing velocity, reference")``: a
-study and a quote of one of its claims (see ``compare.report.quotes``). "claims" and "verdicts: independent" are
-counts of a whole report. README contains the numbers of ``IN_README`` as they are printed::
+``builders/findings.md`` and the paper's source name each number as in ``#n("fig05: dividing velocity, reference")``:
+a study and a quote of one of its claims (see ``compare.report.quotes``). "claims" and "verdicts: independent" are
+counts of a whole report. README contains the numbers of ``IN_README`` literally::
 
     python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md
     python builders/findings.py check report/results.json   # fails if the report deviates from them
@@ -39,14 +39,14 @@ IN_README = (
 )
 
 FACTOR_BETWEEN_MACHINES = 10.0
-"""Factor by which an error may differ between machines, because rounding and the steps that depend on it differ."""
+"""Largest ratio of an error between machines. Rounding differs, and the choice of steps depends on it."""
 
 Results = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class Number:
-    """A printed number with its value, its error, and what kind of number it is."""
+    """A printed number with its value, its error and its nature."""
 
     text: str
     value: float
@@ -54,7 +54,7 @@ class Number:
     nature: Nature
 
     def deviates_from(self, other: Number) -> bool:
-        """Tell whether two reports contradict each other: in a count at all, in others beyond their errors."""
+        """Return whether two reports differ: counts by any amount, other numbers by more than their errors."""
         if self.nature != other.nature:
             return True
         if self.nature == "count":
@@ -66,7 +66,7 @@ class Number:
 
 
 def wanted(root: Path = ROOT) -> tuple[str, ...]:
-    """Return the names of all numbers, each once."""
+    """Return the distinct names of all numbers."""
     sources = (root / "builders" / "findings.md", *sorted((root / "docs" / "paper").glob("*.typ")))
     quoted = (name for path in sources for name in QUOTED.findall(path.read_text(encoding="utf-8")))
     return tuple(sorted({*IN_README, *quoted}))
@@ -85,7 +85,7 @@ def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
 
 
 def number_in(results: Results, name: str) -> Number | None:
-    """Return a number of a report, or None if the report did not measure it.
+    """Return a number from a report, or None if the report did not measure it.
 
     Raises ``ValueError`` if the report contains the study but none of its claims has that name.
     """
@@ -118,7 +118,7 @@ def _is_whole(results: Results) -> bool:
 
 
 def _agreeing_by_evidence(results: Results) -> Counter[str]:
-    """Count the cells of the matrix that agree, by evidence; the worst of several claims in a cell counts."""
+    """Count the cells of the matrix that agree, by evidence. The worst claim of a cell decides."""
     cells: dict[tuple[str, ...], list[dict[str, Any]]] = {}
     for study in results["studies"]:
         for claim in study["claims"]:
@@ -141,7 +141,7 @@ def _count_of_claims(results: Results) -> int:
 
 
 def write(results: Results, root: Path = ROOT) -> None:
-    """Write the numbers of a report; numbers that it did not measure stay."""
+    """Write the numbers of a report and keep the numbers that it did not measure."""
     old = kept(root)
     numbers = {name: number_in(results, name) or old[name] for name in wanted(root)}
     content = {name: asdict(number) for name, number in numbers.items()}
@@ -150,7 +150,7 @@ def write(results: Results, root: Path = ROOT) -> None:
 
 
 def deviations(results: Results, root: Path = ROOT) -> Iterator[str]:
-    """Yield a sentence for each kept number from which the report deviates."""
+    """Yield a sentence for each kept number that the report contradicts."""
     for name, number in kept(root).items():
         measured = number_in(results, name)
         if measured is not None and number.deviates_from(measured):
@@ -161,7 +161,7 @@ def deviations(results: Results, root: Path = ROOT) -> Iterator[str]:
 
 
 def unmeasured(results: Results) -> Iterator[str]:
-    """Yield a sentence for each quote in a study's text that no claim of a whole report measures."""
+    """Yield a sentence for each quote in a study's text that no claim of a complete report measures."""
     from compare.studies import studies
 
     found = {study["name"]: study["claims"] for study in results["studies"]} if _is_whole(results) else {}
@@ -174,7 +174,7 @@ def unmeasured(results: Results) -> Iterator[str]:
 
 
 def outdated(root: Path = ROOT) -> Iterator[str]:
-    """Yield a sentence for each text that does not contain the kept numbers."""
+    """Yield a sentence for each text that lacks a kept number."""
     numbers = kept(root)
     if set(numbers) != set(wanted(root)):
         yield f"docs/numbers.json lacks or does not need {sorted(set(numbers) ^ set(wanted(root)))}"

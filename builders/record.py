@@ -1,13 +1,13 @@
-"""Measure foreign engines, and our own beside them, and write ``compare/foreign/<engine>.json`` for the report.
+"""Measure foreign engines and our own, and write ``compare/foreign/<engine>.json`` for the report.
 
     pip install --editable '.[engines]'
     python builders/record.py                 # all engines: ten minutes of one core
     python builders/record.py mujoco bullet   # or some of them
-    python builders/record.py --laws          # what tells the law alone; times and errors stay as they are recorded
+    python builders/record.py --laws          # only the friction laws; recorded times and errors are kept
 
-Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
-of ``compare.claims.error_estimates.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is
-left out, with a sentence. Times are to be compared within one recording only.
+Each setting of an engine simulates the cases of ``compare.foreign.cases``. The tolerance falls by the factor
+``compare.claims.error_estimates.COARSENING`` until a run takes ``LONGEST``. The command skips an engine that is not
+installed and says so. Times are comparable only within one recording.
 """
 
 from __future__ import annotations
@@ -45,33 +45,33 @@ from reference_model.systems import System
 from reference_model.trajectory import Solution
 
 LONGEST = 0.7
-"""Seconds: the first run that takes so long is the last of its ladder,"""
+"""Time of a run in s that ends its ladder,"""
 
 LEAST = 5
-"""unless it has fewer runs than this, which an order takes."""
+"""unless the ladder has fewer runs than this, which an order of convergence needs."""
 
 TOLERANCES = 1e-2 / COARSENING ** np.arange(12)
 
 PROGRAMS = {"rapier": "Rapier", "jolt": "Jolt"}
-"""Engines of npm, by what ``examples/exec_contact.js`` is told; node_modules has to be in the current folder."""
+"""npm engines by the argument of ``examples/exec_contact.js``. The current folder must contain node_modules."""
 
 OURS = {"reference": "friction-discs", "exudyn": "exudyn", "exudyn-native": "exudyn"}
-"""Our own engines, and the package whose version they have."""
+"""Our own engines, and the packages that give their versions."""
 
 NAMES = (*INSTALLED, *PROGRAMS, *OURS)
 
 PROBE_LIMIT = 60.0
-"""In s, after which a probe of the law is given up; the row then has none."""
+"""Time limit of a probe of the friction law in s. The row then lacks its result."""
 
 FINEST = 2e-3
-"""The least step of a program in single precision, in units of 1/max(k, ω): at 1.3e-3 rounding spoils Rapier."""
+"""Smallest step in single precision, in units of 1/max(k, ω). At 1.3e-3 rounding spoils Rapier."""
 
 Simulate = Callable[..., Trajectory]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What is recorded: an engine with its promises, what simulates to a tolerance, and how it is set."""
+    """An engine, its simulate function with a tolerance, and a description of its settings."""
 
     engine: Engine
     simulate: Simulate
@@ -79,7 +79,7 @@ class Setting:
 
 
 def settings_of(name: str) -> dict[str, Setting]:
-    """Return the settings of an engine, by name; raise ``ValueError`` where it is not installed."""
+    """Return the settings of an engine by name; raise ``ValueError`` if the engine is not installed."""
     if name in INSTALLED:
         found = {}
         for key in INSTALLED[name].settings:
@@ -97,7 +97,7 @@ def settings_of(name: str) -> dict[str, Setting]:
 
 
 def by_steps(engine: Engine, system: System, start: Any, times: Any, *, tolerance: float) -> Trajectory:
-    """Return the motion by a program, with steps that go with the tolerance as those of adapters do."""
+    """Return a motion from a program, with steps derived from the tolerance as in the adapters."""
     step = max(0.1 * tolerance ** (1.0 / 3.0), FINEST) / rate(system)
     before = time.perf_counter()
     found = engine.function(system, start, times, step=step)
@@ -107,23 +107,21 @@ def by_steps(engine: Engine, system: System, start: Any, times: Any, *, toleranc
 
 
 def ladder(simulate: Simulate, case: Case, *, outside: bool = False) -> list[list[float | None]]:
-    """Return a row of ``COLUMNS`` for each tolerance, from the largest on.
+    """Return a row of ``COLUMNS`` for each tolerance, largest first.
 
-    What another process does, ``outside``, is timed by the clock alone.
+    For an engine in another process (``outside``) only the wall-clock time is known.
     """
-    _timed(
-        simulate, case, case.times[:2], TOLERANCES[0], outside
-    )  # what is compiled or loaded at the first call
+    _timed(simulate, case, case.times[:2], TOLERANCES[0], outside)  # the first call compiles or loads
     rows: list[list[float | None]] = []
     before = None
     for tolerance in TOLERANCES.tolist():
         trajectory, seconds, wall = _timed(simulate, case, case.times, tolerance, outside)
         if trajectory is None:
-            continue  # at a tolerance this large
+            continue  # the tolerance is too large
         found = case.quantity(trajectory)
         error = float(np.max(np.abs(found - case.exact())))
         change = None if before is None else float(np.max(np.abs(found - before)))
-        if change != 0.0:  # as where the longest or the shortest step of an engine comes before the tolerance
+        if change != 0.0:  # else a limit of the step, not the tolerance, determines it
             row = (tolerance, trajectory.solution.steps, error, change, seconds, wall)
             rows.append([value and float(f"{value:.{DIGITS}g}") for value in row])
             before = found
@@ -167,7 +165,7 @@ def record(name: str) -> dict[str, Any]:
 
 
 def probes(engine: Engine) -> dict[str, Any]:
-    """Return what tells the law of friction of a setting, as JSON; what does not end or fails is left out."""
+    """Return the probes of an engine's friction law as JSON, without those that fail or exceed the time limit."""
     found = {}
     with Workers(1, PROBE_LIMIT) as workers:
         for probe in PROBES:
@@ -181,7 +179,7 @@ def probes(engine: Engine) -> dict[str, Any]:
 
 
 def record_laws(name: str) -> dict[str, Any]:
-    """Return what is recorded of an engine with what tells its laws measured anew."""
+    """Return the recording of an engine with new probes of its friction laws."""
     found: dict[str, Any] = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     simulating = settings_of(name)
     for setting in found["settings"]:
@@ -191,28 +189,26 @@ def record_laws(name: str) -> dict[str, Any]:
 
 
 def written(found: dict[str, Any]) -> str:
-    """Return JSON with a line for each row of numbers."""
+    """Return JSON with one line per row of numbers."""
     text = json.dumps(found, ensure_ascii=False, indent=1)
     rows = re.sub(r"\[([^\[\]{}\"]+)\]", lambda row: "[" + " ".join(row[1].split()) + "]", text)
     return rows + "\n"
 
 
 def main() -> None:
-    """Record the engines that are named, or all."""
+    """Record the given engines, or all."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("engines", nargs="*", metavar="ENGINE", help=", ".join(NAMES))
-    parser.add_argument(
-        "--laws", action="store_true", help="measure anew what tells the law, and nothing else"
-    )
+    parser.add_argument("--laws", action="store_true", help="measure only the friction laws again")
     given = parser.parse_args()
     names = given.engines or list(NAMES)
     if unknown := set(names) - set(NAMES):
-        parser.error(f"no engine {', '.join(sorted(unknown))}: known are {', '.join(NAMES)}")
+        parser.error(f"unknown engine {', '.join(sorted(unknown))}: expected one of {', '.join(NAMES)}")
     for name in names:
         try:
             found = record_laws(name) if given.laws else record(name)
         except ValueError as error:
-            print(f"{name} is left out: {error}", file=sys.stderr)
+            print(f"{name} skipped: {error}", file=sys.stderr)
             continue
         (FOLDER / f"{name}.json").write_text(written(found), encoding="utf-8", newline="\n")
 

@@ -1,7 +1,7 @@
-"""Build wheel and source archive, and check that each holds what it should: ``python builders/release.py [DIST]``.
+"""Build the wheel and the source archive and check their contents: ``python builders/release.py [DIST]``.
 
-The wheel has every file of the packages that is under version control, data and templates too, and no other. The
-source archive also has all that a reader needs to test and to build the documentation.
+The wheel contains exactly the files of the packages that are under version control, including data and templates. The
+source archive also contains the tests and the documentation.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ REPOSITORY_ONLY = (".ci", ".github", ".gitignore")
 
 
 def tracked() -> set[str]:
-    """Return the files under version control that are there."""
+    """Return the existing files under version control."""
     out = subprocess.run(
         ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, encoding="utf-8"
     )
@@ -27,14 +27,14 @@ def tracked() -> set[str]:
 
 
 def complaints_of_wheel(names: Iterable[str], files: set[str]) -> list[str]:
-    """Return a sentence for each file of the packages that a wheel lacks, and for each that it has in vain."""
+    """Return a sentence for each file that a wheel lacks and for each superfluous file."""
     inside = {name for name in names if not name.split("/")[0].endswith(".dist-info")}
     wanted = {name for name in files if name.split("/")[0] in PACKAGES}
     return _complaints("the wheel", wanted - inside, inside - wanted)
 
 
 def complaints_of_archive(names: Iterable[str], files: set[str]) -> list[str]:
-    """Return a sentence for each file that a source archive lacks; what the build adds is no matter."""
+    """Return a sentence for each file that a source archive lacks. The build may add other files."""
     inside = {name.partition("/")[2] for name in names}
     wanted = {name for name in files if name.split("/")[0] not in REPOSITORY_ONLY}
     return _complaints("the source archive", wanted - inside, set())
@@ -58,7 +58,7 @@ def main(folder: Path) -> int:
     complaints = complaints_of_wheel(in_wheel, files) + complaints_of_archive(in_archive, files)
     for path, names in ((wheel, in_wheel), (archive, in_archive)):
         print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")
-    print("\n".join(complaints) or "each holds what it should")
+    print("\n".join(complaints) or "both are complete")
     return 1 if complaints else 0
 
 

@@ -360,14 +360,14 @@ def test_a_ladder_has_no_run_that_is_no_better_than_the_one_before(record, commo
     assert rows[1][CHANGE] > 0.0
 
 
-def test_an_engine_that_is_not_installed_is_left_out_with_a_sentence(record, monkeypatch, capsys, tmp_path):
+def test_an_engine_that_is_not_installed_is_skipped_with_a_message(record, monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "pydrake.geometry", None)
     monkeypatch.delitem(sys.modules, "compare.engines.live.drake_engine", raising=False)
     monkeypatch.setattr(record, "FOLDER", tmp_path)
     monkeypatch.setattr(sys, "argv", ["record.py", "drake"])
     record.main()
     said = capsys.readouterr().err
-    assert "drake is left out: engine 'drake': Drake is not installed" in said
+    assert "drake skipped: engine 'drake': Drake is not installed" in said
     assert "pip install drake" in said
     assert "none for Windows" in said
     assert not list(tmp_path.iterdir())
