@@ -17,6 +17,8 @@ from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import StepCheck
+from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact, sticking_contacts
+from exudyn_models.solver.switching import first_modes, run_switching
 from reference_model.trajectory import SimulationError
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -29,7 +31,7 @@ def solve_dynamic(
     updateInitialValues: bool = False,
     *,
     breaks: Sequence[float] = (),
-) -> None:
+) -> list[ModeChange]:
     """Run ``mbs.SolveDynamic`` with the same arguments, and raise what it does not tell.
 
     A step across a jump of a load is wrong by the jump times the part of the step that lies before it, of any order
@@ -53,6 +55,9 @@ def solve_dynamic(
     Where a power of ``add_energy_balance`` or of a sensor of heat jumps a ``RuntimeWarning`` tells so at the end of
     the run, see ``jumps``.
 
+    Friction contacts without a regularisation switch between sliding and stick at the times at which Coulomb's law
+    does. Sensors have an additional row at each of these times, see ``switching``.
+
     Parameters
     ----------
     mbs : exudyn MainSystem
@@ -65,6 +70,11 @@ def solve_dynamic(
         Let the next run go on from where this one ends.
     breaks : sequence of float
         In s, in growing order and within the run: where a load, a coefficient or any other function jumps.
+
+    Returns
+    -------
+    list of ModeChange
+        Changes of the modes of all contacts without a regularisation, in the order of their times.
 
     Raises
     ------
@@ -81,13 +91,17 @@ def solve_dynamic(
         mbs.Assemble()
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
+    contacts, changes = sticking_contacts(mbs), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
         for goes_on in parts:
-            _solve(mbs, simulationSettings, solver, goes_on)
+            changes += _solve(mbs, simulationSettings, solver, goes_on, contacts)
+    return changes
 
 
-def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool) -> None:
-    """Run an assembled model without a break."""
+def _solve(
+    mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool, contacts: list[StickingContact]
+) -> list[ModeChange]:
+    """Run an assembled model without a break; return the changes of modes of ``contacts``."""
     data = mbs.systemData
     options = simulationSettings.timeIntegration
     start = reached = options.startTime
@@ -95,6 +109,7 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
     check = StepCheck(mbs, solver.name, options)
     check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
     jumps = JumpCheck(mbs) if solver in IMPLICIT else None
+    changes: list[ModeChange] = []
 
     positions, velocities, others = (
         data.GetODE2Coordinates,
@@ -117,6 +132,7 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
+            repairs.enter_context(first_modes(mbs, contacts, start))
             if jumps is not None:
                 repairs.enter_context(starting_rates(mbs, start))
                 repairs.enter_context(newton_without_restart(mbs, options.newton))
@@ -124,7 +140,10 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
                 if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
                     repairs.enter_context(restored_accelerations(mbs))
                 jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
-            mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
+            if contacts:
+                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues)
+            else:
+                mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
         raise_interrupt(error)
         if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
@@ -141,6 +160,7 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
         raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
     if jumps is not None:
         jumps.warn()
+    return changes
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
@@ -159,6 +179,7 @@ def _check_constraints(mbs: Any, solver: Any) -> None:
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(
             f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs and any "
-            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG"
+            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs, any "
+            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG, and contacts without regularisation, "
+            "which lock by one, by contacts with it"
         )
