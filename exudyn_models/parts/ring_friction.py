@@ -118,7 +118,7 @@ def add_ring_friction(
         In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
     friction_coefficient : float, table or callable
         μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one, or rows of a slip speed
-        in m/s and its μ, the first one at 0, with a smooth monotone curve between (``friction_curves``).
+        in m/s and its μ, the first one at 0, linear between the rows and beyond the last one, but not below 0.
     normal_load : float or callable
         N in N, >= 0, or a function that returns it: the force along the axis. All ``plates`` carry it.
     regularisation : float, optional
