@@ -16,10 +16,10 @@ from exudyn_models.solver.repeated_steps import newton_without_restart, restored
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.steep_laws import peaks_resolved
-from exudyn_models.solver.step_limit import StepCheck
+from exudyn_models.solver.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact, sticking_contacts
 from exudyn_models.solver.switching import first_modes, run_switching
-from reference_model.trajectory import SimulationError
+from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
@@ -81,7 +81,8 @@ def solve_dynamic(
     ValueError
         If the solver is explicit and the model has algebraic constraints, or ``breaks`` are none.
     SimulationError
-        If a step does not converge, a matrix is singular or a state is not finite.
+        If a step does not converge, a matrix is singular, a state is not finite, or a solver that chooses its steps
+        would need too many.
     exudyn.ExudynError
         What else Exudyn finds; an error in a function of a friction contact arrives as its ``__cause__``.
 
@@ -105,7 +106,10 @@ def _solve(
     data = mbs.systemData
     options = simulationSettings.timeIntegration
     start = reached = options.startTime
-    finite = True
+    finite, too_many = True, ""
+    count = None if solver in IMPLICIT or solver.name in INTERVALS else StepCount(options.endTime)
+    if count is not None:  # steps are as small as the solver likes
+        count.look_from(start)
     check = StepCheck(mbs, solver.name, options)
     check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
     jumps = JumpCheck(mbs) if solver in IMPLICIT else None
@@ -118,7 +122,7 @@ def _solve(
     )
 
     def look(mbs: Any, t: float) -> bool:
-        nonlocal reached, finite
+        nonlocal reached, finite, too_many
         reached = t
         if t >= check.next_time:
             check.warn(t, positions())
@@ -127,7 +131,9 @@ def _solve(
         )
         if jumps is not None:
             jumps.look(t, data.GetODE1Coordinates_t())
-        return finite
+        if count is not None:
+            too_many = count.count(t)
+        return finite and not too_many
 
     try:
         with ExitStack() as repairs:
@@ -156,8 +162,8 @@ def _solve(
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error
         raise
-    if not finite:
-        raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
+    if not finite or too_many:
+        raise SimulationError(advice(solver.name, reached - start, too_many or NOT_FINITE))
     if jumps is not None:
         jumps.warn()
     return changes
