@@ -8,7 +8,8 @@ All that is public has its name here; where it comes from, and where to change i
   ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``. Friction and support are
   ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport`` too, as soon as this package is imported.
 - ``solver``: how to run it. ``solve_dynamic`` is ``mbs.SolveDynamic`` that tells what went wrong;
-  ``largest_stable_step`` is for explicit solvers with a fixed step.
+  It returns a list of ``ModeChange`` if contacts stick exactly. ``largest_stable_step`` is for explicit solvers with
+  a fixed step.
 - ``drivetrain``: engine, clutch and vehicle, made of these parts. ``Drivetrain`` has the parameters,
   ``PASSENGER_CAR`` is one and ``four_cylinder`` its torque; ``build_drivetrain`` returns a ``DrivetrainModel``.
 - ``paper``: the pin and the disc of the paper. ``simulate`` has the call and the result of the reference's,
@@ -33,12 +34,14 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.step_limit import largest_stable_step
+from exudyn_models.solver.sticking_contacts import ModeChange
 
 __all__ = [
     "PASSENGER_CAR",
     "Drivetrain",
     "DrivetrainModel",
     "EnergyBalance",
+    "ModeChange",
     "RadialSupport",
     "RingFriction",
     "ThermalNode",

@@ -14,6 +14,7 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import on_one_axis
+from exudyn_models.forces.axial_stick import AxialStick
 from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
@@ -73,10 +74,11 @@ class RingFriction:
     _factors: LoadAndCoefficient = field(repr=False)
     _functions: dict[str, Any] = field(repr=False)
     _thermal: ThermalNode | None = field(default=None, repr=False)
+    _stick: AxialStick | None = field(default=None, repr=False)
 
     @property
     def compiled(self) -> bool:
-        """Whether friction is found without a function of Python.
+        """Whether load and coefficient are found without a function of Python.
 
         That is so if coefficient and load are numbers, tables or functions of numba (``@numba.njit``), whose values
         for outer names are those of when it compiled them. Any other function is called as it is, from compiled code
@@ -110,6 +112,8 @@ class RingFriction:
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
         )
+        if self._stick is not None:  # asks its factors each time
+            return
         force, jacobian = force_and_jacobian(self._kinds, self._reference, factors)
         self._functions.update(force=force, jacobian=jacobian)
         for name, function in self._functions.items():
@@ -170,6 +174,8 @@ class RingFriction:
                 )
             asked = True
             try:
+                if self._stick is not None:
+                    return self._value_of_stick(mbs, t, quantity, float(slip[2]))
                 if quantity in ("capacity_share", "mode"):
                     creep = self._creep(t, slip, angle, radius)
                     return [
@@ -185,6 +191,20 @@ class RingFriction:
             return cast(list[float], (np.array(axes[:2]).T @ friction[:2]).tolist())
 
         return values
+
+    def _value_of_stick(self, mbs: Any, t: float, quantity: Quantity, spin: float) -> list[float]:
+        """Return a quantity of a contact that sticks exactly, at the time t (s) and the relative spin (rad/s)."""
+        stick = cast(AxialStick, self._stick)
+        if quantity == "radial_force":
+            return [0.0, 0.0, 0.0]
+        if quantity == "mode":
+            return [float(stick.visible_mode)]
+        moment = stick.transmitted_moment(mbs, t, spin)
+        if quantity == "transmitted_moment":
+            return [moment]
+        if quantity == "power":
+            return [-moment * spin]
+        return [stick.capacity_share(mbs, t)]
 
     def power(self, mbs: Any, t: float) -> float:
         """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""

@@ -9,19 +9,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.forces.axial_stick import AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import GROUND, KINDS, SPATIAL, TRANSLATIONS, Kinds, frame
+from exudyn_models.forces.slip_kinematics import GROUND, KINDS, ROTOR, SPATIAL, TRANSLATIONS, Kinds, frame
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.thermal_node import ThermalNode
 from reference_model.systems import finite_number
 
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
 ALL = tuple(KINDS.values())
+
+EXACT = 1e-6
+"""Speed in m/s in place of ε where a contact sticks exactly. It only scales differences for derivatives of μN."""
 
 
 class AddFriction(Protocol):
@@ -53,7 +60,7 @@ def add_ring_friction(
     outer_radius: float | None = None,
     friction_coefficient: Coefficient,
     normal_load: NumberOrFunction,
-    regularisation: float,
+    regularisation: float | None = None,
     contact_points: int | None = None,
     static_ratio: float = 1.0,
     plates: int = 1,
@@ -87,6 +94,12 @@ def add_ring_friction(
     does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by all but
     the time, not what comes by way of sensors.
 
+    Without ``regularisation`` the contact locks: a constraint holds both spins together until the load exceeds the
+    static friction. That needs ``solve_dynamic`` with an implicit solver, and bodies that turn about one axis: rotors
+    (``Node1D``), or other bodies that joints hold on it. It needs no choice of ε, does not creep, and takes steps as
+    large as the motion allows. The switching times are exact to the accuracy of the solver's steps. A contact that
+    reverses twice within one step is not seen.
+
     A static solver keeps the velocities with which the nodes start, so that it finds the equilibrium of a disc on a
     master that turns.
 
@@ -105,11 +118,11 @@ def add_ring_friction(
         In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
     friction_coefficient : float, table or callable
         μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one, or rows of a slip speed
-        in m/s and its μ, the first one at 0, with a smooth monotone curve between (``friction_curves``).
+        in m/s and its μ, the first one at 0, linear between the rows and beyond the last one, but not below 0.
     normal_load : float or callable
         N in N, >= 0, or a function that returns it: the force along the axis. All ``plates`` carry it.
-    regularisation : float
-        ε in m/s, > 0.
+    regularisation : float, optional
+        ε in m/s, > 0. Without it the contact sticks exactly, see below.
     contact_points : int or None
         n >= 1, or None for the whole circle or annulus.
     static_ratio : float
@@ -147,13 +160,43 @@ def add_ring_friction(
     if contact[0] > 0.0:  # a pin exerts no moment
         _check_spins(mbs, nodes, kinds)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
-    force, jacobian = force_and_jacobian(kinds, reference, factors)
+    stick = None
+    if regularisation is None:
+        sliding = LoadAndCoefficient(contact, coefficient, normal_load, plates=plates)
+        factors, stick = sliding, AxialStick(kinds, reference, sliding, static_ratio)
+    force, jacobian = (
+        (stick.force, stick.jacobian) if stick else force_and_jacobian(kinds, reference, factors)
+    )
     item = add_connector(mbs, nodes, force, jacobian)
+    if stick is not None:
+        stick.lock = int(_add_lock(mbs, nodes, stick))
     functions = {"force": force, "jacobian": jacobian}
-    friction = RingFriction(mbs, item, nodes, kinds, reference, factors, functions, thermal_node)
+    friction = RingFriction(mbs, item, nodes, kinds, reference, factors, functions, thermal_node, stick)
     if thermal_node is not None:
         thermal_node.heated_by(friction.power)
     return friction
+
+
+def _add_lock(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> Any:
+    """Add the inactive constraint on the slip of both nodes; return its ``ObjectIndex``."""
+    if len(nodes) == 1:
+        nodes = [mbs.AddNode(items.NodePointGround()), *nodes]
+    if stick.kinds[1] == ROTOR and stick.kinds[0] in (ROTOR, GROUND):
+        markers = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]
+        return mbs.AddObject(
+            items.ObjectConnectorCoordinate(markerNumbers=markers, velocityLevel=True, activeConnector=False)
+        )
+    markers = [mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
+    return mbs.AddObject(
+        items.ObjectConnectorCoordinateVector(
+            markerNumbers=markers,
+            scalingMarker0=np.zeros((1, 1)),  # one equation
+            velocityLevel=True,
+            constraintUserFunction=stick.constraint,
+            jacobianUserFunction=stick.constraint_jacobian,
+            activeConnector=False,
+        )
+    )
 
 
 def checked_pair(
@@ -198,12 +241,13 @@ def _checked_geometry(
     contact_radius: float | None,
     inner_radius: float | None,
     outer_radius: float | None,
-    regularisation: float,
+    regularisation: float | None,
     contact_points: int | None,
     held: int | None,
     pressure: Pressure,
 ) -> Contact:
     """Return the contact, with 1 N in place of μN; raise ``ValueError`` if there is none like it."""
+    regularisation = EXACT if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         inner = radius

@@ -16,8 +16,10 @@ from exudyn_models.solver.repeated_steps import newton_without_restart, restored
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.steep_laws import peaks_resolved
-from exudyn_models.solver.step_limit import StepCheck
-from reference_model.trajectory import SimulationError
+from exudyn_models.solver.step_limit import INTERVALS, StepCheck
+from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact, sticking_contacts
+from exudyn_models.solver.switching import first_modes, run_switching
+from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
@@ -29,7 +31,7 @@ def solve_dynamic(
     updateInitialValues: bool = False,
     *,
     breaks: Sequence[float] = (),
-) -> None:
+) -> list[ModeChange]:
     """Run ``mbs.SolveDynamic`` with the same arguments, and raise what it does not tell.
 
     A step across a jump of a load is wrong by the jump times the part of the step that lies before it, of any order
@@ -53,6 +55,9 @@ def solve_dynamic(
     Where a power of ``add_energy_balance`` or of a sensor of heat jumps a ``RuntimeWarning`` tells so at the end of
     the run, see ``jumps``.
 
+    Friction contacts without a regularisation switch between sliding and stick at the times at which Coulomb's law
+    does. Sensors have an additional row at each of these times, see ``switching``.
+
     Parameters
     ----------
     mbs : exudyn MainSystem
@@ -66,12 +71,18 @@ def solve_dynamic(
     breaks : sequence of float
         In s, in growing order and within the run: where a load, a coefficient or any other function jumps.
 
+    Returns
+    -------
+    list of ModeChange
+        Changes of the modes of all contacts without a regularisation, in the order of their times.
+
     Raises
     ------
     ValueError
         If the solver is explicit and the model has algebraic constraints, or ``breaks`` are none.
     SimulationError
-        If a step does not converge, a matrix is singular or a state is not finite.
+        If a step does not converge, a matrix is singular, a state is not finite, or a solver that chooses its steps
+        would need too many.
     exudyn.ExudynError
         What else Exudyn finds; an error in a function of a friction contact arrives as its ``__cause__``.
 
@@ -81,20 +92,28 @@ def solve_dynamic(
         mbs.Assemble()
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
+    contacts, changes = sticking_contacts(mbs), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
         for goes_on in parts:
-            _solve(mbs, simulationSettings, solver, goes_on)
+            changes += _solve(mbs, simulationSettings, solver, goes_on, contacts)
+    return changes
 
 
-def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool) -> None:
-    """Run an assembled model without a break."""
+def _solve(
+    mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool, contacts: list[StickingContact]
+) -> list[ModeChange]:
+    """Run an assembled model without a break; return the changes of modes of ``contacts``."""
     data = mbs.systemData
     options = simulationSettings.timeIntegration
     start = reached = options.startTime
-    finite = True
+    finite, too_many = True, ""
+    count = None if solver in IMPLICIT or solver.name in INTERVALS else StepCount(options.endTime)
+    if count is not None:  # steps are as small as the solver likes
+        count.look_from(start)
     check = StepCheck(mbs, solver.name, options)
     check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
     jumps = JumpCheck(mbs) if solver in IMPLICIT else None
+    changes: list[ModeChange] = []
 
     positions, velocities, others = (
         data.GetODE2Coordinates,
@@ -103,7 +122,7 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
     )
 
     def look(mbs: Any, t: float) -> bool:
-        nonlocal reached, finite
+        nonlocal reached, finite, too_many
         reached = t
         if t >= check.next_time:
             check.warn(t, positions())
@@ -112,11 +131,14 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
         )
         if jumps is not None:
             jumps.look(t, data.GetODE1Coordinates_t())
-        return finite
+        if count is not None:
+            too_many = count.count(t)
+        return finite and not too_many
 
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
+            repairs.enter_context(first_modes(mbs, contacts, start))
             if jumps is not None:
                 repairs.enter_context(starting_rates(mbs, start))
                 repairs.enter_context(newton_without_restart(mbs, options.newton))
@@ -124,7 +146,10 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
                 if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
                     repairs.enter_context(restored_accelerations(mbs))
                 jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
-            mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
+            if contacts:
+                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues)
+            else:
+                mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
         raise_interrupt(error)
         if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
@@ -137,10 +162,11 @@ def _solve(mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: 
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error
         raise
-    if not finite:
-        raise SimulationError(advice(solver.name, reached - start, NOT_FINITE))
+    if not finite or too_many:
+        raise SimulationError(advice(solver.name, reached - start, too_many or NOT_FINITE))
     if jumps is not None:
         jumps.warn()
+    return changes
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
@@ -159,6 +185,7 @@ def _check_constraints(mbs: Any, solver: Any) -> None:
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(
             f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs and any "
-            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG"
+            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs, any "
+            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG, and contacts without regularisation, "
+            "which lock by one, by contacts with it"
         )

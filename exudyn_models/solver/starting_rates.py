@@ -38,6 +38,15 @@ def starting_rates(mbs: Any, t: float) -> Iterator[None]:
 
 def _rates(mbs: Any, t: float) -> FloatArray:
     """Return the rates at the initial values, shape (n,)."""
+    with initialised_solver(mbs, t) as solver:
+        solver.ComputeODE1RHS(mbs)
+        first, size = mbs.systemData.ODE2Size(), mbs.systemData.ODE1Size()
+        return np.array(solver.GetSystemResidual())[first : first + size]
+
+
+@contextmanager
+def initialised_solver(mbs: Any, t: float) -> Iterator[Any]:
+    """Let an implicit solver evaluate an assembled model at its initial values and the time t (s)."""
     solver: Any = exu.MainSolverImplicitSecondOrder()
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
@@ -46,8 +55,5 @@ def _rates(mbs: Any, t: float) -> FloatArray:
     options.generalizedAlpha.computeInitialAccelerations = False
     with quiet():
         solver.InitializeSolver(mbs, settings)
-        solver.ComputeODE1RHS(mbs)
-        first, size = mbs.systemData.ODE2Size(), mbs.systemData.ODE1Size()
-        rates = np.array(solver.GetSystemResidual())[first : first + size]
+        yield solver
         solver.FinalizeSolver(mbs, settings)
-    return rates

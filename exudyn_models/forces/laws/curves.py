@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from exudyn_models.forces.jit import compiled
 from exudyn_models.forces.laws.calls import number_at
@@ -16,8 +15,8 @@ from reference_model.systems import FloatArray
 ROUNDING = 0.01
 """Of the edge of ``peak_over_sliding``, so that its slope is finite there: 50 times that of a fall along a line."""
 
-COLUMNS = 5
-"""Of ``curve_of_table``: the slip speed where a piece begins, and its coefficients from the third power down."""
+COLUMNS = 3
+"""Numbers of a piece of ``curve_of_table``: slip speed and coefficient where it begins, and its slope."""
 
 
 @compiled
@@ -38,15 +37,14 @@ def peak_over_sliding(share: float, static_ratio: float) -> float:
 def curve_of_table(name: str, table: Any) -> FloatArray:
     """Return the pieces of a coefficient over the slip speed from rows of a slip speed (m/s) and its coefficient.
 
-    It goes through all rows, smoothly and without overshoot (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
-    300, by SciPy's ``PchipInterpolator``), and stays at the last one beyond, which is the last of the pieces, of
-    shape (n, ``COLUMNS``).
+    The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
+    A single row is a constant. The pieces have the shape (n, ``COLUMNS``).
 
     Raises ``ValueError`` if it is no such table.
     """
     speeds, values = _checked_table(name, table)
-    curve = np.vstack((PchipInterpolator(speeds, values).c.T, [0.0, 0.0, 0.0, values[-1]]))
-    return np.ascontiguousarray(np.column_stack((speeds, curve)))
+    slopes = np.diff(values) / np.diff(speeds) if len(speeds) > 1 else np.zeros(1)
+    return np.column_stack((speeds[: len(slopes)], values[: len(slopes)], slopes))
 
 
 @compiled
@@ -61,22 +59,19 @@ def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> fl
             last = middle - 1
     start = first * COLUMNS
     way = slip_speed - number_at(address, start)
-    value = number_at(address, start + 1)
-    for power in range(2, COLUMNS):
-        value = value * way + number_at(address, start + power)
-    return float(value)
+    return max(0.0, float(number_at(address, start + 1) + number_at(address, start + 2) * way))
 
 
 def _checked_table(name: str, table: Sequence[Sequence[float]]) -> tuple[Any, Any]:
-    rule = "it must be two or more rows [slip speed in m/s, coefficient >= 0], the first at 0 m/s"
+    rule = "it must be rows [slip speed in m/s, coefficient >= 0], the first at 0 m/s"
     try:
         rows = np.array(table, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {table!r}: {rule}") from None
-    if rows.ndim != 2 or rows.shape[1:] != (2,) or len(rows) < 2 or rows[0, 0] != 0.0:
+    if rows.ndim != 2 or rows.shape[1:] != (2,) or len(rows) < 1 or rows[0, 0] != 0.0:
         raise ValueError(f"{name} = {rows.tolist()}: {rule}")
     if not np.isfinite(rows).all() or rows[:, 1].min() < 0.0:
         raise ValueError(f"{name} = {rows.tolist()}: all numbers must be finite and >= 0")
-    if np.diff(rows[:, 0]).min() <= 0.0:
+    if (np.diff(rows[:, 0]) <= 0.0).any():
         raise ValueError(f"{name} = {rows.tolist()}: slip speeds must grow from row to row")
     return rows[:, 0], rows[:, 1]

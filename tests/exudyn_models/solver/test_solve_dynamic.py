@@ -4,7 +4,7 @@ import math
 
 import exudyn as exu
 import pytest
-from free_bodies import coordinate, coordinates, items, new_model, planar_body, rotor, settings_of
+from free_bodies import coordinate, coordinates, drive, items, new_model, planar_body, rotor, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
 from reference_model.trajectory import SimulationError
@@ -117,3 +117,18 @@ def test_the_models_own_function_after_a_step_is_called_and_kept(stops):
     solve_dynamic(mbs, settings())
     assert len(seen) == (51 if stops else 101)  # at the start too
     assert mbs.GetPostStepUserFunction()["function"] is own
+
+
+def test_a_solver_that_would_need_too_many_steps_gives_up():
+    mbs = new_model()
+    ground, wheel = mbs.AddNode(items.NodePointGround()), rotor(mbs, 1.0, 1.0)
+    mbs.AddObject(
+        items.ObjectConnectorCoordinateSpringDamper(
+            markerNumbers=[coordinate(mbs, ground), coordinate(mbs, wheel)], damping=1e6
+        )
+    )
+    drive(mbs, wheel, lambda t: 1e3 * math.cos(t))
+    with pytest.raises(
+        SimulationError, match=r"failed .* s after the start: more than 20,000,000 steps ahead"
+    ):
+        solve_dynamic(mbs, settings_of(1e3, 100), SOLVERS.DOPRI5)

@@ -1,0 +1,284 @@
+"""Contacts that stick exactly: rotors, bodies in space and loops of contacts."""
+
+import itertools
+import math
+
+import exudyn as exu
+import numpy as np
+import pytest
+from free_bodies import drive, new_model, planar_body, rotations, rotor, settings_of
+
+from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
+
+SOLVERS = exu.DynamicSolverType
+IMPLICIT = [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha]
+INERTIA, SLIDING, RATIO = 0.5, 24.0, 1.2
+BRAKE = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 800.0, "static_ratio": RATIO}
+
+
+def braked(speed, moment):
+    """A rotor on the ground under a brake, of 24 N m sliding and 28.8 N m at rest, and a moment."""
+    mbs = new_model()
+    wheel = rotor(mbs, INERTIA, speed)
+    drive(mbs, wheel, moment)
+    friction = add_ring_friction(mbs, None, wheel, **BRAKE)
+    return mbs, friction
+
+
+def run(mbs, end, step, solver=SOLVERS.TrapezoidalIndex2, **options):
+    """Return the changes of mode as (time, contact, before, after)."""
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
+    changes = solve_dynamic(mbs, settings_of(end, round(end / step)), solver, **options)
+    return [(change.time, change.contact, int(change.before), int(change.after)) for change in changes]
+
+
+def angle(mbs):
+    return mbs.systemData.GetODE2Coordinates()[0]
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+@pytest.mark.parametrize("step", [1e-3, 1e-2])
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.99, 0.999])
+def test_a_brake_on_a_slope_stops_at_the_exact_time_and_holds(solver, step, share):
+    load = share * RATIO * SLIDING
+    for speed in np.linspace(0.3, 5.0, 7):
+        mbs, friction = braked(speed, lambda t: -load)
+        stops = speed * INERTIA / (SLIDING + load)
+        assert run(mbs, 0.3, step, solver) == [(pytest.approx(stops, abs=1e-12), int(friction.item), 1, 0)]
+        assert angle(mbs) == pytest.approx(speed * stops / 2.0, abs=1e-9)
+
+
+def test_nothing_creeps_within_an_hour():
+    mbs, _ = braked(2.0, lambda t: -0.999 * RATIO * SLIDING)
+    run(mbs, 0.1, 1e-3, updateInitialValues=True)
+    before = angle(mbs)
+    assert run(mbs, 3600.0, 1.0) == []
+    assert abs(angle(mbs) - before) <= 1e-12
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_growing_load_breaks_the_contact_loose_at_the_static_moment(solver):
+    mbs, friction = braked(0.0, lambda t: 20.0 * t)
+    release = RATIO * SLIDING / 20.0
+    assert run(mbs, 2.0, 1e-2, solver) == [(pytest.approx(release, abs=1e-10), int(friction.item), 0, 1)]
+    speed = (10.0 * (4.0 - release**2) - SLIDING * (2.0 - release)) / INERTIA
+    assert mbs.systemData.GetODE2Coordinates_t()[0] == pytest.approx(speed, abs=1e-5)
+
+
+def coupled_clutches(step, solver=SOLVERS.TrapezoidalIndex2):
+    """Four rotors in a row, of which the first turns and is driven to and fro (Modelica's CoupledClutches)."""
+    mbs = new_model()
+    rotors = [rotor(mbs, 1.0, speed) for speed in (10.0, 0.0, 0.0, 0.0)]
+    drive(mbs, rotors[0], lambda t: 10.0 * math.sin(10.0 * math.pi * t))
+    loads = [
+        lambda time: 20.0 * max(0.0, math.cos(0.4 * math.pi * time)),
+        lambda time: 20.0 if time >= 0.4 else 0.0,
+        lambda time: 20.0 if time >= 0.9 else 0.0,
+    ]
+    law = {"contact_radius": 1.0, "friction_coefficient": 0.5, "static_ratio": 1.1}
+    contacts = [
+        add_ring_friction(mbs, *pair, normal_load=load, **law)
+        for pair, load in zip(itertools.pairwise(rotors), loads, strict=True)
+    ]
+    changes = run(mbs, 1.5, step, solver)
+    return [
+        (time, [int(contact.item) for contact in contacts].index(item), *modes)
+        for time, item, *modes in changes
+    ]
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_switching_times_of_coupled_clutches_converge_with_the_second_order(solver):
+    coarse, fine, finest = (coupled_clutches(step, solver) for step in (2e-3, 1e-3, 1.25e-4))
+    assert [change[1:] for change in coarse] == [change[1:] for change in finest]
+    assert [change[1:] for change in finest] == [
+        (1, 2, -1), (1, -1, 0), (0, -1, 0), (0, 0, -1), (2, 2, -1), (0, -1, 0), (0, 0, -1), (2, -1, 0), (0, -1, 2),
+    ]  # fmt: skip
+    errors = [
+        max(abs(change[0] - exact[0]) for change, exact in zip(changes, finest, strict=True))
+        for changes in (coarse, fine)
+    ]
+    assert errors[1] <= 1.5e-5
+    assert 3.5 <= errors[0] / errors[1] <= 4.5
+
+
+@pytest.mark.parametrize("load", [0.0, 5.0, -9.0, 17.0, -17.9])
+def test_two_brakes_on_one_rotor_hold_together(load):
+    """How they share the load is not determined, but their sum is."""
+    mbs = new_model()
+    wheel = rotor(mbs, INERTIA, 3.0)
+    drive(mbs, wheel, lambda t: load + 40.0 * max(0.0, t - 2.0))
+    law = {"contact_radius": 1.0, "friction_coefficient": 1.0}
+    brakes = [add_ring_friction(mbs, None, wheel, normal_load=held, **law) for held in (10.0, 8.0)]
+    moments = [brake.add_sensor("transmitted_moment") for brake in brakes]
+    modes = [brake.add_sensor("mode") for brake in brakes]
+    stops, breaks_loose = 3.0 * INERTIA / (18.0 - load), 2.0 + (18.0 - load) / 40.0
+    changes = run(mbs, 3.0, 1e-3)
+    times = [stops, stops, *[breaks_loose] * 2 * (breaks_loose < 3.0)]
+    assert [time for time, *_ in changes] == pytest.approx(times, abs=1e-9)
+    (times, *_), *_ = [mbs.GetSensorStoredData(sensor).T for sensor in moments]
+    rest = (times > stops) & (times < 2.0)
+    total = sum(mbs.GetSensorStoredData(sensor)[:, 1] for sensor in moments)
+    assert total[rest] == pytest.approx(-load, abs=1e-9)
+    assert all((mbs.GetSensorStoredData(mode)[rest, 1] == 0.0).all() for mode in modes)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
+    """Loops of contacts between five rotors and the ground, all with static friction, under alternating moments."""
+    rng = np.random.default_rng(seed)
+    mbs = new_model()
+    rotors = [
+        rotor(mbs, inertia, speed)
+        for inertia, speed in zip(rng.uniform(0.5, 2.0, 5), rng.normal(0.0, 3.0, 5), strict=True)
+    ]
+    moments = [(rng.uniform(2.0, 10.0), rng.uniform(2.0, 9.0)) for _ in rotors]
+    for node, (size, rate) in zip(rotors, moments, strict=True):
+        drive(mbs, node, lambda t, size=size, rate=rate: size * math.sin(rate * t))
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (None, 2), (None, 0)]
+    capacities = rng.uniform(1.0, 6.0, len(pairs))
+    contacts = [
+        add_ring_friction(
+            mbs, None if master is None else rotors[master], rotors[disc],
+            contact_radius=1.0, friction_coefficient=1.0, normal_load=capacity, static_ratio=1.2,
+        )
+        for (master, disc), capacity in zip(pairs, capacities, strict=True)
+    ]  # fmt: skip
+    rate_of = exu.OutputVariableType.Coordinates_t
+    gains = {
+        f"moment {i}": lambda mbs, t, node=node, size=size, rate=rate: (
+            size * math.sin(rate * t) * mbs.GetNodeOutput(node, rate_of)
+        )
+        for i, (node, (size, rate)) in enumerate(zip(rotors, moments, strict=True))
+    }
+    losses = {f"contact {i}": contact.power for i, contact in enumerate(contacts)}
+    balance = add_energy_balance(mbs, gains=gains, losses=losses)
+    sensors = {
+        name: [contact.add_sensor(name) for contact in contacts]
+        for name in ("mode", "transmitted_moment", "relative_spin")
+    }
+    changes = run(mbs, 3.0, 1e-3)
+    assert len(changes) > 10
+    modes, transmitted, spins = (
+        np.array([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors[name]]) for name in sensors
+    )
+    locked = modes == 0.0
+    assert locked.any()
+    assert not locked.all()
+    assert np.abs(spins[locked]).max() <= 1e-12
+    assert (np.abs(transmitted) <= 1.2 * capacities[:, None] * (1.0 + 1e-9)).all()
+    sliding = -np.sign(spins) * capacities[:, None]
+    moving = ~locked & (np.abs(spins) > 1e-9)
+    assert transmitted[moving] == pytest.approx(sliding[moving], rel=1e-12)
+    energy = balance()
+    turnover = sum(values[-1] for values in energy.losses.values())
+    assert np.abs(energy.residual).max() <= 1e-4 * turnover
+
+
+def two_discs(kind, solver, step):
+    """Return how late a disc sticks to one of three times its inertia, and the spins of both at the end."""
+    mbs = new_model()
+    ground = mbs.CreateGround()
+    bodies = []
+    for scale, speed in ((3.0, 0.0), (1.0, 4.0)):
+        place = [0.3, -0.2, 0.1 * scale]
+        body = mbs.CreateRigidBody(
+            inertia=scaled_inertia(scale),
+            referencePosition=place,
+            referenceRotationMatrix=rotations.RotationMatrixZ(0.7),
+            initialAngularVelocity=[0.0, 0.0, speed],
+            nodeType=getattr(exu.NodeType, kind),
+        )
+        mbs.CreateRevoluteJoint(itemNumbers=[ground, body], position=place, axis=[0, 0, 1])
+        bodies.append(body)
+    law = {"contact_radius": 0.5, "friction_coefficient": 0.4, "normal_load": 10.0}
+    add_ring_friction(mbs, *bodies, **law)
+    ((time, _, *modes),) = run(mbs, 3.0, step, solver)
+    assert modes == [1, 0]
+    spins = [mbs.GetObjectOutputBody(body, exu.OutputVariableType.AngularVelocity)[2] for body in bodies]
+    return time - 1.5, spins
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+@pytest.mark.parametrize("kind", ["RotationRotationVector", "RotationRxyz", "RotationEulerParameters"])
+def test_bodies_in_space_that_joints_hold_on_one_axis_stick_exactly(kind, solver):
+    (coarse, _), (fine, spins) = (two_discs(kind, solver, step) for step in (2e-3, 1e-3))
+    if kind == "RotationEulerParameters":  # they turn a constant deceleration into a curve
+        assert 3.8 <= coarse / fine <= 4.2
+    else:
+        assert (coarse, fine) == pytest.approx((0.0, 0.0), abs=1e-10)
+    assert spins == pytest.approx([1.0, 1.0], abs=2.0 * abs(fine) + 1e-10)
+    assert abs(spins[1] - spins[0]) <= 1e-12
+
+
+def scaled_inertia(scale):
+    """Inertia of a disc with the moment of ``scale`` kg m² about its axis."""
+    return rotations.RigidBodyInertia(mass=2.0 * scale, inertiaTensor=np.diag([0.6, 0.6, 1.0]) * scale)
+
+
+def test_sensors_and_the_solution_file_show_the_kink_and_keep_their_times(tmp_path):
+    mbs, friction = braked(2.0, lambda t: -SLIDING)
+    names = ("mode", "capacity_share", "transmitted_moment", "power", "heat", "radial_force", "rim_slip")
+    sensors = {name: friction.add_sensor(name) for name in names}
+    settings = settings_of(0.1, 100)
+    settings.solution.sensors.writePeriod = settings.solution.file.writePeriod = 0.02
+    settings.solution.file.write, settings.solution.file.name = True, str(tmp_path / "solution")
+    mbs.Assemble()
+    solve_dynamic(mbs, settings, SOLVERS.TrapezoidalIndex2)
+    times = mbs.GetSensorStoredData(sensors["mode"])[:, 0]
+    stops = 2.0 * INERTIA / (2.0 * SLIDING)
+    assert times == pytest.approx([0.0, 0.02, stops, 0.04, 0.06, 0.08, 0.1], abs=1e-12)
+    values = {name: mbs.GetSensorStoredData(sensor)[:, 1:] for name, sensor in sensors.items()}
+    heat = SLIDING * (2.0 * times - 2.0 * SLIDING / INERTIA * times**2 / 2.0)[:2]
+    expected = {
+        "mode": [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        "capacity_share": [1.0, 1.0, *[1.0 / RATIO] * 5],
+        "transmitted_moment": [-SLIDING, -SLIDING, *[SLIDING] * 5],
+        "power": [SLIDING * 2.0, SLIDING * (2.0 - 0.02 * 2.0 * SLIDING / INERTIA), *[0.0] * 5],
+        "heat": [*heat, *[SLIDING * stops] * 5],
+        "rim_slip": [0.2, 0.1 * (2.0 - 0.02 * 2.0 * SLIDING / INERTIA), *[0.0] * 5],
+    }
+    for name, exact in expected.items():
+        assert values[name][:, 0] == pytest.approx(np.array(exact), abs=1e-10), name
+    assert not values["radial_force"].any()
+    assert settings.solution.sensors.writePeriod == 0.02
+    written = np.loadtxt(tmp_path / "solution.txt", delimiter=",", comments="#")[:, 0]
+    assert (np.diff(written) > 0.0).all()
+    assert np.abs(written - stops).min() <= 1e-9
+
+
+def test_runs_can_go_on_and_loads_can_change_between_them():
+    mbs, friction = braked(2.0, lambda t: 10.0)
+    mbs.Assemble()
+    for start in (0.0, 1.0):
+        options = {"updateInitialValues": True}
+        changes = solve_dynamic(
+            mbs, settings_of(start + 1.0, 100, start), SOLVERS.TrapezoidalIndex2, **options
+        )
+        assert len(changes) == 1 - start
+    friction.change(normal_load=200.0)
+    assert (
+        solve_dynamic(mbs, settings_of(3.0, 100, 2.0), SOLVERS.TrapezoidalIndex2, updateInitialValues=True)
+        == []
+    )
+    speed = mbs.systemData.GetODE2Coordinates_t()[0]
+    assert speed == pytest.approx((10.0 - SLIDING / 4.0) / INERTIA, rel=1e-12)
+    solve_dynamic(mbs, settings_of(4.0, 100, 3.0), SOLVERS.TrapezoidalIndex2)
+    with pytest.raises(exu.ExudynError, match=r"needs exudyn_models\.solve_dynamic"):
+        mbs.SolveDynamic(settings_of(4.0, 100, 3.0), SOLVERS.TrapezoidalIndex2)
+    assert mbs.systemData.GetODE2Coordinates_t(exu.ConfigurationType.Initial)[0] == speed
+
+
+def test_explicit_solvers_and_bodies_that_are_free_to_move_are_refused():
+    mbs, _ = braked(2.0, lambda t: 0.0)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match="solverType = RK44: it is explicit"):
+        solve_dynamic(mbs, settings_of(1.0, 10), SOLVERS.RK44)
+    mbs = new_model()
+    law = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 10.0}
+    friction = add_ring_friction(mbs, None, planar_body(mbs, 1.0, 1.0, [0.0] * 3, [1.0] * 3), **law)
+    with pytest.raises(
+        ValueError, match=f"object {int(friction.item)}: .* no joints hold its bodies on one axis"
+    ):
+        run(mbs, 1.0, 0.1)
