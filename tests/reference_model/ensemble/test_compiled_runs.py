@@ -157,7 +157,7 @@ def test_a_single_time_tells_in_which_phase_the_motion_begins():
         ),
         (replace(FIG9, contact_points=25), {}, "contact_points = 25: a compiled run takes up to 24"),
         (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs know the law of the system's own parameters only"),
-        (FIG5, {"contact": Ring(0.1)}, "a pin touches in one point"),
+        (FIG5, {"contact": Ring(0.1)}, "a pin has point contact"),
         (FIG5, {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
         (FIG5, {"times": [0.0, -1.0]}, "times must increase"),
         (FIG5, {"initial_state": [0.0]}, "initial_state"),

@@ -46,7 +46,7 @@ def test_no_point_of_the_boundary_is_nearer(shock):
 
 
 def test_what_has_no_such_boundary_is_refused(monkeypatch):
-    with pytest.raises(ValueError, match="no equilibrium to throw the pin out of"):
+    with pytest.raises(ValueError, match="no equilibrium to start from"):
         smallest_shock(replace(FIG5, offset=0.0))
     with pytest.raises(ValueError, match="this formula holds for a linear support only"):
         smallest_shock(replace(FIG5, hardening=3.0))

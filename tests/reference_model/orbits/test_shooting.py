@@ -245,7 +245,7 @@ def test_an_orbit_started_from_the_right_is_the_same_orbit(round_the_axis):
 
 def test_a_whirl_beside_the_axis_is_not_found_on_the_x_axis():
     near = whirl_orbit(at_offset(0.0165), tolerance=1e-9, samples=2)
-    with pytest.raises(RuntimeError, match=r"does not cross y = 0 m takes a guess that starts elsewhere"):
+    with pytest.raises(RuntimeError, match=r"does not cross y = 0 m, from one that starts elsewhere"):
         whirl_orbit(at_offset(0.0199), guess=near, tolerance=1e-9)
 
 
