@@ -141,7 +141,7 @@ def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArr
             f"parameters: {name} has shape {array.shape}: it must be a list with one number per trajectory"
         )
     for value in (array.min(), array.max()):
-        replace(system, **{name: float(value)})  # raises for invalid values
+        replace(system, **{name: float(value)})  # type: ignore[arg-type]  # raises for invalid values
     return array
 
 
