@@ -33,20 +33,18 @@ def simulate(
         Increasing times in s.
     tolerance : float
         Relative accuracy to aim at, from 1e-14 to 1e-2. It applies to positions relative to a length L, to velocities
-        and to the spin times the radius of gyration relative to L/T, and to the angle in rad. T is the smaller of 1/ω
-        and the time scale of the springs. L is the largest of X0 and, at the start, the distance from the axis, speed
-        times T, and friction over mass times T² (:class:`motion.nondimensional.Units`). The accuracy is the same at
-        the ends of steps and between them. The error of one step is at most a twentieth of the tolerance. If the
-        motion forgets its past, by damping or by rest, errors stay within a small multiple of the tolerance: at most
-        13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that turns 45 times as fast as the pin
-        swings. Without damping or rest errors accumulate, to some 40 times the tolerance after 10,000 steps. In
-        unstable motions they grow with the instability.
+        and to the spin times the radius of gyration relative to L/T, and to the angle in rad; L and T are those of
+        :class:`motion.nondimensional.Units`. The accuracy is the same at the ends of steps and between them. The
+        error of one step is at most a twentieth of the tolerance. With damping or rest errors stay within a small
+        multiple of the tolerance: at most 13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that
+        turns 45 times as fast as the pin swings. Otherwise they accumulate, to some 40 times the tolerance after
+        10,000 steps. In unstable motions they grow with the instability.
     contact : Contact or None
-        Friction law of a disc; None for the law given by the parameters.
+        Friction law of a disc; None for the law of the parameters.
     compiled : bool or None
-        Whether to use the compiled kernel of :mod:`ensemble`, which is faster. It implements the same physics
-        separately, for linear supports and the laws given by the parameters. The first run with a kind of contact on
-        a machine compiles the kernel. None: use the kernel if it supports the system.
+        Whether to use the compiled kernel of :mod:`ensemble`, a separate and faster implementation for linear
+        supports and the laws of the parameters. The first run with a kind of contact on a machine compiles it. None:
+        use it if it supports the system.
 
     Returns
     -------

@@ -67,12 +67,12 @@ class Support:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether the support is a linear spring, without hardening or stop."""
+        """True for a linear spring, without hardening or stop."""
         return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
     @property
     def centring(self) -> bool:
-        """Whether the support pulls back at every deflection, however small."""
+        """True if the support pulls back at every deflection, however small."""
         return self.stiffness > 0.0 or self.hardening > 0.0 or self.stop_stiffness > 0.0 == self.stop_gap
 
     def force(self, z: complex) -> complex:
@@ -127,18 +127,18 @@ class Support:
         return self.secant(d) * d
 
     def deflection(self, pull: float) -> float:
-        """Return the deflection at which the force has the magnitude ``pull`` > 0; inf without springs."""
+        """Return the deflection for a force of the magnitude ``pull`` > 0; inf without springs."""
         return pull / self.stiffness if self.linear and self.stiffness > 0.0 else self._where(1, pull)
 
     def circle(self, twice_kinetic_energy: float) -> float:
-        """Return the radius of the circle about (X0, 0) on which the support provides the centripetal force mv²/d.
+        """Return the radius of a circle about (X0, 0) whose centripetal force mv²/d the support provides.
 
         Returns inf without springs. ``twice_kinetic_energy`` is mv² > 0.
         """
         return self._where(2, twice_kinetic_energy)
 
     def _where(self, power: int, value: float) -> float:
-        """Return d at which secant·d^power, which grows with d, equals ``value``."""
+        """Return the solution d of secant·d^power = ``value``, whose left side grows with d."""
         bounds = [math.inf]
         if self.stiffness > 0.0:
             bounds.append((value / self.stiffness) ** (1.0 / power))

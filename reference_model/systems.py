@@ -113,7 +113,7 @@ class _SupportedMass:
 
     @property
     def linear_support(self) -> bool:
-        """Whether the support is the paper's linear spring, without hardening or stop."""
+        """True for the paper's linear spring, without hardening or stop."""
         return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
 
@@ -163,32 +163,16 @@ class DiscOnDisc(_SupportedMass):
 
     Parameters
     ----------
-    mass : float
-        m in kg, > 0.
+    mass, stiffness, damping, friction_force, disc_speed, offset, hardening, stop_gap, stop_stiffness : float
+        As for :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
     polar_inertia : float
         J in kg m², > 0.
-    stiffness : float
-        C of the support in N/m, >= 0, the same in every radial direction.
-    damping : float
-        β of the support in N s/m, >= 0.
-    friction_force : float
-        μN of the whole ring in N, >= 0.
-    disc_speed : float
-        ω of the master disc in rad/s, of either sign.
     contact_radius : float
         R of the ring in m, > 0.
     shaft_damping : float
         b of the torsional damper in N m s/rad, >= 0.
     shaft_speed : float
         Ω of the shaft in rad/s, of either sign.
-    offset : float
-        X0 in m: the springs are relaxed at (X0, 0), the master disc turns about (0, 0).
-    hardening : float
-        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
-    stop_gap : float
-        Clearance of the stop in m, >= 0.
-    stop_stiffness : float
-        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. 0 means no stop.
     contact_points : int or None
         Number n of contact points, from 3 to 1000. Point i lies at the angle φ + 2πi/n and carries N/n. None means
         the continuous ring of (20).

@@ -13,22 +13,19 @@ from reference_model.systems import FloatArray, System
 
 
 class SimulationError(RuntimeError):
-    """An engine failed or returned non-finite numbers; the message says when, and what to change."""
+    """An engine failed or returned non-finite numbers; the message names the time and a remedy."""
 
 
 MOST_STEPS = 5_000_000
 """Largest number of steps, some minutes of work. A longer motion is almost certainly a mistake."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""Number of steps over which the pace is measured, and largest number of steps that may be left at that pace."""
+"""Number of steps for a measurement of the pace, and largest number of remaining steps at that pace."""
 
 
 @dataclass
 class StepCount:
-    """Counts the steps of a motion from time 0 to ``end``, in any unit of time.
-
-    All engines share this limit. It contains no physics.
-    """
+    """Counts the steps of a motion from time 0 to ``end``, in any unit of time; all engines share the limit."""
 
     end: float
     steps: int = 0
@@ -53,7 +50,7 @@ class StepCount:
 
 @dataclass(frozen=True)
 class Phase:
-    """A time span in which the contact slips or sticks.
+    """A time span of slip, stick or pivoting.
 
     ``initial_state`` is the state at ``start``. A phase ends where the next one starts. In a "pivot" phase one of
     several contact points rests on the master disc and the disc turns about it.
@@ -162,7 +159,7 @@ class Trajectory:
 
     @property
     def stick_phases(self) -> tuple[Phase, ...]:
-        """Phases in which the pin or disc turns with the master disc."""
+        """Phases of rotation with the master disc."""
         return tuple(phase for phase in self.phases if phase.kind == "stick")
 
     @property

@@ -30,12 +30,12 @@ SLOPE_ORDER = 2 * CLUSTERING
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    The mean slip speed, the force and the moment are those of :class:`reference_model.contact.contact_law.Ring`,
-    averaged over the load by Gauss's rule with n rings. As functions of the radius they have a kink (r − r₀)·ln|r −
-    r₀| at r₀ = U/|S|, where a point is at rest. The rule is split at r₀, or at the end of the annulus next to it, and
-    its rings are clustered there. The error falls like n^(−12), or faster than any power of n if r₀ is well outside
-    the annulus; with 16 rings it is about 1e-12. The slopes are averages of a ring's slopes, which are infinite like
-    ln|r − r₀|: their error falls like n^(−6) and is about 1e-7.
+    The force and the moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by
+    Gauss's rule with n rings. As functions of the radius they have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a
+    point is at rest. The rule is split at r₀, or at the end of the annulus next to it, and its rings are clustered
+    there. The error falls like n^(−12), or faster than any power of n if r₀ is well outside the annulus; with 16
+    rings it is about 1e-12. The slopes of a ring are infinite like ln|r − r₀|, so the error of their average falls
+    like n^(−6) and is about 1e-7.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Value added to speeds before division. It changes only zero, so a point at rest has no friction direction."""
+"""Value added to speeds before division, so that a point at rest gets zero friction."""
 
 
 class Contact(Protocol):
@@ -58,7 +58,7 @@ class Contact(Protocol):
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
         """Return the derivatives of (F_x, F_y, M) by (u_x, u_y, S, φ), shape (3, 4).
 
-        Raises ``ValueError`` if a point of the contact is at rest, because friction has no derivative there.
+        Raises ``ValueError`` if a point of the contact is at rest, where friction is not differentiable.
         """
         ...
 
@@ -84,7 +84,7 @@ class IsotropicContact(ABC):
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """Radii r in m whose slopes become infinite when U = r|S|, where a point is at rest: steps must end there."""
+        """Radii r in m of infinite slopes at U = r|S|, where a point rests: steps must end there."""
         return ()
 
     @abstractmethod
@@ -95,7 +95,7 @@ class IsotropicContact(ABC):
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
         """Return the derivatives of F and M; at U = 0, those from the side U > 0.
 
-        Raises ``ValueError`` where the law has no derivative.
+        Raises ``ValueError`` where the law is not differentiable.
         """
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
@@ -226,7 +226,6 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
         return Slopes(s**2 * curvature, mixed, mixed, (self.radius * c) ** 2 * curvature)
 
     def _polar(self, slip_speed: float, relative_spin: float) -> tuple[float, float, float]:
-        """Return ν̄ of (22), cos α and sin α."""
         rim = self.radius * relative_spin
         speed = math.hypot(slip_speed, rim)
         if speed == 0.0:

@@ -68,7 +68,7 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     else:
         complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m to full precision
         integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
-    # By the smaller argument. The others follow because the first derivatives are of degree 0.
+    # Derivatives by the smaller argument; the others follow because first derivatives have degree 0.
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)
@@ -82,7 +82,6 @@ def _series(coefficients: Sequence[float], m: float) -> float:
 
 
 def _hypergeometric(a: float, b: float) -> tuple[float, ...]:
-    """Return the coefficients of F(a, b; 2; m), highest power first."""
     coefficients = [1.0]
     for n in range(TERMS - 1):
         coefficients.append(coefficients[-1] * (a + n) * (b + n) / ((n + 2) * (n + 1)))

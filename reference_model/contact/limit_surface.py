@@ -79,7 +79,6 @@ FLAT = 1e-9
 
 
 def _objective(vertices: ComplexArray, forces: ComplexArray, u: ComplexArray) -> FloatArray:
-    """Return the mean distance from the vertices minus F·u."""
     result: FloatArray = abs(u[:, np.newaxis] - vertices).mean(axis=1) - (forces.conj() * u).real
     return result
 

@@ -23,7 +23,7 @@ from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
-"""Names of the parameters of a pin."""
+"""Names of a pin's parameters."""
 
 
 def pin_of(disc: DiscOnDisc, **others: float) -> PinOnDisc:
@@ -312,7 +312,6 @@ def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, f
 
 
 def _expanded(slip: complex, rim_speed: float, place: float) -> float:
-    """Return ε of (22), R(ω − φ̇)·ν̃_xy/ν̄_r²."""
     along_rim = slip.real * math.sin(place) - slip.imag * math.cos(place)
     return rim_speed * along_rim / (abs(slip) ** 2 + rim_speed**2)
 

@@ -70,12 +70,11 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
 
     In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u + M·S
     (per newton of μN) for a disc. A regularised engine declares the P below which its friction is weaker. In stick
-    phases the heat is the work that the holding force and moment of eq. 6 do on the engine's creep, which is zero for
-    exact friction. The drive's work is ω times the angular impulse on the body about the axis. It follows from the
-    motion by angular momentum, not from a friction law: ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt,
-    where C is the force of the support over its deflection. So the residual vanishes only if force and motion are
-    consistent: friction acts against the slip with the magnitude μN, the damping and the springs are right, and the
-    integrator conserves energy.
+    phases the heat is the work of the holding force and moment of eq. 6 on the engine's creep, which is zero for
+    exact friction. The drive's work is ω times the angular impulse on the body about the axis, which follows from the
+    motion: ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its
+    deflection. So the residual vanishes only if friction acts against the slip with the magnitude μN, the damping and
+    the springs are right, and the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
     power of the sampling interval while the slip of every point is well above zero, and more slowly otherwise and

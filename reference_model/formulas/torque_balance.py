@@ -24,14 +24,14 @@ OfRatio = Callable[[float, float], float]
 """A function of slip and rim speed >= 0 that depends only on their ratio."""
 
 NO_SLIP = 1e-30
-"""Smallest ratio of slip to rim speed, at which the quotient takes its limit."""
+"""Smallest ratio of slip to rim speed; the quotient then takes its limit."""
 
 ROUNDING = 8.0 * sys.float_info.epsilon
 """Relative residual of a balance that rounding may cause."""
 
 
 def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
-    """Yield x + iy in m and the spin in rad/s of all equilibria in space in which the contact slides.
+    """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact.
 
     They come by increasing W : U. Nothing is yielded if every position or every spin is an equilibrium.
 
@@ -48,7 +48,7 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
             yield complex(disc.offset), disc.shaft_speed
         return
     if speed == 0.0 or support.pull(offset) == 0.0:
-        # Friction has no force if the springs do not pull, or if there are none: the centre does not slip.
+        # Without a spring force friction is zero too: the centre does not slip.
         to_shaft = torque - load * contact.shares(0.0, 1.0).moment
         if to_shaft > 0.0 and (speed > 0.0 or support.centring):
             place = complex(disc.offset) if speed == 0.0 else 0j
@@ -66,7 +66,7 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
         deflection = support.deflection(load * resistance)
         return _difference(from_shaft**2, (offset - deflection) * (offset + deflection) * rim**2)
 
-    # Without a moment from the shaft the disc does not spin relative to the master disc.
+    # If the shaft exerts no moment the disc does not spin relative to the master disc.
     ratios = (
         [(1.0, 0.0)]
         if torque == 0.0
@@ -91,9 +91,9 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
 def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
-    They are the ratios at which :func:`reference_model.formulas.disc.whirl_arm` is b|ω − Ω|/μN, except pure spin, the
-    onset. On a nonlinear support the circle and the centre's slip are not proportional to the load, and the arm is
-    that of this load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
+    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, except pure spin, the onset. On a
+    nonlinear support the circle and the centre's slip are not proportional to the load, and the arm is that of this
+    load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)
@@ -119,7 +119,7 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
 
 
 def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
-    """Return the infimum of the loads in N at which :func:`circles` finds a whirl."""
+    """Return the infimum of the loads in N with whirls, see :func:`circles`."""
     arm = whirl_arm(disc, contact)
     halves = (lambda q: arm(1.0, q)), (lambda q: arm(q, 1.0))
     return shaft_torque(disc) / max(largest_between(half, 0.0, 1.0) for half in halves)
@@ -137,7 +137,7 @@ def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
 
 
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
-    """Yield the ratios (slip, rim) at which ``balance`` is zero, by increasing rim : slip.
+    """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip.
 
     The search covers the ratios with ``allowed`` >= 0, which extend up to one ratio. The larger of slip and rim is 1,
     so the ratio keeps its relative accuracy. The two halves meet where the friction of a ring has a kink.

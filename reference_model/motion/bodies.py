@@ -22,10 +22,10 @@ from reference_model.motion.stick import can_hold, release_delay, slip_direction
 from reference_model.systems import FloatArray
 
 CREEP = 1e-6
-"""Distance and slip speed, in scaled units, below which slip that decays forever is followed in closed form."""
+"""Largest distance and slip speed, in scaled units, of creep that is followed in closed form."""
 
 ERROR = 0.01
-"""Error of the distance by the closed form, as a share of the local tolerance."""
+"""Largest error of that distance, as a share of the local tolerance."""
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,7 @@ class Creep:
 
     @classmethod
     def of(cls, slip: float, excess: float, damping: float, fall: float) -> Creep | None:
-        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s.
-
-        None if it does not decay, or ends in rest.
-        """
+        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s; None if it grows or ends in rest."""
         discriminant = damping**2 - 4.0 * fall
         if not (fall > 0.0 and damping > 0.0 and discriminant > 0.0):
             return None
@@ -77,14 +74,13 @@ class Body(ABC):
     """A body that slips over the master disc or sticks to it, in scaled unknowns relative to that disc."""
 
     def __init__(self, run: Run, coordinates: Coordinates, centre: SlipMotion) -> None:
-        """Set up a body with slip in ``coordinates`` and the equations ``centre`` for its centre."""
         self.run = run
         self.coordinates = coordinates
         self.sticky = centre.friction > 0.0
         self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
     def go(self, y: list[float]) -> tuple[float, list[float]]:
-        """Run from the unknowns ``y`` at t = 0 to the end of the run; return the final time and unknowns."""
+        """Run from the unknowns ``y`` at t = 0; return the final time and unknowns."""
         run, t = self.run, 0.0
         run.record(t, lambda _: np.array([y]).T)
         self.begin(y)
@@ -98,7 +94,7 @@ class Body(ABC):
         self.run.enter("stick" if stuck else "slip", 0.0, y)
 
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow the motion until its description changes; return the time and the unknowns there."""
+        """Follow the motion until its description changes; return time and unknowns."""
         if not self.sticky or self.coordinates.speed(y) > 0.0:
             creep = self.creeping(self.coordinates, y)
             return self.slip(t, y) if creep is None else self.creep(t, y, creep)
@@ -118,11 +114,10 @@ class Body(ABC):
         return self.creeping(self.coordinates, y) is not None
 
     def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
-        """Return the creep that slip in the coordinates ``motion`` has reached, or None.
+        """Return the creep in the coordinates ``motion`` if slip decays forever and is almost over; else None.
 
-        It is returned if slip decays forever and the remaining distance is small. The excess e of the pull over
-        friction falls by c times the distance, and slip changes at the rate e − b·s. If only the body turns, b and c
-        are constant to first order in the distance, so s'' + b·s' + c·s = 0.
+        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. If
+        only the body turns, b and c are constant to first order in the distance, so s'' + b·s' + c·s = 0.
         """
         d, s = motion.slip, motion.speed(y)
         if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
@@ -181,14 +176,14 @@ class Body(ABC):
 
     @abstractmethod
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """Return the unknowns of a stuck body after ``delays``, shape (n,), as an array of shape (unknowns, n)."""
+        """Return the unknowns of a stuck body after ``delays``, shape (unknowns, n)."""
 
     @abstractmethod
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """Return the unknowns of a creeping body after ``delays``, shape (n,), as an array of shape (unknowns, n).
+        """Return the unknowns of a creeping body after ``delays``, shape (unknowns, n).
 
-        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are the slip and the distance covered,
-        as multiples of the slip of ``y``.
+        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are slip and distance as multiples of
+        the slip of ``y``.
         """
 
     @abstractmethod
@@ -200,7 +195,6 @@ class PinBody(Body):
     """The pin; its unknowns are x, y and the slip velocity."""
 
     def __init__(self, run: Run, motion: SlipMotion) -> None:
-        """Set up the pin with the equations ``motion``."""
         self.motion = motion
         omega, g = motion.disc_speed, motion.friction
 
@@ -236,10 +230,7 @@ class PinBody(Body):
         return np.array((z.real, z.imag, w.real, w.imag))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`Body.let_go`.
-
-        On a linear support by the series, as long as it is accurate or until slip ends.
-        """
+        """Like :meth:`Body.let_go`; on a linear support by the series as long as it is accurate."""
         run = self.run
         if not self.motion.support.linear:
             pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
@@ -269,7 +260,6 @@ class DiscBody(Body):
     """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
 
     def __init__(self, run: Run, motion: DiscMotion, surfaces: tuple[SwitchingSurface, ...] = ()) -> None:
-        """Set up the disc with the equations ``motion`` and friction that is not smooth at ``surfaces``."""
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
         surfaces += stop_surfaces(motion.centre.support)
@@ -307,12 +297,12 @@ class DiscBody(Body):
         drift: Sequence[float],
         direction: FloatArray,
     ) -> tuple[float, list[float]]:
-        """Follow slip from rest in given coordinates; return time and standard unknowns of the disc."""
+        """Follow slip from rest in given coordinates; return time and standard unknowns."""
         end = begin_slip(self.run, coordinates, t, own, drift, direction, self.leaving(coordinates))
         return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
 
     def leaving(self, motion: Coordinates) -> Leave:
-        """Return the predicate for unknowns in ``motion`` whether slip needs another description."""
+        """Return the predicate whether slip needs another description."""
         return self.leave
 
     def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
@@ -322,14 +312,13 @@ class DiscBody(Body):
 
     @abstractmethod
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Return the direction in which slip begins, a unit vector of shape (3,)."""
+        """Return the unit vector of the incipient slip, shape (3,)."""
 
 
 class RingBody(DiscBody):
     """A disc with an isotropic contact."""
 
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
-        """Set up the disc with the equations ``motion``."""
         super().__init__(
             run,
             motion,
@@ -341,7 +330,7 @@ class RingBody(DiscBody):
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """Like :meth:`Body.holds_for`, by eq. 6 and 7 with the friction that the moment leaves for the force."""
+        """Like :meth:`Body.holds_for`, with the friction that the moment leaves for the force."""
         z = complex(y[0], y[1])
         return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
 

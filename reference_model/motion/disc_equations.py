@@ -1,9 +1,9 @@
-"""Equations of motion of the friction disc on the master disc: eq. 19 to 21 for the relative velocities.
+"""Equations of motion of the friction disc: eq. 19 to 21 for the relative velocities.
 
 The centre moves like a pin, with a force that also depends on the spin. The third component of the slip is r = κ(φ̇ −
 ω) with the radius of gyration κ = √(J/m). In (u, r), u = ż − iωz, the relative kinetic energy is m/2 times the
-squared length, so the length measures the slip of the whole disc. Friction of any law with a mean slip speed P(u, S)
-is the gradient of −(μN/m)·P in these three components.
+squared length, so the length measures the slip of the whole disc. Friction is the gradient of −(μN/m)·P(u, S), with
+the mean slip speed P.
 """
 
 from __future__ import annotations
@@ -76,15 +76,15 @@ class DiscMotion:
         return replace(self, contact=cast(Contact, at_once(self.contact)))
 
     def lead_over_rim(self, radius: float, unknowns: Sequence[float]) -> float:
-        """Return U − r|S| for a radius in the contact's unit of length: zero if a point of that circle is at rest."""
+        """Return U − r|S| for a radius in the contact's unit of length: zero if a point of that circle rests."""
         u = self.length * math.hypot(unknowns[3], unknowns[4])
         return u - radius * abs(unknowns[5]) / self.gyration
 
     def turning_pull(self, r: float) -> float:
-        """Return the rate of r due to the shaft, without friction, in m/s²."""
+        """Return the rate of r due to the shaft, in m/s²."""
         return -self.shaft_rate * (r + self.lag)
 
     @property
     def pace(self) -> float:
-        """Bound in 1/T on how fast everything except the slip changes; at least 1 in scaled units."""
+        """Bound in 1/T on the rates of everything except the slip, at least 1."""
         return abs(self.centre.disc_speed) + self.shaft_rate + 1.0

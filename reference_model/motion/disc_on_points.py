@@ -1,12 +1,11 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
 If a point comes to rest while the disc turns about it, it stays at rest as long as the required friction does not
-exceed the point's share. This pivot phase has one degree of freedom, and it begins and ends like the stick phase of a
+exceed the point's share. This pivot phase has one degree of freedom, and begins and ends like the stick phase of a
 pin (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 
-Nothing is smoothed and no direction is tracked through a discontinuity, so the only error is the integrator's.
-Motions with friction regularised at ε differ by an amount proportional to ε up to the first release, and like ε^0.8
-after it, as for a pin.
+Nothing is smoothed, so the only error is the integrator's. Motions with friction regularised at ε differ by an amount
+proportional to ε up to the first release, and like ε^0.8 after it, as for a pin.
 """
 
 from __future__ import annotations
@@ -30,14 +29,13 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
 LOOKS = 360
-"""Number of times per turn at which the margin of a stuck disc is evaluated; its minima are found between them."""
+"""Samples per turn of the margin of a stuck disc; minima between them are searched."""
 
 
 class PointsBody(DiscBody):
     """A disc on points on a ring."""
 
     def __init__(self, run: Run, motion: DiscMotion, contact: PointsOnRing) -> None:
-        """Set up the disc with the equations ``motion``."""
         super().__init__(run, motion)
         self.contact = contact
         self.limit = PointsLimit(np.array(contact.arms(0.0), dtype=np.complex128) / motion.length)
@@ -76,7 +74,7 @@ class PointsBody(DiscBody):
         return t, y
 
     def _rest(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Bring the disc to rest as a whole: it is so slow that the order in which its points stop is irrelevant."""
+        """Bring the disc to rest as a whole, so slow that the order of its points is irrelevant."""
         rates = self.coordinates.rates(y)
         speed = self.coordinates.speed(y)
         falling = -sum(a * b for a, b in zip(y[3:], rates[3:], strict=True)) / speed
@@ -111,11 +109,9 @@ class PointsBody(DiscBody):
         return i if self._at_rest(i, y) or own[4] * rates[4] + own[5] * rates[5] < 0.0 else None
 
     def _at_rest(self, i: int, y: Sequence[float]) -> bool:
-        """Return whether point ``i`` rests, to rounding error."""
         return abs(self.points[i].velocity(y)) <= 4.0 * float(np.finfo(float).eps) * math.hypot(y[3], y[4])
 
     def _own(self, i: int, y: Sequence[float]) -> list[float]:
-        """Return the unknowns in the coordinates of point ``i``."""
         v = self.points[i].velocity(y)
         return [*y[:3], y[5], v.real, v.imag]
 
@@ -145,7 +141,7 @@ class PointsBody(DiscBody):
         return end.t, y
 
     def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
-        """Follow point ``i`` as it slips from rest, or keep it at rest if the disc stops before the slip matters."""
+        """Follow point ``i`` as it slips from rest, unless the disc stops before the slip matters."""
         own = [*y[:3], y[5]]
         point = self.points[i]
         if point.gain(own) < self._least_speed:
@@ -155,7 +151,7 @@ class PointsBody(DiscBody):
         return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
 
     def _share(self, y: Sequence[float], delays: FloatArray | float = 0.0) -> tuple[ComplexArray, float]:
-        """Return force and moment that friction must hold, per unit of friction and in the frame of the disc."""
+        """Return the force and moment that friction must hold, over μN/m and in the frame of the disc."""
         centre = self.motion.centre
         turns = np.exp(1j * centre.disc_speed * np.atleast_1d(delays))
         pulls = np.array([centre.pull(place, 0j) for place in (complex(y[0], y[1]) * turns).tolist()])
@@ -208,7 +204,7 @@ class PointsBody(DiscBody):
         return self.begin_slip(t, y[:3], self.pivoting[i], self.drift(y), np.array([sense]))
 
     def _pivot_of(self, y: Sequence[float]) -> tuple[int, float] | None:
-        """Return the point about which a disc begins to turn, and the sense; None if all points slip."""
+        """Return the initial pivot and the sense of rotation; None if all points slip."""
         least = -ROUNDING * self.motion.centre.friction
         for i, point in enumerate(self.points):
             for sense in (1.0, -1.0):
@@ -218,9 +214,9 @@ class PointsBody(DiscBody):
         return None
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Like :meth:`DiscBody.direction`: normal to the limit surface, or the minimiser of ½q² + g·P(q) − a·q.
+        """Like :meth:`DiscBody.direction`: normal to the limit surface.
 
-        The latter, with a − g∇P(q) = q, is the direction of the first slip if friction is exceeded.
+        If friction is exceeded it is the minimiser of ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
         """
         forces, moment = self._share(y)
         if self.limit.margins(forces, moment)[0] > -GRAZING:

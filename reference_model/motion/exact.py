@@ -2,15 +2,14 @@
 
 - Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`). A disc has three
   components of slip: two of its centre and one of its rim.
-- An implicit method takes over where strong damping or persistently small slip makes the motion stiff
-  (:mod:`.slip.stiff`). Slip that decays forever ends in closed form (:mod:`.bodies`).
-- In stick, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`.stick`).
-- The slip of a pin begins with the series of :func:`.stick.slip_from_rest`, that of a disc by collocation
+- An implicit method takes over for stiff slip (:mod:`.slip.stiff`). Slip that decays forever ends in closed form
+  (:mod:`.bodies`).
+- In stick, pin and disc turn with the master disc up to the first root of eq. 7 (:mod:`.stick`).
+- The slip of a pin begins with a series (:func:`.stick.slip_from_rest`), that of a disc by collocation
   (:mod:`.slip.breakaway`).
 - A disc on single points may also pivot about a resting point (:mod:`.disc_on_points`).
 
-Internal times and lengths are scaled to order one, so that tolerance and thresholds mean the same in any units.
-Velocities are relative to the master disc.
+Internal times and lengths are scaled to order one. Velocities are relative to the master disc.
 """
 
 from __future__ import annotations
@@ -55,9 +54,10 @@ def simulate_with(
     contact: Contact | None = None,
     slipping: float = math.inf,
 ) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate`, with explicit thresholds. Tests check that they do not matter.
+    """Simulate like :func:`reference_model.simulate`, with explicit thresholds.
 
-    If a slip phase has lasted ``slipping`` s the motion ends there, possibly before the end of ``times``.
+    Results do not depend on the thresholds; tests check that. If a slip phase has lasted ``slipping`` s the motion
+    ends, possibly before the end of ``times``.
     """
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
@@ -159,7 +159,6 @@ class _Frame:
         return np.concatenate((place, relative * self.speeds + self._carried(place)), axis=-1)
 
     def _carried(self, place: FloatArray) -> FloatArray:
-        """Return the velocities of a body that turns with the master disc."""
         result = np.full_like(place, self.disc_speed)
         result[..., 0] = -self.disc_speed * place[..., 1]
         result[..., 1] = self.disc_speed * place[..., 0]

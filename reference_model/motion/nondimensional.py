@@ -1,4 +1,4 @@
-"""Units of length and time that make a motion of order one, so that thresholds do not depend on SI scales."""
+"""Units of length and time in which a motion is of order one."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Units:
         """Return the units for the motion of ``system`` from ``state``.
 
         Time is scaled by the faster of springs and master disc; without them by the dampers, and without dampers by
-        the time in which friction stops the slip. Length is scaled by the motion of the centre, because a fast spin
-        must not hide it. Hardening and stop shorten the unit of time if the motion may reach them, and the unit of
-        length by the same factor, which leaves the unit of speed unchanged.
+        the decay of slip. Length is scaled by the motion of the centre, because a fast spin must not hide it.
+        Hardening and a stop shorten both units by the same factor if the motion may reach them, which leaves the unit
+        of speed unchanged.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass

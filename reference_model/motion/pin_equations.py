@@ -53,14 +53,13 @@ class SlipMotion:
     def pull(self, z: complex, w: complex) -> complex:
         """Return a(z, w), the relative acceleration without friction, in m/s².
 
-        This is the acceleration by support and damper minus that of the point of the disc below, d(iωz)/dt = iωż.
+        This is the acceleration by support and damper minus d(iωz)/dt = iωż.
         """
         carried, drag = self._factors
         return self.support.force(z) - drag * (w + carried * z)
 
     @cached_property  # needed by every evaluation
     def _factors(self) -> tuple[complex, complex]:
-        """Return iω and β/m + iω, in 1/s."""
         return 1j * self.disc_speed, self.damping + 1j * self.disc_speed
 
 
@@ -69,7 +68,7 @@ def simulate_polar_form(
 ) -> FloatArray:
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
-    This independent formulation serves only to check the main one. It cannot stick, and it is singular at the centre.
+    This independent formulation checks the main one. It cannot stick, and it is singular at the centre.
 
     Parameters
     ----------
@@ -80,7 +79,7 @@ def simulate_polar_form(
     times : array of shape (n,)
         Times in s.
     tolerance : float
-        Relative tolerance of the integrator; the default is the tightest that SciPy accepts.
+        Relative tolerance of the integrator, at least SciPy's smallest.
 
     Raises
     ------
@@ -112,7 +111,6 @@ def simulate_polar_form(
 
 
 def _polar_rates(pin: PinOnDisc) -> Callable[[float, FloatArray], tuple[float, float, float, float]]:
-    """Return the function for the rates of ρ, ψ, ρ̇ and ψ̇ by eq. 10."""
     m, stiffness, beta = pin.mass, pin.stiffness, pin.damping
 
     def eq10(_: float, state: FloatArray) -> tuple[float, float, float, float]:

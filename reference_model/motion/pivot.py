@@ -1,10 +1,9 @@
-"""A disc on single points that turns about one of them, which slips slowly or rests on the master disc.
+"""A disc on single points that turns about one of them, which slips slowly or rests.
 
 The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. All other points follow:
-v_j = v + i(r/κ)(a_j − a_i) with the arms a of the points. So v keeps its relative accuracy down to zero. The point
-accelerates by B + Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 +
-(i·a_i)⊗(i·a_i)/κ² its acceleration per unit force. In slip λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, as long as this is at
-most g/n.
+v_j = v + i(r/κ)(a_j − a_i) with the arms a. So v keeps its relative accuracy down to zero. The point accelerates by B
++ Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
+slip λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, as long as this is at most g/n.
 """
 
 from __future__ import annotations
@@ -58,12 +57,12 @@ class OnePoint:
         return self.motion.centre.friction / self.contact.points
 
     def arm(self, angle: float) -> complex:
-        """Return the arm of the point."""
+        """Return the arm of the point at the disc's ``angle``."""
         return self.contact.arm(self.point, angle) / self.motion.length
 
     @property
     def leverage(self) -> float:
-        """Ratio of the arm to the radius of gyration, at least one: the factor by which errors of r matter."""
+        """Ratio of the arm to the radius of gyration, at least one; it amplifies errors of r."""
         return max(1.0, abs(self.arm(0.0)) / self.motion.gyration)
 
     def velocity(self, unknowns: Sequence[float]) -> complex:
@@ -92,7 +91,7 @@ class OnePoint:
         return self._holding(arm, free)
 
     def leaving(self, unknowns: Sequence[float]) -> FloatArray:
-        """Return the direction in which the point begins to slip, a unit vector e with B − (g/n)·G·e = c·e, c >= 0.
+        """Return the direction of the incipient slip, a unit vector e with B − (g/n)·G·e = c·e, c >= 0.
 
         Its components along and across the arm are B_∥/(c + g/n) and B_⊥/(c + (g/n)·(1 + |a|²/κ²)).
         """
@@ -116,8 +115,8 @@ class OnePoint:
     def gain(self, unknowns: Sequence[float]) -> float:
         """Return the slip speed that the point would gain until the disc rests, for lack of friction.
 
-        Returns inf if the disc does not come to rest. The missing friction is taken as the larger of its values now
-        and at rest; in between it differs from these to second order in time.
+        Returns inf if the disc does not come to rest. The missing friction is the larger of its values now and at
+        rest, with an error of second order in time.
         """
         r = unknowns[3]
         falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
@@ -152,7 +151,7 @@ class OnePoint:
         )
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates of the disc that turns about the resting point: its only slip is r."""
+        """Return the coordinates of the disc that turns about the resting point, with the slip r."""
         slow = thresholds.slow_slip * self.motion.centre.friction
         surfaces = stop_surfaces(self.motion.centre.support)
         return Coordinates(

@@ -21,13 +21,13 @@ Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
 
 STABLE = 3.0
-"""Step times largest decay rate from which stability may limit DOP853; it does so at 6."""
+"""Step times largest decay rate at which stability begins to limit DOP853; the limit is 6."""
 
 STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Change of slip (relative) plus time (in T) below which a step is short."""
+"""Change of slip (relative) plus time (in T) of the longest short step."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled each time that it does not pay."""
@@ -39,15 +39,15 @@ LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
 
 AS_GOOD = 20.0
-"""Error of the interpolant, in local tolerances, up to which it meets the requested tolerance."""
+"""Largest error of the interpolant, in local tolerances, within the requested tolerance."""
 
 INTERPOLANT_ORDER = 7
 
 MOST_PARTS = 8
-"""Largest number of shorter steps in place of one. Stability requires no more, unless slip ends within the step."""
+"""Largest number of shorter steps in place of one; stability requires no more."""
 
 SPOILT = 1.5
-"""Stiffness of a step from which fast decay may spoil the interpolant, whatever its last term."""
+"""Stiffness of a step above which fast decay may spoil the interpolant, whatever its last term."""
 
 
 class StepError(SimulationError):
@@ -61,7 +61,7 @@ class Thresholds:
     Parameters
     ----------
     slow_slip : float
-        Slip that falls below this multiple of g·T is described in slip-polar coordinates (T: unit of time).
+        Upper limit of slow slip, in g·T (T: unit of time), which is described in slip-polar coordinates.
     stretching : float
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time : float
@@ -72,7 +72,7 @@ class Thresholds:
         Slip speed, in units of length per T, below which all points of a disc come to rest together. A point at rest
         slips only if it can gain this speed before the disc rests.
     series : float
-        Size of the last terms of the series by which slip starts.
+        Size of the last terms of the initial series of slip.
     safety : float
         The integrator's tolerance as a fraction of the requested one.
 
@@ -136,7 +136,7 @@ class Run:
         return self._count.steps
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
-        """Begin a phase of this kind, unless the current phase is of this kind."""
+        """Begin a phase of this kind, unless it is the current kind."""
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
             self.end = min(t + (self.slipping if kind == "slip" else math.inf), float(self.times[-1]))
@@ -174,7 +174,7 @@ class Run:
 
 
 class SwitchingSurface(NamedTuple):
-    """A surface on which the rates are continuous but not smooth.
+    """A surface of continuous but not smooth rates.
 
     Parameters
     ----------
@@ -195,11 +195,10 @@ class SwitchingSurface(NamedTuple):
 
 
 class Stepper:
-    """Steps of a Runge-Kutta method that end on surfaces where the rates are continuous but not smooth.
+    """Steps of a Runge-Kutta method that end on surfaces where the rates are not smooth.
 
     The method is SciPy's explicit one of eighth order, or implicit collocation. Across such a surface an error
-    estimate is unreliable, but on either side it can be trusted. So a step that has crossed a surface is repeated up
-    to the surface.
+    estimate is unreliable, so a step that has crossed one is repeated up to the surface.
 
     Parameters
     ----------
@@ -246,7 +245,7 @@ class Stepper:
 
     @property
     def t(self) -> float:
-        """Current value of the integration variable, the time or the stretched time."""
+        """Current time or stretched time."""
         return float(self._solver.t)
 
     @property
@@ -261,15 +260,14 @@ class Stepper:
 
     @property
     def settled(self) -> bool:
-        """Whether the implicit method has found its step size."""
+        """True if the implicit method has found its step size."""
         return isinstance(self._solver, Radau) and self._solver.settled
 
     def stiff_for_long(self, change: float) -> bool:
         """Return whether the explicit method has taken many stiff steps.
 
-        ``change`` is the relative change of slip in the last.
-
-        Such steps are limited by stability, or by accuracy because something decays much faster than slip changes.
+        ``change`` is the relative change of slip in the last step. Stiff steps are limited by stability, or by
+        accuracy because something decays much faster than slip changes.
         """
         stiffness = self.stiffness
         stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change) or change < SHORT
@@ -348,9 +346,7 @@ class Stepper:
     def _crossing(
         self, surface: SwitchingSurface, side: float | None, t: float, y: list[float], rates: list[float]
     ) -> tuple[float, float] | None:
-        """Return where the last step, from ``t`` on, crossed a surface, and the sign of its value beyond.
-
-        None if it did not.
+        """Return where the last step, from ``t`` on, crossed a surface, and the sign of its value beyond; or None.
 
         ``side`` is the sign at ``t`` if the step began on the surface, where the value is only rounding error.
         """

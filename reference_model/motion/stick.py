@@ -3,8 +3,8 @@
 In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). All functions
 of the pin take the equations of motion and complex positions.
 
-A friction disc sticks only as a whole. The moment of its shaft is constant meanwhile, and together with that moment
-an isotropic contact can hold a force up to its limit surface. So the centre is a stuck pin with reduced friction.
+A friction disc sticks only as a whole. The moment of its shaft is constant meanwhile, and beside it an isotropic
+contact can hold a force up to its limit surface. So the centre is a stuck pin with reduced friction.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ of the position.
 NARROW = 1e-5
 """Smallest angle in rad that the search for the first release resolves.
 
-If the pull exceeds friction over a smaller angle the pin moves by about NARROW³ of its path, which is neglected.
+Over a smaller angle of release the pin would move by about NARROW³ of its path.
 """
 
 ROUNDING = 1e-12
@@ -48,9 +48,9 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position. This is a single harmonic, whose first upward crossing has a closed form. The form is derived
-    here from the equations of motion; tests compare it with ``pin_formulas.release_time``, which is eq. 7 as printed.
-    On a nonlinear support the pull of the position also depends on the angle, see :func:`_first_release`.
+    of the position: a single harmonic, whose first upward crossing has a closed form. It is derived from the
+    equations of motion, so that tests can compare it with ``pin_formulas.release_time``, eq. 7 as printed. On a
+    nonlinear support see :func:`_first_release`.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -177,10 +177,10 @@ class SlipStart:
     positions, slip : complex arrays of shape (terms,)
         Coefficients of z and of w.
     duration : float
-        Time in s up to which the series is accurate.
+        Range of accuracy in s.
     rest : float
-        Time in s at which the series returns to rest, or inf. It is valid if it lies within ``duration``, which
-        happens after a release where the pull exceeds friction only slightly and briefly.
+        Time in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull
+        exceeds friction only slightly and briefly.
 
     """
 
@@ -196,7 +196,7 @@ class SlipStart:
 
 
 def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
-    """Return the slip that grows from a pin at rest at ``z`` if the pull is at least friction; linear supports only.
+    """Return the slip of a pin from rest at ``z`` if the pull is at least friction; linear supports only.
 
     With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. At rest θ is the direction of the
     pull. If the pull exceeds friction, slip grows linearly and the series converges. If they are equal (release from
@@ -204,7 +204,7 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
     point and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. Both cases obey the same
     recurrence, at order t^k: (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
 
-    ``duration`` is the time at which the last terms of slip and direction reach ``tolerance``.
+    Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
     """
     omega = 1j * motion.disc_speed
     position = np.zeros(terms + 1, dtype=complex)
@@ -239,10 +239,10 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
 
 def _first_rest(speed: FloatArray, duration: float) -> float:
-    """Return the first time up to ``duration`` at which slip falls to zero, or inf.
+    """Return the first zero of the slip speed up to ``duration``, or inf.
 
     ``speed`` contains the coefficients of the slip speed over time. At a release the first of them should vanish, and
-    its rounding error adds a root near zero; slip rises there.
+    its rounding error adds a root near zero, where slip rises.
     """
     if not math.isfinite(duration):
         return math.inf

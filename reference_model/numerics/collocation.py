@@ -1,6 +1,6 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
-A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of which is
+A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
 the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Fast decaying components are damped
 out, so the smoothness of the motion determines the step. Between the nodes the polynomial is as accurate as at its
 end.
@@ -37,10 +37,10 @@ FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Matrix from values at the start and the nodes to Legendre coefficients."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
-"""Largest numbers of Newton iterations and of Jacobians, which take most of the work, before the step is reduced."""
+"""Limits on Newton iterations and on Jacobians, which take most of the work, before the step is reduced."""
 
 CONVERGED = 0.01
-"""Change of the unknowns, as a share of their tolerances, at which Newton's method has converged."""
+"""Change of the unknowns, as a share of their tolerances, of a converged Newton iteration."""
 
 STALLED = 0.3
 """Ratio of successive changes above which Newton's method needs a new Jacobian."""
@@ -49,7 +49,7 @@ LARGEST_GROWTH = 2.0
 """Largest ratio of successive steps."""
 
 SETTLED = 5
-"""Number of steps without much growth after which transients are over and the step size has settled."""
+"""Steps without much growth after a transient until the step size has settled."""
 
 LEAST_SHARE = 1e-8
 """Smallest step as a share of the first."""
@@ -63,7 +63,7 @@ def newton_matrix(jacobians: FloatArray, step: float) -> FloatArray:
 
 
 RatesAt = Callable[[FloatArray], FloatArray]
-"""Takes the unknowns of many states, shape (n, k), and returns their rates, of the same shape."""
+"""Takes the unknowns of many states, shape (n, k), and returns their rates."""
 
 
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
@@ -115,7 +115,6 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
     """
 
     def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
-        """Store the series."""
         super().__init__(first, last)
         self.coefficients = coefficients
 

@@ -2,7 +2,7 @@
 
 If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
 eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
-boundary is the root of an equation. End states only show on which side a start lies, which brackets the root.
+boundary is the root of an equation. End states show the side of a start, which brackets the root.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Separatrix:
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Radii in m of the motions that follow a release before the orbit's angle and after it."""
+        """Radii in m of the motions after a release before the orbit's angle and after it."""
         before, behind = (
             self.rough.first(self.rough.state(self.orbit.release_angle + shift), lambda _: False)[1]
             for shift in (-NEAR, NEAR)
@@ -89,7 +89,7 @@ class Separatrix:
         return replace(self.releases, tolerance=max(ROUGH, self.releases.tolerance))
 
     def miss(self, start: ArrayLike) -> float:
-        """Return the angle by which the pin misses the orbit at its first release near it, for a start ``start``.
+        """Return the angle by which the pin misses the orbit at its first release near it.
 
         It is positive for releases after that of the orbit. Without a near release it is ±NEAR, depending on the
         final motion.
@@ -126,7 +126,7 @@ class Separatrix:
 
 
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
-    """Return the start, shape (4,), at which the straight line between two starts crosses the basin boundary.
+    """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
     Parameters
     ----------
@@ -203,7 +203,6 @@ def basin_boundary(
 
 
 def _require_on_boundary(point: FloatArray, miss: float) -> None:
-    """Raise ``RuntimeError`` if a start at ``point``, where the side changes, does not lead to the orbit."""
     if abs(miss) > JUMP:
         raise RuntimeError(
             f"the boundary at {point} is not in the stable set of the orbit: no release is near that of the orbit"

@@ -70,7 +70,7 @@ def whirl_branch(
 
 
 def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
-    """Return a guess for the orbit at the crossing ``x`` by linear extrapolation from two others."""
+    """Return a guess for the orbit at the crossing ``x`` by linear extrapolation."""
     ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
     load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
     return replace(

@@ -27,7 +27,7 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 RECURRENCE = 0.05
-"""Largest relative difference of two states at which a motion counts as recurrent."""
+"""Largest relative difference of two recurrent states."""
 
 LEAST_MODULATION = 1e-6
 """Smallest relative oscillation of the radius of a modulated cycle; a whirl found to ``CONVERGED`` has less."""
@@ -97,7 +97,7 @@ def modulated_cycle(
 def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
     """Return state, period and rotation of the last recurrence between two similar maxima of the radius.
 
-    The state is rotated so that the centre lies on the x axis. Raises ``ValueError`` if there is no recurrence.
+    The state is rotated so that the centre lies on the x axis. Raises ``ValueError`` without a recurrence.
     """
     states, times = trajectory.states, trajectory.times
     velocities = trajectory.system.state_size // 2

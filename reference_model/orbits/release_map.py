@@ -1,12 +1,12 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
 At a release the pin rests on the disc and its pull equals friction, (7) with equality. These positions lie on half a
-circle, so the motion before a release is summarised by one number: the angle α by which the pull lags behind that of
-the offset, between 0 and π. α maps from one release to the next by a function of one variable. Its fixed points are
-the orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a shift in time,
-and two are zero, because stick forgets when and with which velocity the pin came to rest.
+circle, so one number summarises the motion before: the angle α between 0 and π by which the pull lags behind that of
+the offset. The map from one α to the next is a function of one variable. Its fixed points are the orbits, and its
+slope there is their multiplier. Of the other three multipliers one belongs to a shift in time, and two are zero,
+because stick forgets the time and the velocity of the stop.
 
-The map has gaps, from which the pin never sticks again or sticks permanently, and jumps where the next stick phase
+The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
 """
 
@@ -32,13 +32,13 @@ from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, re
 from reference_model.trajectory import Trajectory
 
 LOOKS = (1.5, 16.0)
-"""Times for which a pin is followed, in the longer of a turn of the disc and a period of the pin on its springs.
+"""Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
 
 Most pins stick again within the first time. One that does not within the second is taken never to stick again.
 """
 
 NODES = 48
-"""Number of releases at which the map is first evaluated; gaps and orbits less than π/NODES apart may be missed."""
+"""Number of initial nodes of the map; gaps and orbits less than π/NODES apart may be missed."""
 
 NODES_OF_PIECE = 32
 """Number of spline nodes between two gaps, which resolve two neighbouring fixed points as well."""
@@ -53,7 +53,7 @@ ROUGH = 1e-6
 """Tolerance of the search for fixed points, before each is refined to the requested tolerance."""
 
 JUMP = 1e-4
-"""Residual of the map in rad from which a sign change is a jump and not a fixed point."""
+"""Smallest residual in rad of a sign change that is a jump and not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
 """Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used.
@@ -88,7 +88,7 @@ class ReleaseMap:
 
     @property
     def possible(self) -> bool:
-        """Whether releases exist: friction must hold the pin, and the pull must change in stick."""
+        """True if releases exist: friction must hold the pin, and the pull must change in stick."""
         turns = abs(self._carried_pull) > ROUNDING * self.pin.disc_speed**2
         return turns and abs(self._offset_pull) > 0.0 and self.pin.friction_force > 0.0
 
@@ -113,7 +113,7 @@ class ReleaseMap:
         return SlipMotion.of(self.pin)
 
     def state(self, angle: float) -> FloatArray:
-        """Return the state, shape (4,), in which the pin is released at ``angle``."""
+        """Return the state of release at ``angle``, shape (4,)."""
         motion, offset = self._motion, self._offset_pull
         lag = cmath.exp(-1j * math.copysign(angle, motion.disc_speed))
         z = (motion.friction * lag * offset / abs(offset) - offset) / self._carried_pull
@@ -159,7 +159,7 @@ class ReleaseMap:
         return 1.0 + near + (near - far) / 3.0
 
     def pieces(self) -> Iterator[tuple[float, float]]:
-        """Yield intervals of angles, in increasing order, from which the pin sticks again."""
+        """Yield intervals of angles, in increasing order, with a next stick phase."""
         nodes = (np.arange(NODES) + 0.5) * math.pi / NODES
         sticks = [self.after(node) is not None for node in nodes.tolist()]
         start: float | None = EDGE if sticks[0] else None
@@ -173,7 +173,7 @@ class ReleaseMap:
             yield start, math.pi - EDGE
 
     def _edge(self, inside: float, outside: float) -> float:
-        """Return the edge of a gap between two angles, on the side from which the pin sticks again."""
+        """Return the edge of a gap between two angles, on the side with a next stick phase."""
         while abs(outside - inside) > EDGE:
             middle = 0.5 * (inside + outside)
             if self.after(middle) is None:
@@ -203,7 +203,7 @@ class ReleaseMap:
         return [float(zero) for zero in spline.roots(extrapolate=False)]
 
     def change(self, angle: float) -> float:
-        """Return the change of the angle from one release to the next; nan if there is no next release."""
+        """Return the change of the angle from one release to the next; nan without a next release."""
         release = self.after(angle) if 0.0 < angle < math.pi else None
         return math.nan if release is None else release.angle - angle
 
@@ -240,7 +240,7 @@ class StickSlipOrbit(Orbit):
 
     @property
     def stable(self) -> bool:
-        """Whether all small deviations decay, apart from a shift in time."""
+        """True if all small deviations decay, apart from a shift in time."""
         return abs(self.multiplier) < 1.0
 
 
@@ -275,7 +275,6 @@ def stick_slip_orbits(
 
 
 def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
-    """Return the orbit that is released at ``angle``."""
     pin, tolerance = releases.pin, releases.tolerance
     release = releases.after(angle)
     assert release is not None  # the angle is a fixed point

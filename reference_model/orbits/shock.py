@@ -32,10 +32,10 @@ They grow by a tenth, so the search may miss a thinner region of whirls.
 """
 
 PERIODS = 500.0
-"""Periods of the free oscillation after which the end is known, unless the start lies on the boundary."""
+"""Longest time to an end state, in periods of the free oscillation, unless the start lies on the boundary."""
 
 COARSE, FINE = 1e-2, 1e-7
-"""Relative widths at which bisection stops: for the direction, and to check the result."""
+"""Relative widths of bisection: for the direction, and to check the result."""
 
 ANGLE = 1e-4
 """Tolerance of the direction in rad; the size has a minimum there and depends on its square."""
@@ -115,7 +115,7 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 
 
 def by_bisection(shock: Shock) -> float:
-    """Return the size in m/s from which shocks in the same direction lead to the whirl, from end states alone.
+    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, from end states.
 
     The relative error is ``FINE``. The search covers 0.9 to 1.15 times the size of ``shock``.
 
@@ -160,7 +160,7 @@ def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatAr
 
 
 def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each angle two sizes between which the whirl begins, or inf if none of those tried leads there."""
+    """Return for each angle two sizes that bracket the onset of the whirl; inf if none of the sizes leads there."""
     reach = abs(pin.disc_speed) * max(
         abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
     )
@@ -177,7 +177,7 @@ def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tu
 def _bisected(
     pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
 ) -> FloatArray:
-    """Return the sizes at which the whirl begins, between ``low`` and ``high``; inf where these are inf."""
+    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``; inf where these are inf."""
     sizes = np.full(len(angles), math.inf)
     there = np.flatnonzero(np.isfinite(high))
     low, high, angles = low[there].copy(), high[there].copy(), angles[there]

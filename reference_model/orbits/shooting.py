@@ -4,9 +4,9 @@ With an isotropic contact the angle of a disc drops out: position, velocity and 
 offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
 Newton's method is written out here. ``scipy.optimize.root`` (hybr, in the same units) finds the whirls of Figs. 4, 6
-and 11 with the same error of 2e-15 and as many return maps, 17 to 20 compared with 14 to 20. But if there is no orbit
-near the guess it needs 51 to 63 return maps, each a simulation, to fail, compared with 10 to 16 here. It cannot know
-that an orbit is far from the guess or has collapsed onto the axis.
+and 11 equally well, with 17 to 20 return maps compared with 14 to 20. But without an orbit near the guess it needs 51
+to 63 return maps, each a simulation, to fail, compared with 10 to 16 here. It cannot know that an orbit is far from
+the guess or has collapsed onto the axis.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ REFERENCE: Simulate = partial(simulate, compiled=None)
 """Default engine, compiled because an orbit takes up to about a hundred simulations."""
 
 X, Y, VX, VY, SPIN = range(5)
-"""Indices of the state without angle; a pin has no spin."""
+"""Indices of the state without angle; a pin lacks the spin."""
 
 PERIOD, LOAD, TURN = -3, -2, -1
 """Indices of the other unknowns of shooting: T, μN, and the angle θ of a rotation about the axis."""
@@ -47,10 +47,10 @@ PERIOD, LOAD, TURN = -3, -2, -1
 CENTRAL = 3e-4
 """Relative step of the fourth-order central differences for multipliers.
 
-It was measured against the exponentials of the turning frame's eigenvalues and against the variational equations. For
-the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's fourth
-power. The error of multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it is 1e-7
-by the reference, and 1e-5 by engines with more noise at a tolerance of 1e-12.
+It was measured against the eigenvalues of the turning frame and the variational equations. For the whirl of Fig. 11
+with an offset, the worst case, the noise of the flow over the step equals the step's fourth power. The error of
+multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it is 1e-7 by the reference, and
+1e-5 by engines with more noise at a tolerance of 1e-12.
 """
 
 MOST_ITERATIONS = 25
@@ -65,11 +65,10 @@ SLOW = 0.3
 """Share of the residual that may be left after an iteration before the derivatives are computed again."""
 
 FARTHEST_PERIOD = 0.5
-"""Smallest size relative to the guess; below it the pin has collapsed onto the axis."""
+"""Largest relative change of the period of an orbit near the guess."""
 
 COLLAPSED = 1e-6
-"""Size relative to the guess below which an orbit is no longer near it, because the pin has collapsed onto the axis.
-"""
+"""Smallest size relative to the guess; below it the pin has collapsed onto the axis."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +183,7 @@ class Orbit:
 
     @property
     def mean(self) -> FloatArray:
-        """Time mean of x and y in m, shape (2,); over a period the trapezoidal rule is exact to rounding."""
+        """Time mean of x and y in m, shape (2,); the trapezoidal rule is exact to rounding over a period."""
         return np.asarray(self.trajectory.states[:-1, :2].mean(axis=0))
 
     def from_the_right(self) -> Orbit:
@@ -217,7 +216,7 @@ class Orbit:
 
     @property
     def stable(self) -> bool:
-        """Whether all small deviations decay, apart from a shift in time and a rotation about the axis."""
+        """True if all small deviations decay, apart from a shift in time and a rotation about the axis."""
         shifts = 1 if self.turn == 0.0 else 2
         nearest_to_one = sorted(self.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
         return all(abs(multiplier) < 1.0 for multiplier in nearest_to_one[shifts:])
@@ -281,7 +280,7 @@ def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[in
 def require_start(
     system: System, guess: object, guesses: tuple[type, ...], at_crossing: float | None, samples: int
 ) -> None:
-    """Raise ``ValueError`` for a system or guess from which shooting cannot start."""
+    """Raise ``ValueError`` for an unsuitable system or guess."""
     require_system(system)
     if isinstance(system, DiscOnDisc):
         isotropic_contact_of(system, None, "periodic orbits")

@@ -35,12 +35,12 @@ def whirl_orbit(
 
     Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, with
     differences for the derivatives of the flow Φ. The phase is fixed by y, which is that of the guess: 0 unless the
-    guess starts elsewhere. The method uses nothing but ``simulate``, so it also finds orbits with stick phases.
+    guess starts elsewhere. Only ``simulate`` is used, so orbits with stick phases are found too.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        Parameters of the system, which must have a whirl without offset: |ω| > k on a linear support.
+        Parameters of a system with a whirl without offset: |ω| > k on a linear support.
     simulate : callable
         The engine; by default the reference, compiled if possible. Use ``functools.partial(simulate, contact=...)``
         for a disc with another friction law.
@@ -61,9 +61,9 @@ def whirl_orbit(
     Raises
     ------
     ValueError
-        If there is no circle to start from, or if a disc rests on single points.
+        If a circle to start from does not exist, or if a disc rests on single points.
     RuntimeError
-        If Newton's method does not converge, because there is no such orbit near the guess.
+        If Newton's method does not converge, because such an orbit does not exist near the guess.
 
     """
     require_start(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)

@@ -1,4 +1,4 @@
-"""Curves in a plane of two parameters on which the whirl of a disc loses its stability or its existence.
+"""Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
 The paper stops at "the existence region of this complex limit cycle can be investigated analytically by a stability
 analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that analysis,
@@ -8,7 +8,7 @@ three unknowns, and a boundary has two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
-- *onset*: the whirl has zero radius, where the rotation of the centred disc about the axis becomes unstable.
+- *onset*: the whirl has zero radius, where the centred rotation about the axis becomes unstable.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ __all__ = ["Boundary", "Kind", "ParameterPlane", "boundaries", "crossings"]
 Kind = Literal["Hopf", "fold", "onset"]
 
 FAST, SLOW = 1, -1
-"""Whether centre (FAST) or rim slips faster: the sides of U = W, where a ring's friction has no derivative."""
+"""Sides of U = W, where a ring's friction has an infinite slope: the centre (FAST) or the rim slips faster."""
 
 NEAREST = 8.0
-"""Largest ln(U/|U − W|) up to which curves are followed.
+"""Largest ln(U/|U − W|) of the curves.
 
 The derivatives of a ring's friction grow like this number for U → W. With it as an unknown the curves are smooth.
 """
 
 FARTHEST = 2e-3
-"""Smallest ln(U/|U − W|), which is approximately the smallest U : W or W : U."""
+"""Smallest ln(U/|U − W|), approximately the smallest U : W or W : U."""
 
 SCALE = 3.0
 """Change of ln(U/|U − W|) that counts as much as the whole range of a parameter."""
@@ -52,13 +52,13 @@ SCALE = 3.0
 INERTIA = "polar_inertia"
 
 SLOWEST = 3e-3
-"""Frequency ν of a pair at which a Hopf curve ends, as a fraction of k: the pair is about to become real."""
+"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; below it the pair is about to become real."""
 
 NODES = 41
 """Number of ratios tried on each line."""
 
 SAME = 3e-3
-"""Distance from a known curve, in units of the scales, up to which a start lies on it."""
+"""Largest distance of a start from a known curve, in units of the scales, to lie on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +155,7 @@ def crossings(
 
 
 def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
-    """Yield the equations on both sides of U = W and for both signs of ω − Ω, where they exist."""
+    """Yield the equations on both sides of U = W and for both signs of ω − Ω."""
     if kind not in get_args(Kind):
         raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
     law = isotropic_contact_of(plane.disc, contact, "the boundaries")
@@ -168,8 +168,8 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 class _Condition:
     """The equations of a boundary, for the unknowns (two parameters, ln(U/|U − W|)).
 
-    They hold on one side of U = W and for one sign of ω − Ω, because |ω − Ω| has a kink. At the onset the centre does
-    not slip, which leaves only the two parameters.
+    They hold on one side of U = W and for one sign of ω − Ω, because |ω − Ω| has a kink. At the onset only the two
+    parameters are unknown.
     """
 
     plane: ParameterPlane
@@ -241,13 +241,13 @@ class _Condition:
         return np.array(inside)
 
     def starts(self) -> Iterator[FloatArray]:
-        """Yield the points at which the curves cross the lines."""
+        """Yield the crossings of the curves with the lines."""
         for across in (0, 1):
             for value in self.plane.lines(across).tolist():
                 yield from self.crossings(across, value)
 
     def crossings(self, across: int, value: float) -> Iterator[FloatArray]:
-        """Yield the points of the curves, within the limits, at which one of the parameters has a given value."""
+        """Yield the points of the curves, within the limits, for a ``value`` of one parameter."""
         found = [self.whirl(across, value)] if self.kind == "onset" else self.zeros(across, value)
         for point in found:
             if point is not None and np.all(self.limits(point) > 0.0):
@@ -281,10 +281,7 @@ class _Condition:
         return (value, other) if across == 0 else (other, value)
 
     def whirl(self, across: int, value: float, *nearness: float) -> FloatArray | None:
-        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter.
-
-        None if there is none.
-        """
+        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter; None if none exists."""
         along = 1 - across
         low, high = self.plane.lower[along], self.plane.upper[along]
 
@@ -299,7 +296,6 @@ class _Condition:
 
 
 def _traced(condition: _Condition, step: float) -> Iterator[Boundary]:
-    """Yield every curve once."""
     scales = condition.plane.size if condition.kind == "onset" else np.append(condition.plane.size, SCALE)
     curves: list[FloatArray] = []
     for start in condition.starts():
@@ -322,7 +318,7 @@ def _composed(
 
 
 def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:
-    """Yield a zero of ``function`` between any neighbouring ``nodes`` at which its signs differ."""
+    """Yield a zero of ``function`` between any neighbouring ``nodes`` of different sign."""
     for (left, low), (right, high) in itertools.pairwise((node, function(node)) for node in nodes.tolist()):
         if low * high < 0.0:
             yield float(brentq(function, left, right))

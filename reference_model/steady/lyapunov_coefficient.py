@@ -1,4 +1,4 @@
-"""The first Lyapunov coefficient of a whirl at its Hopf boundary: whether modulation sets in softly or with a jump.
+"""The first Lyapunov coefficient of a whirl at its Hopf boundary: soft or hard onset of modulation.
 
 Near a Hopf boundary the motion is ż = λz + c·z|z|² in one complex amplitude z, in suitable coordinates. If Re c < 0 a
 small stable cycle grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl
@@ -19,7 +19,7 @@ from reference_model.support import Support, require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 
 STEP = 8e-3
-"""Step of the differences, in units of the distance to where friction has no derivatives.
+"""Step of the differences, in units of the distance to infinite derivatives of friction.
 
 Truncation and rounding errors of the third difference balance if STEP⁵ is about rounding; both are far below 1 %.
 """
@@ -69,7 +69,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
 
 
 def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
-    """Return the function from (r, ṙ, rψ̇, ω − φ̇) to its derivative: (19) without offset, free of angles."""
+    """Return the function from (r, ṙ, rψ̇, ω − φ̇) to its derivative: (19) without offset."""
     support = Support.of(disc)
 
     def rates(state: FloatArray) -> FloatArray:

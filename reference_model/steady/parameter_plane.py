@@ -1,4 +1,4 @@
-"""A rectangle in two parameters of a disc, in which boundaries are traced."""
+"""A rectangle in two parameters of a disc, for the search for boundaries."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray
 
 LINES = 9
-"""Number of lines in each direction of the plane on which the search for curves starts."""
+"""Number of starting lines in each direction of the plane."""
 
 INSET = 1e-6
 """Distance of the outermost lines from the borders of a plane, so that all starts lie inside."""
@@ -73,7 +73,7 @@ class ParameterPlane:
         return DiscOnDisc(**vars(self.disc) | changes)  # twice as fast as replace()
 
     def lines(self, which: int) -> FloatArray:
-        """Return the values of one parameter on the lines where the search for curves starts, shape (LINES,)."""
+        """Return the values of one parameter on the starting lines, shape (LINES,)."""
         inset = INSET * self.size[which]
         return np.linspace(self.lower[which] + inset, self.upper[which] - inset, LINES)
 

@@ -78,7 +78,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
 def jacobian_without_angle(
     system: System, state: ArrayLike, contact: IsotropicContact | None = None
 ) -> FloatArray:
-    """Return :func:`sliding_jacobian` without row and column of the angle, on which nothing depends.
+    """Return :func:`sliding_jacobian` without row and column of the angle.
 
     The shape is (4, 4) for a pin, (5, 5) for a disc. Parameters and errors are those of :func:`sliding_jacobian`;
     ``ValueError`` is also raised for single points, whose friction depends on the angle.
@@ -196,7 +196,7 @@ def whirl_eigenvalues(
 
 
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N at which the rotation of a centred disc about the axis becomes unstable.
+    """Return the μN in N above which the rotation of a centred disc about the axis is unstable.
 
     With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the moment
     of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that turns with
@@ -205,8 +205,8 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
     C is the stiffness for small deflections, so hardening and a stop with a gap do not matter. A motion z ~ exp(±ikt)
-    in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. Above, up to the load
-    at which the disc sticks (b|ω − Ω| = μN·M), the centred rotation is unstable.
+    in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. The instability ends
+    at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
     Parameters
     ----------
@@ -245,7 +245,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
 
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
-    """Return the eigenvalues by decreasing real part, of conjugates the one with positive imaginary part first."""
+    """Return the eigenvalues by decreasing real part, then by decreasing imaginary part."""
     return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
 
 
@@ -268,12 +268,10 @@ def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:
 
 
 def _frequency(system: System, state: FloatArray) -> float:
-    """Return the angular velocity of the centre about the axis, in rad/s."""
     return float(state[system.state_size // 2 + 1] / state[0])
 
 
 def _oscillator_eigenvalues(mass: float, damping: float, stiffness: float) -> tuple[complex, complex]:
-    """Return both roots of mλ² + βλ + C = 0 for C > 0."""
     discriminant = damping**2 - 4.0 * mass * stiffness
     if discriminant < 0.0:
         oscillating = complex(-damping, math.sqrt(-discriminant)) / (2.0 * mass)

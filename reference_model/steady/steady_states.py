@@ -58,7 +58,7 @@ def self_centred_equilibria(
 def self_centred_equilibria(
     system: System, contact: IsotropicContact | None = None
 ) -> tuple[SelfCentredEquilibrium, ...]:
-    """Return every equilibrium of ``system`` in which the centre rests in space and the contact slides.
+    """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
     A pin has at most one: that of (3) if μN < C·|X0| and ω ≠ 0. There is none
 
@@ -66,22 +66,20 @@ def self_centred_equilibria(
     - if ω = 0 with friction: a pin at rest on a disc at rest sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    If the support hardens or has a stop, its force at the deflection |X0| takes the place of C·|X0|, for a disc too.
-    A disc's (Cρ)² + (μN·F)² = (C·X0)² below becomes ρ² + d² = X0² with the deflection d at the force μN·F.
+    On a nonlinear support its force at the deflection |X0| takes the place of C·|X0|, for a disc too, and (Cρ)² +
+    (μN·F)² = (C·X0)² below becomes ρ² + d² = X0² with the deflection d at the force μN·F.
 
     A disc has an equilibrium if friction cannot hold it at rest on the axis against springs and shaft. On the
-    continuous ring it is unique. At a given radius the torsional balance leaves one spin, and with the radius the
+    continuous ring it is unique: at a given radius the torsional balance leaves one spin, and with the radius the
     friction force grows as the spring force does, (Cρ)² + (μN·F)² = (C·X0)², because F and M are derivatives of one
-    convex function of slip. On the axis (X0 = 0), without springs (C = 0) and on a master disc at rest (ω = 0) the
-    centre does not slide and the disc only spins. A disc that does not spin relative to the master disc (b = 0, ω =
-    Ω) behaves like a pin. There is none
+    convex function of slip. If X0 = 0, C = 0 or ω = 0 the centre does not slide and the disc only spins. A disc that
+    does not spin relative to the master disc (b = 0, ω = Ω) behaves like a pin. There is none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    Without friction the centre rests at (X0, 0) whatever the master disc does. :func:`why_no_equilibrium` returns the
-    condition that fails.
+    Without friction the centre rests at (X0, 0). :func:`why_no_equilibrium` returns the condition that fails.
 
     Parameters
     ----------
@@ -93,8 +91,8 @@ def self_centred_equilibria(
     Raises
     ------
     ValueError
-        If a disc rests on single points, or if a contact is given for a pin. If the centre slips exactly as fast as
-        the rim of a continuous ring, so that a point is at rest and there are no eigenvalues.
+        If a disc rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as
+        the rim of a continuous ring, where eigenvalues do not exist.
 
     """
     require_system(system)
@@ -105,7 +103,6 @@ def self_centred_equilibria(
 
 
 def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
-    """Return the equilibrium of (3), if it exists."""
     if _why_no_equilibrium_of_pin(pin) is not None:
         return ()
     x, y = equilibrium_position(pin)
@@ -114,7 +111,6 @@ def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
 
 
 def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
-    """Return the solutions of the force and moment balances."""
     found = []
     for z, spin in resting_places(disc, law):
         eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
@@ -148,11 +144,10 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`. :func:`why_no_whirl` returns the
     condition that fails.
 
-    A support that hardens or has a stop carries the pin faster on a larger circle. At the speed μN/β there is only
-    one circle, see :func:`reference_model.formulas.pin.whirl_radius`. It is a whirl if the disc turns faster.
-    Otherwise, and if β = 0, the pin ends in stick, at the radius at which the support carries it round with the disc.
-    The circles of a disc, whose friction acts only partly along the circle, are smaller and slower than the pin's, so
-    a disc may have whirls where a pin sticks.
+    A nonlinear support carries the pin faster on a larger circle. Only one circle has the speed μN/β, see
+    :func:`reference_model.formulas.pin.whirl_radius`. It is a whirl if the disc turns faster; otherwise, and if β =
+    0, the pin finally sticks. The circles of a disc, whose friction acts only partly along the circle, are smaller
+    and slower, so a disc may have whirls where a pin sticks.
 
     Parameters
     ----------
@@ -176,7 +171,6 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
 
 
 def _whirls_of_pin(pin: PinOnDisc) -> tuple[Whirl, ...]:
-    """Return the whirl of (11), if it exists."""
     if _why_no_whirl_of_pin(pin) is not None:
         return ()
     eigenvalues = whirl_eigenvalues(pin)
@@ -191,7 +185,6 @@ def _whirls_of_pin(pin: PinOnDisc) -> tuple[Whirl, ...]:
 
 
 def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWhirl, ...]:
-    """Return the solutions of the force and moment balances, the largest first."""
     if _why_no_circle_of_disc(disc) is not None:
         return ()
     found = []
@@ -260,7 +253,7 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 
 
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N above which a disc without offset has a whirl; zero if it has one at every load.
+    """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
     The balances of a whirl give its load in closed form for each ratio of slip to rim speed, see
     :func:`reference_model.formulas.disc.whirl_at`. The smallest of these loads belongs either to a whirl of zero
@@ -276,8 +269,8 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
     Raises
     ------
     ValueError
-        If there is no whirl at any load, see :func:`whirls`, or if the support is not linear, where whirls may begin
-        and end at several loads.
+        If whirls do not exist at any load, see :func:`whirls`, or if the support is not linear, where whirls may
+        begin and end at several loads.
 
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
@@ -298,12 +291,11 @@ def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
 
 
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
-    """Return why a disc has no whirl at any load. Its partial friction may drive a whirl where a pin's may not."""
+    """Return why a disc never has a whirl. Its partial friction may drive a whirl where a pin's may not."""
     return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
 
 
 def _refusal(formula: Callable[[PinOnDisc], object], pin: PinOnDisc) -> str | None:
-    """Return why ``formula`` does not hold for ``pin``, or None."""
     try:
         formula(pin)
     except ValueError as error:

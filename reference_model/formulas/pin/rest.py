@@ -102,5 +102,5 @@ def _require_equilibrium(pin: PinOnDisc) -> None:
 
 
 def _equilibrium_deflection(pin: PinOnDisc) -> float:
-    """Return the deflection in m at which the support pulls by μN."""
+    """Return the deflection in m for the force μN."""
     return Support.of(pin).deflection(pin.friction_force)

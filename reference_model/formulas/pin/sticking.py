@@ -46,7 +46,7 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 
 
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
-    """Return the angle by which the disc turns until release: the first root of (7) with equality.
+    """Return the rotation of the disc until release: the first root of (7) with equality.
 
     The holding force is the third side of a triangle. The first two sides are the force that carries the pin round on
     springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle
@@ -70,7 +70,7 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     Raises
     ------
     ValueError
-        If ``radius`` is negative or the support is not linear.
+        If ``radius`` is negative or the support not linear.
 
     """
     require_linear_support(pin)

@@ -40,14 +40,14 @@ def whirl_frequency(pin: PinOnDisc) -> float:
 
 
 def driven_radius(pin: PinOnDisc, drive: float) -> float:
-    """Return the radius in m of the circle on which the support carries a pin at the speed ``drive`` (N) / β."""
+    """Return the radius in m of a circle on which the support carries a pin at the speed ``drive`` (N) / β."""
     if pin.linear_support:
         return drive / (pin.damping * pin.natural_frequency)
     return Support.of(pin).circle(pin.mass * (drive / pin.damping) ** 2)
 
 
 def circling_speed(pin: PinOnDisc, radius: float) -> float:
-    """Return the angular velocity in rad/s at which the support carries the pin on a circle about (X0, 0)."""
+    """Return the angular velocity in rad/s of a free circle about (X0, 0)."""
     return math.sqrt(Support.of(pin).secant(radius) / pin.mass)
 
 

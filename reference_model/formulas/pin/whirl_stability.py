@@ -81,7 +81,6 @@ def upper_branch_margin(pin: PinOnDisc) -> float:
 
 
 def _stiffness_to_damping(pin: PinOnDisc) -> float:
-    """Return 4k²m²/β² of (14)–(16)."""
     require_positive(pin, "damping")
     ratio = 2.0 * pin.natural_frequency * pin.mass / pin.damping
     return ratio * ratio

@@ -132,5 +132,4 @@ def _mirrored(pin: PinOnDisc, amplitude: complex) -> complex:
 
 
 def _relative_damping(pin: PinOnDisc) -> float:
-    """Return β/(mk)."""
     return pin.damping / (pin.mass * pin.natural_frequency)

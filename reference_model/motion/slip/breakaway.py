@@ -2,9 +2,9 @@
 
 If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
 that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time from the start. So a polynomial fits it, and an implicit method that solves for
-all its nodes at once (Radau IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5) needs only a
-few steps until slip is fast enough.
+motion is a smooth function of time, and an implicit method that solves for all nodes of a polynomial at once (Radau
+IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5) needs only a few steps until slip is fast
+enough.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ LEAST_STEP = 1e-12
 """Smallest step in units of time."""
 
 MOMENT = 1e-6
-"""Time, in its unit, over which the growth of the pull is measured."""
+"""Time, in units, for the difference quotient of the pull."""
 
 TURN = 1e-7
-"""Change of the direction of slip by which the derivative of friction is measured."""
+"""Change of direction for the difference quotient of friction."""
 
 SUDDEN = 0.05
-"""Excess of the pull over friction, as a share of friction, from which slip grows like time and is not stiff."""
+"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time."""
 
 STIFF = 10.0
 """Stiffness of a step (rate times length) below which an explicit method is as good."""
@@ -64,24 +64,24 @@ def begin_slip(
     direction: FloatArray,
     leave: Leave,
 ) -> Outcome:
-    """Follow slip from rest until an explicit method in standard unknowns can continue, or to the end of the run.
+    """Follow slip from rest until an explicit method in standard unknowns can continue.
 
     Parameters
     ----------
     run : Run
         The simulation.
     motion : Coordinates
-        Coordinates of the slip that begins.
+        Coordinates of the slip.
     t : float
-        Time at which it begins.
+        Initial time.
     y : sequence
-        Unknowns at that time without the slip, which is zero.
+        Initial unknowns without the slip.
     drift : sequence
-        Rates of these unknowns at rest.
+        Their rates at rest.
     direction : array of shape (slip,)
-        Unit vector along which slip begins.
+        Unit vector of the incipient slip.
     leave : callable
-        Returns whether the motion needs another description, for example because one of several points comes to rest.
+        Returns whether the motion needs another description, for example because a point comes to rest.
 
     Raises
     ------
@@ -101,8 +101,6 @@ Beginning = Callable[[FloatArray], FloatArray]
 
 
 class _Rest:
-    """A state of rest in which slip begins."""
-
     def __init__(
         self, motion: Coordinates, others: FloatArray, carried: FloatArray, direction: FloatArray
     ) -> None:
@@ -112,7 +110,7 @@ class _Rest:
 
     @property
     def sudden(self) -> bool:
-        """Whether the pull is well above friction."""
+        """True if the pull is well above friction."""
         against = float(self._growth(0.0, -self._direction) @ self._direction)
         return self._first > SUDDEN * 0.5 * (against - self._first)
 
@@ -139,7 +137,6 @@ class _Rest:
         return begun
 
     def _growth(self, delay: float, towards: FloatArray) -> FloatArray:
-        """Return the rates of a slip that is almost zero."""
         rates = self._motion.rates([*(self._others + delay * self._carried), *(LEAST_SLIP * towards)])
         return np.array(rates[len(self._others) :])
 
@@ -184,7 +181,7 @@ class _Piece:
     rates : array of shape (NODES, unknowns)
         Rates at the nodes.
     stiffness : float
-        Rate at which slip is drawn to the direction of the pull at the end, in 1/T.
+        Relaxation rate of the direction of slip at the end, in 1/T.
     falling : bool
         Whether slip decelerates at the end.
 
@@ -197,7 +194,7 @@ class _Piece:
 
     @property
     def error(self) -> float:
-        """Contribution of the last terms of the series of the values or of the rates, whichever contains less noise.
+        """Contribution of the last terms of the series of values or rates, whichever contains less noise.
 
         It is relative where the unknowns are large.
         """
@@ -207,7 +204,7 @@ class _Piece:
         return float(min(np.max(by_values), np.max(by_rates)))
 
     def change_of_step(self, tolerance: float) -> float:
-        """Return the factor by which the step may change for an error of ``tolerance``."""
+        """Return the factor for the step to reach an error of ``tolerance``."""
         return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
 
     def at(self, delays: FloatArray) -> FloatArray:
@@ -221,8 +218,6 @@ class _Piece:
 
 @dataclass(frozen=True, eq=False)
 class _Sample:
-    """Sampler of a piece that begins at ``t``."""
-
     motion: Coordinates
     piece: _Piece
     t: float
@@ -235,7 +230,7 @@ class _Sample:
 def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
-    """Solve for the unknowns at the nodes by Newton's method from ``values``; return None if it does not converge."""
+    """Solve for the unknowns at the nodes by Newton's method from ``values``; None without convergence."""
     others = len(start) - motion.slip
 
     def rates_at(unknowns: FloatArray) -> FloatArray:
@@ -270,8 +265,8 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Differences by the slip are on its own scale. Friction changes with the direction of slip but hardly with its
-    speed. Newton's method needs the derivative by the speed more accurately than component-wise differences give it.
+    Differences by the slip are on its own scale. Friction hardly changes with the slip speed, and Newton's method
+    needs that derivative more accurately than component-wise differences give it.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

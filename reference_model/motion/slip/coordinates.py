@@ -25,20 +25,20 @@ DIFFERENCE = 1e-7
 """Change of unknowns of order one for numerical derivatives."""
 
 TIGHTEST_IMPLICIT = 3e-13
-"""Error of a step, on unknowns of order one, below which rounding disturbs the solution of implicit equations."""
+"""Smallest error of an implicit step, on unknowns of order one, above rounding noise."""
 
 LOOSEST_IMPLICIT = 0.03
 """Largest error of an implicit step in ln s."""
 
 SHARE = 1e-5
-"""Relative change of a relative velocity for numerical derivatives, if it is smaller than ``DIFFERENCE``."""
+"""Relative change of a relative velocity for numerical derivatives, if smaller than ``DIFFERENCE``."""
 
 
 @dataclass(frozen=True)
 class Coordinates:
     """The unknowns of a motion and the functions that describe it.
 
-    The last ``slip`` of the unknowns are a relative velocity that friction may bring to rest.
+    The last ``slip`` unknowns are a relative velocity that friction may bring to rest.
 
     Parameters
     ----------
@@ -49,21 +49,21 @@ class Coordinates:
     slip : int
         Number of components of the slip.
     slow : callable
-        Takes the unknowns and returns the slip speed below which slip is slow.
+        Takes the unknowns and returns the speed limit of slow slip.
     pace : float
-        Largest rate at which anything except the slip changes, in 1/T.
+        Largest rate of everything except the slip, in 1/T.
     standard : callable
         Takes unknowns of shape (k, n) and returns the standard unknowns of the body, (unknowns, n).
     angle : int or None
-        Index of the unknown that is an angle, which has an absolute tolerance.
+        Index of an angle, which has an absolute tolerance.
     turning : int or None
         Index of a relative velocity apart from the slip. Friction may change on its scale, however small it is.
     leverage : float
         Derivative of the velocity of the centre by the slip.
     grip : callable or None
-        Returns the margin of a friction force that is held in this motion; the motion ends where it falls to zero.
+        Returns the margin of a held friction force; the motion ends where it falls to zero.
     surfaces : tuple of SwitchingSurface
-        Surfaces on which friction or support are continuous but not smooth.
+        Surfaces of continuous but not smooth friction or support.
 
     """
 
@@ -90,7 +90,7 @@ class Coordinates:
     def differences(self, unknowns: FloatArray) -> FloatArray:
         """Return the changes of ``unknowns`` for numerical derivatives, both of shape (k, n).
 
-        Trailing unknowns may differ.
+        ``unknowns`` may have further columns at the end.
         """
         changes = np.full(unknowns.shape, DIFFERENCE)
         if self.turning is not None:
@@ -126,9 +126,9 @@ class Coordinates:
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
-    """Return the surface where the stop of a support begins, for unknowns that start with x and y.
+    """Return the surface where the stop of a support begins, or () without a stop.
 
-    () without a stop.
+    The unknowns start with x and y.
     """
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
@@ -151,23 +151,22 @@ class Outcome(NamedTuple):
 
 
 Leave = Callable[[list[float]], bool]
-"""Takes unknowns and returns whether the motion needs another description from there on."""
+"""Takes unknowns and returns whether the motion needs another description."""
 
 
 def never(_: list[float]) -> bool:
-    """Never leave a description early."""
+    """Return False: a description is never left early."""
     return False
 
 
 FAST_AGAIN = 1.2
-"""Largest remaining distance at which lingering slip has ended: share of the local tolerance, and absolute."""
+"""Ratio to the slow slip speed above which slip is fast again."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
-"""Largest remaining distance for lingering slip to count as ended: as a share of the local tolerance, and in units.
-"""
+"""Largest remaining distance of lingering slip that has ended: as a share of the local tolerance, and in units."""
 
 LONG = 0.01
-"""Time to rest, in units, from which slip lingers."""
+"""Smallest time to rest, in units, of lingering slip."""
 
 
 def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcome | None:
@@ -237,4 +236,4 @@ def grip_lost(
 
 
 CHECKS_OF_GRIP = 8
-"""Number of checks of the grip per step; steps are short compared with the time in which it changes."""
+"""Checks of the grip per step; steps are short compared with its changes."""

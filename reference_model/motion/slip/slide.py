@@ -3,8 +3,7 @@
 While slip is fast or grows, its components are unknowns. While it approaches zero it is written s·n with a unit
 vector n, and the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so
 these equations are smooth and not stiff down to s = 0. There n tends to a limit direction of the discontinuity
-(Antali and Stépán 2019; for a pin, the direction of the pull), and the remaining time is s over its rate of decrease.
-No event has to be located.
+(Antali and Stépán 2019), and the remaining time is s over its rate of decrease. No event has to be located.
 """
 
 from __future__ import annotations
@@ -60,12 +59,10 @@ def _change(before: list[float], y: list[float]) -> float:
 
 
 def _falling(motion: Coordinates, solver: Stepper) -> bool:
-    """Return whether slip decelerates."""
     return float(np.dot(solver.y[-motion.slip :], solver.rates[-motion.slip :])) < 0.0
 
 
 def _standard(motion: Coordinates, dense: DenseOutput, times: FloatArray) -> FloatArray:
-    """Return the standard unknowns in a step."""
     return motion.standard(dense(times))
 
 
@@ -76,7 +73,6 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     s0 = run.thresholds.stretching * motion.slow(y)
 
     def unknowns(stretched: list[float]) -> tuple[list[float], list[float], float]:
-        """Return the unknowns, the direction n and the slip speed s."""
         n = stretched[others : others + d]
         size = math.hypot(*n)
         n = [part / size for part in n]
@@ -135,7 +131,7 @@ def _stretched(
 
 
 def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:
-    """Return τ at which the last unknown of ``dense``, the time, equals ``delays``, by Newton's method.
+    """Return τ for the values ``delays`` of the time, the last unknown of ``dense``, by Newton's method.
 
     Time grows monotonically with τ in a step. Newton's method is clipped to the step.
     """

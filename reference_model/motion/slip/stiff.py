@@ -1,10 +1,9 @@
 """Stiff slip by an implicit method: creep, persistently slow slip, and strong damping.
 
-Where slip s stays small, its direction n is drawn to that of the pull at the rate g/s, and an explicit method needs
-steps of about s/g, however smooth the motion. Slip of a strongly damped body may even decay forever: it creeps
-towards a position where friction just holds it, s ~ exp(−λt), until almost no distance is left
-(:mod:`reference_model.motion.bodies`). As functions of time, n and ln s are smooth, and collocation can take steps as
-long as the motion allows.
+If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs steps
+of about s/g, however smooth the motion. Slip of a strongly damped body may even decay forever: it creeps towards a
+position where friction just holds it, s ~ exp(−λt) (:mod:`reference_model.motion.bodies`). As functions of time, n
+and ln s are smooth, and collocation takes steps as long as the motion allows.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
 WORTH = 6.0
-"""Step times largest rate from which stability excludes an explicit method."""
+"""Smallest step times largest rate at which an explicit method is unstable."""
 
 COST = 4.0
 """Work of an implicit step relative to an explicit one."""
@@ -109,12 +108,10 @@ def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_
 
 
 def _standard(motion: Coordinates, others: int, dense: DenseOutput, times: FloatArray) -> FloatArray:
-    """Return the standard unknowns in a step."""
     return motion.standard(_unknowns(others, dense(times))[0])
 
 
 def _one(others: int, polar: list[float]) -> list[float]:
-    """Return the unknowns for a single set of ``polar`` unknowns."""
     return list(_unknowns(others, np.array([polar]).T)[0][:, 0].tolist())
 
 
