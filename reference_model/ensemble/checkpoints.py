@@ -1,4 +1,4 @@
-"""Checkpoints of a trajectory, from which :mod:`recording` computes the motion.
+"""Checkpoints of a trajectory; :mod:`recording` computes the motion from them.
 
 A kernel with room for checkpoints takes one where slip begins or ends, and one at the start of each step that
 contains a requested time. So each requested time is at most one step after a checkpoint.
@@ -18,7 +18,7 @@ NONE, ON_THE_WAY, SLIPS, STICKS = 0.0, 1.0, 2.0, 3.0
 """Kinds: unused room; no phase begins; slip begins; stick begins."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
-"""Indices of the pace of a trajectory, with which a continuation takes the same steps as the original.
+"""Indices of the pace of a trajectory, which makes a continuation take the same steps as the original.
 
 They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
 and the length of an implicit step, all as in lanes.

@@ -13,7 +13,7 @@ from reference_model.systems import FloatArray
 
 
 class EndState(IntEnum):
-    """The motion to which a trajectory tends.
+    """The long-term motion of a trajectory.
 
     ``SELF_CENTRED``: a sliding equilibrium (section 2). ``STUCK``: permanent stick, also if ever shorter slips lead
     there like one over time. ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick.

@@ -79,7 +79,7 @@ class Recording:
 
         ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
         """
-        # A writable copy, the only kind of array for which the kernel is compiled.
+        # The kernel is compiled for writable arrays only.
         start, left = state.copy()[np.newaxis], np.array([self.duration - since])
         asked = self.times[self.times >= since] - since
         room = len(asked) + ROOM_TO_SPARE

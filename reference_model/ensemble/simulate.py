@@ -101,7 +101,7 @@ def is_known(system: System) -> bool:
 
 
 def _what_is_unknown(system: System) -> str:
-    """Return a message about what compiled code does not support, or ""."""
+    """Return the reason why compiled code cannot simulate ``system``, or ""."""
     for name in NOT_TAKEN:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":

@@ -1,4 +1,4 @@
-"""The requested times of a trajectory, and the pace with which it continues from the step that contains one.
+"""The requested times of a trajectory, and its pace in the steps that contain them.
 
 The functions serve pins and discs, whose lanes and memories use the same names for these fields.
 """

@@ -24,7 +24,7 @@ from numba.extending import overload
 from reference_model.ensemble.core.jit import INLINED, inlined
 
 LEAST = 1e-300
-"""Smallest speed by which the code divides."""
+"""Lower bound on speeds in denominators."""
 
 NEAREST = 1e-16
 """Smallest relative distance from U = |W| that makes a difference."""
@@ -36,7 +36,7 @@ Their own rounding would be larger.
 """
 
 HALVINGS = 7
-"""Number of means of a and g after which they agree to rounding for all k."""
+"""Number of means of a and g; both then agree to rounding for all k."""
 
 QUARTER = (
     float.fromhex("0x1.921fb54400000p+0"),

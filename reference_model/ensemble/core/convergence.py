@@ -5,7 +5,7 @@ from __future__ import annotations
 from reference_model.ensemble.core.jit import scalar
 
 ACCURACY = 1e-4
-"""Remaining relative distance at which a motion has converged."""
+"""Relative distance that may remain when a motion counts as converged."""
 
 STILL = 1e-2
 """Distance between crossings, as a fraction of the distance allowed by ACCURACY, that is only noise."""

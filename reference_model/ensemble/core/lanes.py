@@ -1,14 +1,13 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-A processor takes a step in eight lanes in the time of one. All numbers of all lanes are in one record, each in its
-own row (:mod:`records`), so a loop over the lanes that loads, steps and stores becomes vector instructions. The loop
-must be a function of its own that calls only inlined functions of numbers and tuples.
+A processor takes a step in eight lanes in the time of one. One record holds all numbers of all lanes, each number in
+its own row (:mod:`records`), so a loop over the lanes that loads, steps and stores becomes vector instructions. For
+this the loop needs its own function, and may call only inlined functions of numbers and tuples. The step is also
+compiled for one lane, with bit-identical results, because a single trajectory would pay for all lanes.
 
-A single trajectory would pay for all lanes. So its step is also compiled for one lane, with the same bits as result.
-
-A round is one trial step in every lane, each with its own step size. Rare events (rest, release, the end) are handled
-lane by lane in scalar code if the lane raises a flag. Lanes are independent: the result of a trajectory is the same
-bit by bit wherever and next to whichever others it runs.
+A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
+release, the end), which scalar code handles lane by lane. Lanes are independent: the result of a trajectory is the
+same bit by bit wherever and next to whichever others it runs.
 """
 
 from __future__ import annotations

@@ -11,11 +11,11 @@ from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
 CREEP = 0.1
-"""Excess of the pull, as a fraction of its change in a turn or of g, up to which slip creeps."""
+"""Largest excess of the pull for creeping slip, as a fraction of the pull's change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):
-    """Constants of a pin, divided by its mass, in units in which motion is of order one.
+    """Constants of a pin, divided by its mass, scaled so that motion is of order one.
 
     ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
     s₀; without friction nothing rests, and ``free`` = 1 keeps time unstretched.
@@ -31,7 +31,7 @@ class PinLaw(NamedTuple):
 
 
 class DiscLaw(NamedTuple):
-    """Constants of a disc in units in which motion is of order one; seven are those of a pin.
+    """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
 
     ``around`` contains the unit vectors to the contact points, (cos, sin) of each in sequence; () for the ring.
     ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.

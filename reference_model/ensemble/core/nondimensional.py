@@ -1,4 +1,4 @@
-"""Units in which a motion is of order one, and the rounding error in them."""
+"""Units that make a motion of order one, and its rounding error in them."""
 
 from __future__ import annotations
 

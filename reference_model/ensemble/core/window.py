@@ -1,4 +1,4 @@
-"""The window over which a possible end state is measured, from one crossing to the next."""
+"""The window for measuring a possible end state, from one crossing to the next."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
-"""Allowed contribution of the last terms of the polynomials, in units in which motion is of order one."""
+"""Allowed contribution of the last terms of the polynomials, in the kernel's units."""
 
 
 @scalar
@@ -35,9 +35,9 @@ def grown(
 ) -> tuple[complex, complex, float, float, float, float]:
     """Return position, slip, rotation, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
-    It ends where an explicit method can continue, or after ``longest``. ``first`` is the rate at which slip begins.
-    The rotation is relative to the master disc and multiplied by κ. The work is that of friction per newton. A
-    duration of zero means that the motion could not be resolved.
+    It ends where an explicit method can continue, or after ``longest``. ``first`` is the initial rate of slip. The
+    rotation is relative to the master disc and multiplied by κ. The work is that of friction per newton. A duration
+    of zero means that the motion could not be resolved.
     """
     carried = 1j * law.disc_speed
     change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time

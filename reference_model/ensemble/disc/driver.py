@@ -29,7 +29,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
 LEAST_SLIP = 0.1
-"""Turns of the master disc, or of the free centre, for which all points must slip before compiled code continues."""
+"""Turns of the master disc, or of the free centre; compiled code continues once all points have slipped this long."""
 
 
 def simulate_discs(

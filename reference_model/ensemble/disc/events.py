@@ -1,18 +1,17 @@
 """End states of a disc, detected during its motion.
 
 Self-centred
-    The motion is checked once per free period: positions, velocities and spins of a motion that goes to an
-    equilibrium tend to a fixed point. With d the distance between checks and q the larger of its last two ratios,
-    d·q/(1 − q) is the remaining distance (:mod:`.core.convergence`). A motion may come close to an unstable one and
-    leave it later, as some of Fig. 11 do at first. So the equilibrium must also attract, and be as near by Newton's
-    method (:mod:`.stability`).
+    The state is checked once per free period. It converges to a fixed point if the motion goes to an equilibrium: if
+    d is the distance between checks and q the larger of its last two ratios, d·q/(1 − q) remains
+    (:mod:`.core.convergence`). A motion may come close to an unstable equilibrium and leave it later, as some of
+    Fig. 11 do. So the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
 
 Whirl
-    The same holds from one crossing where x is largest to the next. Without an offset the whirl is a circle, on which
-    radius, velocities along and across the radius, and spin have a fixed point from check to check.
+    The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
+    velocities along and across it, and the spin converge from check to check.
 
 Modulated
-    Without an offset, the same from one largest radius to the next, while the radius continues to oscillate.
+    Without an offset, the same for the states where the radius is largest, while the radius continues to oscillate.
 
 Stuck, or stick-slip
     As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).

@@ -100,13 +100,13 @@ LEAST_SLIP = 1e-13
 """Slip speed, in units, that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest time, in units, for which growing slip is followed from rest.
+"""Longest time, in units, of slip that is followed from rest.
 
 Later it is ordinary slip with checkpoints.
 """
 
 SUDDEN = 0.05
-"""Excess of the pull over friction, as a share of friction, from which slip grows like time and is not stiff."""
+"""Excess of the pull over friction, as a share of friction, beyond which slip grows like time and is not stiff."""
 
 
 @written_out
@@ -181,7 +181,7 @@ def error_of_slip(
 
 @inlined
 def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
-    """Return the share of a step after which the edge is reached, by a parabola for the distance from it."""
+    """Return the share of a step that leads to the edge, by a parabola for the distance from it."""
     slope = approach * h
     bend = after - before - slope
     root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))

@@ -67,9 +67,9 @@ class Series(Record):
 class DiscMemory(Record):
     """Data of a lane: number of the trajectory, units, end state so far and its measures, the period of checks.
 
-    Further fields are the motion once in a period, where x was largest and where the radius was; the window in which
-    an end state may be measured; the proposed implicit step, the number of checkpoints taken, and the number of
-    requested times passed.
+    Further fields are the motion once in a period, at the largest x and at the largest radius; the window for
+    measuring an end state; the proposed implicit step, the number of checkpoints taken, and the number of requested
+    times passed.
     """
 
     number: int

@@ -107,7 +107,7 @@ def centre_of(law: DiscLaw, held: float) -> PinLaw:
 
 @scalar
 def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
-    """Return the direction (n_u, n_r) in which slip begins, its growth rate, and the share lost to friction.
+    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction.
 
     As ``stick.slip_direction``.
     """

@@ -1,14 +1,14 @@
 """Criteria for a pin's end state during its motion, and their justification.
 
 Permanent stick
-    Turning with the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of the
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly beyond that largest
-    radius slips once per turn, for a shorter time the closer it is. The pull exceeds g by δ for a time ~√δ, the slip
-    is of the size δ^(3/2), and the distance, by which the radius changes, ~δ². It leads inward if k > |ω|, and no
-    radius in between maps to itself. So a pin that moves inward in a turn, by less than what remains, creeps forever
-    and never beyond that radius. It counts as stuck there (``laws.creeps_by_turns``). Without offset it does not even
-    rest in between, but slips ever more slowly, if it is damped enough not to overshoot (``slip.creeps_steadily``).
-    The same holds if its time ends earlier while its slip is along the pull (``slip.creeps_slaved``).
+    In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside this largest
+    radius slips once per turn, more briefly the closer it is: if the pull exceeds g by δ, then for a time ~√δ, with
+    slip ~δ^(3/2), and the radius changes by ~δ². It decreases if k > |ω|, and no radius in between maps to itself.
+    So a pin that moves inward in a turn by less than the remaining distance creeps forever and never passes that
+    radius. It counts as stuck there (``laws.creeps_by_turns``). Without offset it does not even rest in between, but
+    slips ever more slowly, if damping prevents it from overshooting (``slip.creeps_steadily``). The same holds if the
+    simulation ends earlier, while slip is along the pull (``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
@@ -22,23 +22,22 @@ Self-centred
     oscillator, except for coupling and R, which :func:`well_of` bounds. The region is small and reached late.
 
 Whirl
-    The points where x is largest form a section that every closed orbit crosses once per turn. On it a stable orbit
-    is a fixed point, near which the distance shrinks geometrically. If all trajectories have the same parameters, the
-    orbit is found beforehand, with a neighbourhood that the return map contracts (``trapping``): a trajectory that
-    crosses the section in it stays in it. Otherwise the trajectory itself must show it. With d the distance between
-    the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is the remaining distance. It must be
-    below ACCURACY of the speed at the crossing, which would vanish at an equilibrium. Distances that are only noise
-    also count, as long as they do not grow. A motion may come close to an unstable orbit and leave it later. So the
-    orbit must also attract, and be as near by the derivative of the return map (``stability``).
+    The points where x is largest form a section that every closed orbit crosses once per turn. A stable orbit is a
+    fixed point on the section, and the distance from it shrinks geometrically. If all trajectories have the same
+    parameters, the orbit is computed beforehand, with a neighbourhood that the return map contracts (``trapping``): a
+    trajectory that crosses the section there tends to the orbit. Otherwise its crossings must show convergence. If d
+    is the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) remains. This
+    must be below ACCURACY times the speed at the crossing, which would vanish at an equilibrium. Distances that are
+    only noise also count, as long as they do not grow. A motion may come close to an unstable orbit and leave it
+    later. So the orbit must also attract, and be as close by the derivative of the return map (``stability``).
 
 Stick-slip
-    Released pins with the same parameters differ in a single number, their distance from the axis: from there on the
-    motion is the same. So the change of that distance from one release to the next is judged like the crossings
-    above. Geometric convergence already shows that the cycle attracts, because there is no other direction in which a
-    motion could leave it.
+    The state of a pin at its release is given by one number, its distance from the axis. So the change of that distance from one release to the next is judged like the crossings
+    above. Geometric convergence already shows that the cycle attracts, because a motion cannot leave it in any other
+    direction.
 
-A motion that meets none of these criteria by the end stays undecided. A pin without damping or friction may stay so
-forever, and close to a basin boundary it may take long.
+A motion that meets none of these criteria by the end stays undecided. A pin without damping or friction may never
+meet one, and close to a basin boundary it may take long.
 """
 
 from __future__ import annotations

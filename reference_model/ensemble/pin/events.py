@@ -67,7 +67,7 @@ from reference_model.ensemble.pin.stability import orbit_attracts
 from reference_model.ensemble.pin.stride import stride
 
 SERIES_SHARE = 0.1
-"""Share of the tolerance for the last terms of the series by which slip begins."""
+"""Share of the tolerance for the last terms of the series of beginning slip."""
 
 SPENT_SHARE = 0.1
 """Share of the tolerance for the remaining slip and distance of a pin that creeps forever."""
@@ -76,7 +76,7 @@ REVERSAL_SLIP = 1e-13
 """Slip, in units, below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Time, in units, before which a crossing is the start itself, on the section within rounding."""
+"""Time, in units, before any real crossing; an earlier one is the start itself, on the section within rounding."""
 
 
 @written_out

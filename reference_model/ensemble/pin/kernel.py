@@ -51,10 +51,10 @@ SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
 
 TICK_TURNS = 4.0
-"""Free periods after which a motion without crossings is checked nevertheless."""
+"""Free periods without crossings before a motion is checked nevertheless."""
 
 LAST_TICKS = 4.0
-"""Number of ticks before its end at which a motion without early end begins to be watched."""
+"""Ticks before its end when a motion without early end begins to be watched."""
 
 
 PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")

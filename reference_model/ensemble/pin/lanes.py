@@ -34,9 +34,9 @@ class Moment(Record):
 class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    Further fields are the tolerance of a step; the slip speed below which rest may be near; the time at which the
-    lane needs attention (``due``); how closely it is watched; why it needs attention (``flag``); the number of steps
-    so far and the largest allowed; and the number of successive short steps.
+    Further fields are the tolerance of a step; the slip speed below which rest may be near; when the lane next needs
+    attention (``due``); how closely it is watched; why it needs attention (``flag``); the number of steps so far and
+    the largest allowed; and the number of successive short steps.
     """
 
     now: Moment
@@ -63,7 +63,7 @@ bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
-"""Steps after which a motion is given up, undecided: a constant plus a number per unit of time."""
+"""Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
 """Duration, in units of time, of a short step, and number of successive ones that indicates a limit by stability.

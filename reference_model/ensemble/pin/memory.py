@@ -81,8 +81,8 @@ class PinMemory(Record):
     """Data of a lane: number of the trajectory, units, duration in units, end state so far and its measures.
 
     Further fields are the self-centred equilibrium with its trapping region and the time between checks; crossings
-    and releases so far, and the window in which an end state may be measured; the proposed implicit step, the number
-    of checkpoints taken, and the number of requested times passed.
+    and releases so far, and the window for measuring an end state; the proposed implicit step, the number of
+    checkpoints taken, and the number of requested times passed.
     """
 
     number: int
@@ -120,7 +120,7 @@ class Aims(NamedTuple):
 
 
 def nothing_known() -> NDArray[Any]:
-    """Return ``KnownEnds`` in which nothing is known, shape (1,)."""
+    """Return ``KnownEnds`` without any known end state, shape (1,)."""
     return np.zeros(1, layout(KnownEnds))
 
 

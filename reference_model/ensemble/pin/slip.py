@@ -22,23 +22,23 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series by which slip begins, usually and where it stays slow: see STIFF.
+"""Number of terms of the series of beginning slip, usually and where it stays slow: see STIFF.
 
 The truncation error of a short series is an error of direction, which slip forgets.
 """
 
 STIFF = 100.0
-"""Time, in units of slip speed over g, by which slip is expected to have become fast.
+"""Time, in units of slip speed over g, that slip normally needs to become fast.
 
 Otherwise friction only just exceeds the pull and slip is a short excursion. A longer series then replaces many stiff
 steps.
 """
 
 SLAVED = 0.02
-"""Largest rate of rotation that is slow, as a share of the rate at which slip is drawn to its direction."""
+"""Largest rate of rotation that is slow, as a share of the rate at which friction aligns slip with its direction."""
 
 PLACES = 8
-"""Smallest number of points at which the series is checked for the end of slip."""
+"""Smallest number of points for checking whether the series reaches the end of slip."""
 
 
 @inlined
@@ -112,7 +112,7 @@ def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeping_ends(z: complex, law: PinLaw) -> complex:
-    """Return the position on the disc at which friction holds a pin that :func:`creeps_steadily` from ``z``."""
+    """Return where on the disc friction holds a pin that :func:`creeps_steadily` from ``z``."""
     a = pull(z, 0j, law)
     return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 

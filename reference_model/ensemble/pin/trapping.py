@@ -50,7 +50,7 @@ TURNS = 2
 """Free periods of the map about the equilibrium; with more, larger deviations have time to return."""
 
 LONGEST = 100.0
-"""Time in which the whirl must be reached from the circle without offset, in units of m/β."""
+"""Longest time from the circle without offset to the whirl, in units of m/β."""
 
 NEWTON_STEPS = 3
 
@@ -154,7 +154,10 @@ def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:
 
 
 def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray]:
-    """Return the level of xᵀPx up to which the map contracts, and the upper half of P; zeros if it never does."""
+    """Return the largest level of xᵀPx within which the map contracts, and the upper half of P.
+
+    Zeros if it never does.
+    """
     nothing = 0.0, np.zeros(dimension * (dimension + 1) // 2)
     matrix = _derivative(flow, dimension, size)
     if not np.all(np.isfinite(matrix)) or np.max(np.abs(np.linalg.eigvals(matrix))) >= 1.0:

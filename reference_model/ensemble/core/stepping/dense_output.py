@@ -17,7 +17,7 @@ GAUSS = (
 """Nodes and weights of four-point Gauss quadrature on (0, 1)."""
 
 MOST_STEPS_TO_ROOT, CLOSE = 60, 1e-5
-"""Largest number of iterations of a root search, and the change of u at which it stops; its error is far smaller."""
+"""Largest number of iterations of a root search, and its tolerance for u; the error is far smaller."""
 
 
 class Polynomial(NamedTuple):
@@ -124,13 +124,13 @@ def outward(step: DenseOutput, u: float) -> float:
 
 @scalar
 def where_rightmost(step: DenseOutput) -> float:
-    """Return u at which x is largest; its rate changes its sign between the ends."""
+    """Return the u of the largest x; the rate of x changes sign between the ends."""
     return _zero_of(rightward, step)
 
 
 @scalar
 def where_radius_turns(step: DenseOutput) -> float:
-    """Return u at which the radius is largest or smallest; inf if it is monotonic."""
+    """Return the u of the largest or smallest radius; inf if the radius is monotonic."""
     if (outward(step, 0.0) > 0.0) == (outward(step, 1.0) > 0.0):
         return math.inf
     return _zero_of(outward, step)
@@ -138,7 +138,7 @@ def where_radius_turns(step: DenseOutput) -> float:
 
 @inlined
 def _zero_of(measure: Callable[[DenseOutput, float], float], step: DenseOutput) -> float:
-    """Return u at which ``measure`` of the step is zero; it changes its sign between the ends.
+    """Return the u where ``measure`` of the step is zero; it changes sign between the ends.
 
     Uses inverse quadratic interpolation, kept within the bracket.
     """

@@ -75,7 +75,7 @@ def collocate_with(
 
     It also computes the rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start``
     describe the start of the step, ``law`` is that of a disc, and ``friction`` is like ``laws.ring_friction``.
-    Returns the rate at which friction draws slip to its direction at the end, or -1 without convergence.
+    Returns how fast friction draws slip to its direction at the end, as a rate, or -1 without convergence.
 
     It is one function because functions that take functions are inlined into their callers, so parts of it would be
     too.

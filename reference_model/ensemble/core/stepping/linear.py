@@ -12,7 +12,7 @@ from reference_model.systems import FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6
-"""Sizes of the largest entry of a power at which it counts as vanished or grown."""
+"""Largest entry of a power that has vanished, and of one that has grown."""
 
 
 # Array creation for each shape would be compiled separately.

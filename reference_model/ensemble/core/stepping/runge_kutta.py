@@ -35,7 +35,7 @@ E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
 """Weights of the step, and of its differences from the embedded methods of orders 3 and 5, at stages 1, 6 to 12."""
 
 TURNED_BACK = 256.0
-"""Error assigned to a step in which slip turns by more than a right angle, which halves the next trial.
+"""Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
 The error estimate cannot judge such a step, because friction reverses between two stages: at a tolerance of 1e-8 it
 accepted 65 of 20,000 reversals with errors of more than a hundred tolerances. Slip that falls to zero in stretched
@@ -130,8 +130,8 @@ def step(
 ) -> tuple[Tuple, Tuple, Tuple]:
     """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
 
-    ``rates(y, law)`` returns the rates of ``y``, possibly followed by numbers on which no rate depends; ``k1`` are
-    the rates at ``y``. Means and differences are tuples of the same length as the result of ``rates``.
+    ``rates(y, law)`` returns the rates of ``y``; numbers that do not affect the rates may follow. ``k1`` are the
+    rates at ``y``. Means and differences are tuples of the same length as the result of ``rates``.
     """
     k2 = rates(moved(y, h, A2, (k1,)), law)
     k3 = rates(moved(y, h, A3, (k1, k2)), law)
