@@ -92,7 +92,7 @@ class Drivetrain:
         return {"inner_radius": self.inner_radius, "outer_radius": self.outer_radius}
 
     def normal_load(self, torque: float) -> float:
-        """Return the load in N per facing at which the slipping clutch transmits ``torque`` (N m)."""
+        """Return the load in N per facing of a slipping clutch that transmits ``torque`` (N m)."""
         return torque / (self.faces * self.friction_coefficient * self.friction_radius)
 
 

@@ -43,7 +43,7 @@ VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 SPRINGS = 6
 
 COVERED = 1.25 * math.pi
-"""Angle in rad over which the cover remains."""
+"""Angle in rad of the part of the cover that is drawn."""
 
 
 def draw_drivetrain(

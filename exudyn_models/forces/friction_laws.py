@@ -194,7 +194,7 @@ def _length(vector: complex) -> float:
 
 
 BEND = 4.0 / 3.0
-"""Slip of the slowest point, over δ, from which it acts like all others."""
+"""Smallest slip of the slowest point, over δ, without effect on the other points."""
 
 
 @compiled
@@ -350,7 +350,7 @@ def _derivatives_of_circles(
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the direction in which slip starts; this is one without spin.
+    # At rest the slope depends on the direction of the slip to come; this is one without rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)

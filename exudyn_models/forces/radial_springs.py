@@ -31,10 +31,10 @@ Law = tuple[float, float, float, float, float]
 """C (N/m), C₃ (N/m³), gap (m), C_s (N/m) and β (N s/m)."""
 
 Offset = tuple[float, float]
-"""Position in m at which the springs are relaxed, in the axes of the base and from its node."""
+"""Position in m of the relaxed springs, in the axes of the base and from its node."""
 
 ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
-"""Numbers of coordinates of a planar base that the model does not contain: a rotor has no x and y."""
+"""Numbers of fixed coordinates of a planar base, which the model does not contain: a rotor has fixed x and y."""
 
 
 def support_functions(

@@ -116,7 +116,7 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
 
 @compiled
 def frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return position and axes of a body with coordinates from ``q[at]`` on, and what each rate adds to ω."""
+    """Return position and axes of a body with coordinates from ``q[at]`` on, and how ω depends on their rates."""
     zero = 0.0 * q[0]
     one, none = zero + 1.0, (zero, zero, zero)
     place, angle = none, at + TRANSLATIONS[kind]

@@ -38,7 +38,7 @@ class StickDampers:
 
     @property
     def vary(self) -> bool:
-        """Whether load or coefficient is a function."""
+        """True if load or coefficient is a function."""
         return self.factors.contact is None
 
     def at(self, t: float, coordinates: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Motions that alternate between slip and creep, each with the solver and the axes that suit it."""
+"""Motions that alternate between slip and creep, each solved by the solver and in the axes that suit it."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
-"""Factor by which the viscous part of the friction law is extended in the model of a creeping system."""
+"""Extension of the viscous part of the friction law in the model of a creeping system, as a factor."""
 
 CREEP_ANGLE = 0.15
 """Rotation of the ground in rad per step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""Ratio of slow to fast relaxation time from which the steps of creep resolve the slow one."""
+"""Ratio of slow to fast relaxation time; if it is larger, the steps of creep resolve the slow one."""
 
 STEPS_OF_RELAXATION = 20.0
 """Steps of creep per slow relaxation time."""
@@ -51,8 +51,8 @@ class Friction:
     """A kind of friction between two discs.
 
     ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping``, like ``RegularisedContact.creeping``,
-    returns the creeping part of the contact for which a model with unlimited viscosity can take over. For single
-    points the argument ``held`` of ``add`` makes such a model. Both use the units and the axes of a run.
+    returns the part of the contact that creeps and may be modelled with unlimited viscosity. For single points the
+    argument ``held`` of ``add`` makes such a model. Both use the units and the axes of a run.
     """
 
     add: Callable[..., Any]
@@ -86,18 +86,18 @@ def solve_in_turns(
     """Solve up to the last of ``times``, with ``solver`` in slip and generalised-α in creep.
 
     In creep an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn
-    with the master disc a creeping body almost rests, and its creep changes as the ground turns. Steps of a fraction
-    of a turn then have an error of a small fraction of the creep, which is the error of the regularisation itself. No
-    step has to resolve ω.
+    with the master disc a creeping body almost rests, and its creep changes as the ground turns. So steps need not
+    resolve ω: steps of a fraction of a turn have an error of a small fraction of the creep, and the creep is the
+    error of the regularisation itself.
 
     A creeping part, the whole contact or one of several points, feels only the viscous part of the law. Meanwhile the
     model extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
-    where, between two steps, a different part creeps, or nothing.
+    between two steps, as soon as a different part creeps, or none.
 
     Parameters
     ----------
     contact : RegularisedContact
-        Contact of the system, in units in which its motion is of order one, like all other numbers.
+        Contact of the system. This and all other numbers are in units that make the motion of order one.
     state : array of shape (4,) or (6,)
         Initial state.
     times : array of shape (n,)
@@ -161,8 +161,8 @@ class _Turns:
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
         """Solve from the last of the steps ``before`` while ``part`` creeps, and record the run.
 
-        Returns the steps, and ``part`` if it still creeps. ``began`` is the time at which its creep began. A release
-        starts so gently that it must be found in time, so the steps before it become smaller.
+        Returns the steps, and ``part`` if it still creeps. ``began`` is the start of its creep. A release starts so
+        gently that it must be found in time, so the steps before it become smaller.
         """
         state, start = before.states[-1], float(before.times[-1])
         step, until = self._creep_step(before, part, began)
@@ -199,10 +199,10 @@ class _Turns:
             balanced = balanced or len(run.times) > 1  # only after a step of creep
 
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
-        """Return the index of the step after which smaller steps are needed; None if there is none.
+        """Return the index of the last step before smaller steps are needed; None if they are not.
 
-        They are needed for a release at ``crossing``, and where the load comes so close to the friction limit that
-        the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
+        Smaller steps are needed for a release at ``crossing``, and where the load comes so close to the friction
+        limit that the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -215,13 +215,13 @@ class _Turns:
         return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
     def _release_step(self, run: Steps, last: int) -> float:
-        """Return the step in which a body released after step ``last`` gains only a fraction of ε."""
+        """Return the step that lets a body released after step ``last`` gain only a fraction of ε."""
         ratio = self.contact.in_master_axes.slip_ratios(run.states[last : last + 2])[:, WHOLE]
         rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
         return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
 
     def _creep_step(self, before: Steps, part: Part, began: float) -> tuple[float, float]:
-        """Return the step for creep from the last of the steps ``before``, and the time up to which it is valid."""
+        """Return the step for creep from the last of the steps ``before``, and the end of its validity."""
         system, end = self.contact.system, self.count.end
         state, start = before.states[-1], float(before.times[-1])
         speed = abs(system.disc_speed)
@@ -253,11 +253,11 @@ class _Turns:
         )
 
     def _end_of_creep(self, run: Steps, part: Part) -> float | None:
-        """Return the first time in ``run`` at which another part than ``part`` creeps; None if there is none."""
+        """Return the first time in ``run`` when another part than ``part`` creeps; None if there is none."""
         seen, states_at = self.contact.in_master_axes, creep_between(run)
 
         def first_other(times: FloatArray) -> int | None:
-            """Return the index of the first of ``times`` at which another part creeps."""
+            """Return the index of the first of ``times`` when another part creeps."""
             states = enumerate(states_at(times).tolist())
             return next((i for i, state in states if self.friction.creeping(seen, state) != part), None)
 
@@ -279,29 +279,29 @@ class _Turns:
 
 
 CROSSING = 1e-9
-"""Error of the time at which creep ends, in steps."""
+"""Error of the end of creep, in steps."""
 
 GRAZING = 1e-6
 """(ωh)² of the steps that decide whether and when friction cannot hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""Factor by which steps are reduced before a release, once or several times."""
+"""Ratio of the steps before and after a reduction for a release; there may be several reductions."""
 
 PARTS = 16
-"""Number of parts of a step at whose ends creep close to its end is checked."""
+"""Number of checks per step of creep that is close to its end."""
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
-    """Return the indices of the steps of ``run`` at which the creep has a maximum above ``above``·ε.
+    """Return the indices of the maxima of creep above ``above``·ε among the steps of ``run``.
 
-    They may include the first and the last one, because the maximum may lie shortly after or before.
+    They may include the first and the last step, because the maximum may lie shortly after or before.
     """
     ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 
 
 def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
-    """Return times in ``run`` at which creep may have ended: the last, and those around its maxima near ε."""
+    """Return possible ends of creep in ``run``: its last time, and those around its maxima near ε."""
     steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * np.linspace(0.0, 1.0, PARTS + 1)[1:]
@@ -368,7 +368,7 @@ def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
 
 
 def _newton_tolerance(system: System) -> float:
-    """Return the residual at which Newton's method ends while ``system`` creeps.
+    """Return the tolerance of Newton's method for the residual while ``system`` creeps.
 
     A moment counts as a force at R, or at 1 if that is smaller.
     """

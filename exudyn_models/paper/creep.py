@@ -17,7 +17,7 @@ WHOLE = 0
 """Column of the contact as a whole; columns of single points follow, if there are any."""
 
 RELAXATIONS = 40.0
-"""Number of relaxation times, exp(−t/relaxation time), after which slip has settled to its creep."""
+"""Number of relaxation times until slip has settled to its creep; the rest is exp(−t/relaxation time)."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class RegularisedContact:
 
     @cached_property
     def relaxation_times(self) -> tuple[float, float]:
-        """Times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
+        """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
         The viscous part of the law resists slip of a pin with μN/ε per m/s, that of a disc or its rim on a continuous
         ring with at least half of it, and that of one resting point of n with 1/n of it. The inertia of the rim,
@@ -66,7 +66,7 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s after which slip below ε has settled to its creep, except for slow relaxations."""
+        """Time in s that slip below ε needs to settle to its creep, except for slow relaxations."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property

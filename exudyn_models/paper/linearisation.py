@@ -15,7 +15,7 @@ REGULARISATION = 1e-12
 
 
 def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
-    """Return the eigenvalues in 1/s of the motion about ``state``, in which the contact slides.
+    """Return the eigenvalues in 1/s of the motion about ``state`` with a sliding contact.
 
     There are four for a pin, five for a disc on a continuous ring, where nothing depends on the angle, and six for a
     disc on points. They are the λ of (λ²M + λD + K)v = 0 with the mass matrix M and the derivatives −K and −D of the

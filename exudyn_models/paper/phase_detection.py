@@ -16,7 +16,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 NOTHING = -1
-"""Marker for a contact of which nothing creeps."""
+"""Marker for a contact without a creeping part."""
 
 
 def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, ...]:
@@ -28,9 +28,9 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
     before it has settled; and after a release the slip speed stays near ε for a while and may cross it several times
     by step errors, so it must first reach 2ε.
 
-    A phase *starts* at the time at which the slip speed, extrapolated linearly from above ε, would be zero. Stick
-    *ends* when the load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All
-    these times have errors of first order in ε.
+    A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
+    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All these times have
+    errors of first order in ε.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
@@ -93,7 +93,7 @@ NEIGHBOURS = 100
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
     """Return which ``steps`` are needed to find the phases, shape (n,).
 
-    Of each run of steps in which the same part or nothing creeps these are the ends, the largest slip, the last step
+    In each run of steps with the same creeping part, or none, these are the ends, the largest slip, the last step
     whose load friction can hold, and the step that is held most clearly.
     """
     ratios, creeping = _creeping_parts(contact, steps)
@@ -118,7 +118,7 @@ def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArr
 
 
 def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
-    """Return the kind of phase in which ``part`` of the contact creeps."""
+    """Return the kind of phase while ``part`` of the contact creeps."""
     return "slip" if part == NOTHING else "stick" if part == WHOLE else "pivot"
 
 
@@ -131,7 +131,7 @@ def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
 def _time_of_rest(
     contact: RegularisedContact, steps: Steps, ratio: FloatArray, part: int, left: int
 ) -> float:
-    """Return the time at which the slip of ``part`` would reach zero at its rate at step ``left``.
+    """Return the time when the slip of ``part`` would reach zero at its rate at step ``left``.
 
     ``ratio`` is its slip ratio. If it does not fall, the contact rests from the next step on.
     """
@@ -154,13 +154,16 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
 
 
 def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
-    """Return the time at which ``excess`` of load crosses zero for the last time between two steps."""
+    """Return the time of the last change of sign of ``excess``, the excess of load, between two steps."""
     held = np.flatnonzero(excess[first:beyond] < 0.0)
     return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
 
 
 def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
-    """Return the time between steps ``left`` and ``left + 1`` at which ``values`` cross zero, at the latest."""
+    """Return when ``values`` cross zero between steps ``left`` and ``left + 1``.
+
+    The end of the step if they do not.
+    """
     if values[left] >= 0.0 or values[left + 1] <= 0.0:
         return float(times[left + 1])
     share = values[left] / (values[left] - values[left + 1])

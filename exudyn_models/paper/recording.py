@@ -13,7 +13,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 MOST_KEPT = 50_000
-"""Number of stored steps from which steps without information about phases are dropped."""
+"""Largest number of stored steps; if there are more, those without information about phases are dropped."""
 
 
 class Recording:
@@ -36,7 +36,7 @@ class Recording:
 
     @property
     def finished(self) -> bool:
-        """Whether all times are recorded."""
+        """True if all times are recorded."""
         return self._recorded == len(self.times)
 
     def add(self, run: Steps, axes: Axes) -> None:

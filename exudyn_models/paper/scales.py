@@ -21,7 +21,7 @@ class Scales:
     Parameters
     ----------
     time : float
-        Time in which the motion changes, see ``time_scale``.
+        Time scale of the motion, see ``time_scale``.
     motion : float
         Scale of DOPRI5's error, in m and m/s: 1, or the size of the motion if that is larger.
     angle_rounding : float
@@ -49,7 +49,7 @@ class Scales:
 
 
 def time_scale(system: System, state: FloatArray, span: float) -> float:
-    """Return the time in s in which the motion changes: the shortest of 1/k, 1/|ω|, m/β and ``span``.
+    """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
     A disc adds its spin, that of its shaft, and J/b. For a hardening support k is that at the largest deflection that
     the initial energy allows; friction may increase it further, until the whirl turns with ω. A stop counts as

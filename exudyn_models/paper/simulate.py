@@ -51,7 +51,7 @@ LARGEST_STEP = 6.0
 """Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
-"""Residual at which Newton's method ends, relative to the forces at the start."""
+"""Tolerance of Newton's method for the residual, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
 

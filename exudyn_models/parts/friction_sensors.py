@@ -47,7 +47,7 @@ BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
 """Values of the sensor ``"mode"``, as in Modelica's clutches."""
 
 BAND = 0.01
-"""Relative half-width of the band around the capacity in which ``"mode"`` does not change."""
+"""Relative half-width of the band around the capacity that leaves ``"mode"`` unchanged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,11 @@ class RingFriction:
 
     @property
     def compiled(self) -> bool:
-        """Whether friction is computed without Python functions.
+        """True if friction is computed without Python functions.
 
-        It is if coefficient and load are numbers, tables or numba functions (``@numba.njit``), which keep the values
-        that outer names had when they were compiled. Any other function is called from compiled code too, at its own
-        cost.
+        This requires that coefficient and load are numbers, tables or numba functions (``@numba.njit``), which keep
+        the values that outer names had when they were compiled. Any other function is called from compiled code too,
+        at its own cost.
         """
         return self._factors.compiled
 
@@ -249,7 +249,7 @@ class RingFriction:
         return places
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
-        """Return P/ε, up to 1 the share of the capacity in use, or None if there is no friction."""
+        """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""
         contact, spin = self._factors.geometry, float(slip[2])
         speed = slip_potential_of_contact(float(slip[0]), float(slip[1]), spin, angle, contact)
         if self._factors.friction_force(t, radius, speed, spin) == 0.0:

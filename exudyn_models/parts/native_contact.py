@@ -26,8 +26,8 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 NORMAL_FORCE = 1.0
 """N of all points together, in N. Only the product μN matters, so μ is scaled to give it.
 
-Rounding tilts the normal by about 1e-15, by which N pushes sideways. N is small where friction is large, as in the
-model of a creeping disc.
+Rounding tilts the normal by about 1e-15, so about 1e-15·N acts sideways. N is small where friction is large, as in
+the model of a creeping disc.
 """
 
 

@@ -18,7 +18,7 @@ from reference_model.systems import FloatArray
 _NAMES = "names_of_powers"
 
 NEIGHBOURS = 2
-"""Number of steps before and after a jump with which it is compared."""
+"""Number of steps before and after a jump that it is compared with."""
 
 STEEPER = 5.0
 """Smallest ratio of a jump to the neighbouring changes, and of their slopes; a curve reaches about 2."""

@@ -55,7 +55,7 @@ class Steps:
 
 
 NOT_FINITE = "the state is not finite any more"
-"""Message for a state with which Exudyn would continue and report success."""
+"""Message for a state that is not finite; Exudyn would continue and report success."""
 
 FIRST_STEP = 1e-6
 """First step of DOPRI5, in the model's unit of time; later steps are automatic.

@@ -21,7 +21,7 @@ from exudyn_models.solver.step_limit import contacts_of
 RESOLVED = 0.05
 """Slip change of a step, over ε, that is small enough: tests hold 99 % of static friction with it.
 
-The trapezoidal rule oscillates by half of it about the state in which a contact starts to hold.
+The trapezoidal rule oscillates by half of it about the state of a contact that starts to hold.
 """
 
 LEAST_FALL = 1e-3

@@ -34,7 +34,7 @@ INTERVALS = {
 
 @dataclass(frozen=True, eq=False)
 class ModelInStick:
-    """A model in which all contacts stick, linearised about its initial values.
+    """A model with all contacts in stick, linearised about its initial values.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class ModelInStick:
 
     @property
     def varies(self) -> bool:
-        """Whether a load or coefficient is a function."""
+        """True if a load or coefficient is a function."""
         return any(dampers.vary for _, dampers in self.contacts)
 
     def decay(self, t: float, coordinates: FloatArray) -> float:
@@ -91,7 +91,7 @@ class ModelInStick:
 
 
 def largest_stable_step(mbs: Any, solver_type: Any) -> float:
-    """Return the largest step in s with which an explicit solver is stable while all contacts of a model stick.
+    """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
     It refers to the initial values, with functions for loads and coefficients evaluated at time 0, and is infinite
     without contacts. A disc that creeps about a point on or near its own circle of contact chatters from a quarter of
@@ -132,7 +132,7 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
 
 
 LOOKS = 100
-"""Number of times of a run, after its start, at which functions for loads and coefficients are checked."""
+"""Number of checks of functions for loads and coefficients in a run, after its start."""
 
 
 class StepCheck:

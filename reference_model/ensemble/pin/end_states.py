@@ -32,9 +32,9 @@ Whirl
     later. So the orbit must also attract, and be as close by the derivative of the return map (``stability``).
 
 Stick-slip
-    The state of a pin at its release is given by one number, its distance from the axis. So the change of that distance from one release to the next is judged like the crossings
-    above. Geometric convergence already shows that the cycle attracts, because a motion cannot leave it in any other
-    direction.
+    The state of a pin at its release is given by one number, its distance from the axis. So the change of that
+    distance from one release to the next is judged like the crossings above. Geometric convergence already shows that
+    the cycle attracts, because a motion cannot leave it in any other direction.
 
 A motion that meets none of these criteria by the end stays undecided. A pin without damping or friction may never
 meet one, and close to a basin boundary it may take long.
