@@ -68,7 +68,6 @@ class _SupportedMass:
         )
 
     def __post_init__(self) -> None:
-        """Check all parameters; raise ``ValueError`` for the first bad one."""
         values = vars(self)
         for (
             name,
@@ -86,7 +85,6 @@ class _SupportedMass:
                 )
 
     def _check_numbers(self) -> None:
-        """Convert all parameters to floats; raise ``ValueError`` for one that is out of range."""
         for name, unit in self._units.items():
             value = finite_number(name, getattr(self, name))
             object.__setattr__(self, name, value)
@@ -201,7 +199,6 @@ class DiscOnDisc(_SupportedMass):
     _not_negative: ClassVar[tuple[str, ...]] = (*_SupportedMass._not_negative, "shaft_damping")
 
     def __post_init__(self) -> None:
-        """Check all parameters; raise ``ValueError`` for the first bad one."""
         super().__post_init__()
         if self.contact_points is not None:
             points = finite_number("contact_points", self.contact_points)

@@ -129,7 +129,6 @@ class Trajectory:
     solution: Solution = NOT_TOLD
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
         for array in (self.times, self.states):
             array.flags.writeable = False
 

@@ -205,7 +205,6 @@ def build_drivetrain(
 
 
 def _add_disc(mbs: Any, drivetrain: Drivetrain, speed: float) -> Any:
-    """Add the clutch disc, which turns about the shaft's axis with ``speed`` (rad/s); return its ``NodeIndex``."""
     e = drivetrain.unbalance
     node = mbs.AddNode(
         items.NodeRigidBody2D(
@@ -227,7 +226,6 @@ def _add_disc(mbs: Any, drivetrain: Drivetrain, speed: float) -> Any:
 
 
 def _add_shaft(mbs: Any, drivetrain: Drivetrain, disc: Any) -> RadialSupport:
-    """Add the gearbox's input shaft, which holds the disc radially."""
     return add_radial_support(
         mbs,
         None,
@@ -242,7 +240,6 @@ def _add_shaft(mbs: Any, drivetrain: Drivetrain, disc: Any) -> RadialSupport:
 
 
 def _add_torsional_spring(mbs: Any, drivetrain: Drivetrain, vehicle: Any, disc: Any) -> Any:
-    """Add the torsional spring and damper between gearbox and disc; return their ``ObjectIndex``."""
     return mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamper(
             markerNumbers=[_coordinate(mbs, vehicle, 0), _coordinate(mbs, disc, 2)],
@@ -280,7 +277,6 @@ def _add_balance(
 
 
 def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:
-    """Add sensors of coordinates and velocities of each node; return their ``SensorIndex``."""
     return tuple(
         mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
         for node in nodes
@@ -289,7 +285,6 @@ def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:
 
 
 def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
-    """Add a rotor about the z-axis; return its ``NodeIndex``."""
     node = mbs.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[speed])
     )
@@ -298,7 +293,6 @@ def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
 
 
 def _coordinate(mbs: Any, node: Any, coordinate: int) -> Any:
-    """Add a marker of a coordinate of a node; return its ``MarkerIndex``."""
     return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
 
 
@@ -310,7 +304,6 @@ def _add_torques(mbs: Any, **torques: tuple[Any, Torque | None]) -> dict[str, Po
 
 
 def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
-    """Apply ``torque`` to a rotor; return its power."""
 
     def now(mbs: Any, t: float) -> tuple[float, float]:
         """Return torque and speed."""

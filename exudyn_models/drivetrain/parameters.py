@@ -68,7 +68,6 @@ class Drivetrain:
     vehicle_inertia: float
 
     def __post_init__(self) -> None:
-        """Check ranges; the parts check the rest."""
         for field in fields(self):
             value = finite_number(field.name, getattr(self, field.name))
             if field.name.endswith(("inertia", "mass", "outer_radius")) and value <= 0.0:

@@ -117,14 +117,12 @@ def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[
 
 
 def _ring(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:
-    """Return a ring about the z-axis between two heights."""
     return graphics.Cylinder(
         [0.0, 0.0, low], [0.0, 0.0, high - low], outer, list(colour), radiusInner=inner, nTiles=64
     )
 
 
 def _sector(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:
-    """Return the part of a ring that remains after the cut through the cover."""
     around = np.exp(1j * np.linspace(0.0, COVERED, 64))
     edge = np.concatenate((outer * around, inner * around[::-1]))
     corners = len(edge)
@@ -138,7 +136,6 @@ def _sector(outer: float, inner: float, low: float, high: float, colour: Colour)
 
 
 def _spring(radius: float, angle: float, thickness: float) -> Any:
-    """Return a torsional spring: a short cylinder along the circumference."""
     middle, along = radius * np.exp(1j * angle), 1j * np.exp(1j * angle)
     length = 3.0 * thickness
     start = middle - 0.5 * length * along
@@ -156,7 +153,6 @@ def _moved(part: Any, place: FloatArray, angle: float) -> Any:
 
 
 def _rendered(parts: list[Any], height: float, centre: Sequence[float], size: tuple[int, int]) -> Image:
-    """Return the picture of a scene of the given ``height`` (m) about its ``centre``."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     mbs.AddObject(items.ObjectGround(visualization=items.VObjectGround(graphicsData=parts)))

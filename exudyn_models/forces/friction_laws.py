@@ -263,7 +263,6 @@ def derivatives_by_slip(
 def _derivatives_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Like ``derivatives_by_slip``, for points."""
     radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)

@@ -129,7 +129,6 @@ def _with(contact: Contact, friction: float) -> Contact:
 
 @cache
 def _of_python() -> Callable[..., Any]:
-    """Return ``friction_force_under`` for calls from Python."""
     return taking_lists(friction_force_under, LAW, *[float] * 5)
 
 

@@ -236,7 +236,6 @@ class _Turns:
         return step, end
 
     def _creep_model(self, axes: Axes, state: FloatArray, part: Part) -> Any:
-        """Build the system in ``axes`` with unlimited viscosity in ``part`` of the contact."""
         system, add = self.contact.system, self.friction.add
         viscous = 1.0
         if part == WHOLE:

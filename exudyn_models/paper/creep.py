@@ -153,6 +153,5 @@ class RegularisedContact:
 
 
 def _growth(slip: NDArray[np.complex128], rate: NDArray[np.complex128]) -> FloatArray:
-    """Return the rate of |slip|."""
     speed = np.abs(slip)
     return np.asarray((slip.conjugate() * rate).real / np.where(speed > 0.0, speed, 1.0))

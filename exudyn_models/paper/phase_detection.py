@@ -118,7 +118,6 @@ def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArr
 
 
 def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
-    """Return the kind of phase while ``part`` of the contact creeps."""
     return "slip" if part == NOTHING else "stick" if part == WHOLE else "pivot"
 
 

@@ -243,7 +243,6 @@ class Run:
 
 
 def _step_tolerance(system: System) -> float:
-    """Return the tolerance of DOPRI5 over the requested one."""
     if system.stop_stiffness > 0.0:
         return STOP_STEP_TOLERANCE
     return DISC_STEP_TOLERANCE if isinstance(system, DiscOnDisc) else STEP_TOLERANCE

@@ -97,7 +97,6 @@ def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(
 
 
 def _check_axis(name: str, mbs: Any, node: Any) -> None:
-    """Raise ``ValueError`` if the body of a ``Node1D`` does not turn about the global z-axis."""
     for item in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(item)
         kind = body["objectType"]

@@ -93,7 +93,6 @@ def MainSystemCreateRadialSupport(
 
 
 def _two_bodies(numbers: Sequence[Any]) -> tuple[Any, Any]:
-    """Return both bodies; raise ``ValueError`` if there are not two."""
     if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
         raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
     return numbers[0], numbers[1]

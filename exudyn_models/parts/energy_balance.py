@@ -192,7 +192,6 @@ def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
 
 
 def _bodies(mbs: Any) -> list[int]:
-    """Return the indices of all objects with kinetic energy."""
     found = []
     for item in range(mbs.systemData.NumberOfObjects()):
         try:
@@ -204,5 +203,4 @@ def _bodies(mbs: Any) -> list[int]:
 
 
 def _kinetic_energy(mbs: Any, body: int) -> float:
-    """Return the kinetic energy of a body in J."""
     return float(mbs.GetObjectOutputBody(body, exu.OutputVariableType.KineticEnergy))

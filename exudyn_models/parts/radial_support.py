@@ -106,7 +106,6 @@ class RadialSupport:
     def _state(
         self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
     ) -> tuple[FloatArray, FloatArray, float, float]:
-        """Return deflection, force on the disc in global axes, stored energy and power of the damper."""
         q, q_t = (
             np.hstack([mbs.GetNodeOutput(node, variable, configuration) for node in self.nodes])
             for variable in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
@@ -219,7 +218,6 @@ def _checked_offset(offset: Sequence[float]) -> Offset:
 
 
 def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law) -> Any:
-    """Add Exudyn's springs and dampers from the ground to ``node``; return their ``ObjectIndex``."""
     stiffness, *_, damping = law
     ground = mbs.AddObject(items.ObjectGround(referencePosition=[*offset, 0.0]))
     return mbs.AddObject(

@@ -246,7 +246,6 @@ def _checked_annulus(
     contact_radius: float | None,
     contact_points: int | None,
 ) -> tuple[float, float]:
-    """Return both radii in m; raise ``ValueError`` if they are invalid."""
     for name, value in (("contact_radius", contact_radius), ("contact_points", contact_points)):
         if value is not None:
             raise ValueError(f"{name} = {value}: it cannot be combined with inner_radius and outer_radius")

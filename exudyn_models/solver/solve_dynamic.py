@@ -154,7 +154,6 @@ def _singular(mbs: Any, at_start: bool) -> str:
 
 
 def _check_constraints(mbs: Any, solver: Any) -> None:
-    """Raise ``ValueError`` if ``solver`` is explicit and an assembled model has algebraic constraints."""
     constraints = mbs.systemData.AEsize()
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(

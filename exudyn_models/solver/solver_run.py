@@ -239,7 +239,6 @@ def _recorded(
 
 
 def _evaluations(solver: Any, explicit: bool) -> int:
-    """Return the number of evaluations of the equations of motion."""
     if not explicit:
         found = solver.it.discontinuousIterationsCount
         # Each failed iteration leads to one repetition, see restored_accelerations.
@@ -259,7 +258,6 @@ def _settings(
     quasi_static: bool = False,
     balanced: bool = False,
 ) -> Any:
-    """Return Exudyn's settings for the arguments of :func:`solve`."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # at every step

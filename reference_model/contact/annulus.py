@@ -63,7 +63,6 @@ class Annulus(IsotropicContact):
     pressure: Callable[[float], float] | None = None
 
     def __post_init__(self) -> None:
-        """Check the radii, the number of rings and the pressure."""
         inner = finite_number("inner_radius", self.inner_radius)
         outer = finite_number("outer_radius", self.outer_radius)
         object.__setattr__(self, "inner_radius", inner)

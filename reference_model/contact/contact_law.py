@@ -151,7 +151,6 @@ class _OnCircle:
     radius: float
 
     def __post_init__(self) -> None:
-        """Check that the radius is > 0."""
         radius = finite_number("radius", self.radius)
         if radius <= 0.0:
             raise ValueError(f"radius = {radius:g} m: it must be > 0")
@@ -251,7 +250,6 @@ class PointsOnRing(_OnCircle):
     points: int
 
     def __post_init__(self) -> None:
-        """Check the radius and the number of points."""
         super().__post_init__()
         require_whole("points", self.points, least=3, most=MOST_POINTS)
 

@@ -66,7 +66,6 @@ class Ensemble:
     steps: NDArray[np.int64]
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
         for array in vars(self).values():
             array.flags.writeable = False
 

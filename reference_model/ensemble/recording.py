@@ -71,7 +71,6 @@ class Recording:
 
     @property
     def _rounding(self) -> float:
-        """Rounding error of times in s."""
         return ROUNDED * max(self.duration, self.unit)
 
     def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
@@ -113,7 +112,6 @@ class Recording:
         self.evaluations += motion.solution.evaluations
 
     def _sample(self, many: Runs, checkpoints: Checkpoints, until: float) -> None:
-        """Compute the states at the times from the first checkpoint up to ``until``."""
         asked = (self.times >= checkpoints["time"][0]) & (self.times <= until)
         if not np.any(asked):
             return

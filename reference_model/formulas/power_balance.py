@@ -69,16 +69,15 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     """Return the energy balance of ``trajectory``.
 
     In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u + M·S
-    (per newton of μN) for a disc. A regularised engine declares the P below which its friction is weaker. In stick
-    phases the heat is the work of the holding force and moment of eq. 6 on the engine's creep, which is zero for
-    exact friction. The drive's work is ω times the angular impulse on the body about the axis, which follows from the
-    motion: ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its
-    deflection. So the residual vanishes only if friction acts against the slip with the magnitude μN, the damping and
-    the springs are right, and the integrator conserves energy.
+    (per newton of μN) for a disc; below the ε of a regularised engine friction is weaker. In stick phases the heat is
+    the work of the holding force and moment of eq. 6 on the engine's creep, zero for exact friction. The drive's work
+    is ω times the angular impulse on the body about the axis, which follows from the motion: ∫M dt = [m·r×v + J·φ̇] +
+    β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual
+    vanishes only if friction acts against the slip with the magnitude μN, the damping and the springs are right, and
+    the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
-    power of the sampling interval while the slip of every point is well above zero, and more slowly otherwise and
-    where a stop begins to act.
+    power of the sampling interval, or more slowly if the slip of a point is near zero or a stop begins to act.
 
     Parameters
     ----------
@@ -185,7 +184,6 @@ def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: 
 
 
 def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Return kind, times and states of each phase, including its bounds."""
     spans: list[tuple[str, FloatArray, FloatArray]] = []
     ends = [phase.initial_state for phase in trajectory.phases[1:]] + [trajectory.at_end]
     for phase, end_state in zip(trajectory.phases, ends, strict=True):
@@ -199,7 +197,7 @@ def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the integrals of ``rates``, shape (n, k), from ``t[0]`` to each time."""
+    """Return the integrals of ``rates``, shape (n, k), from ``t[0]``."""
     # A spline needs an odd degree and more samples than that.
     degree = min(SPLINE_DEGREE, (len(t) - 2) // 2 * 2 + 1)
     antiderivative = make_interp_spline(t - t[0], rates, k=degree).antiderivative()

@@ -1,4 +1,4 @@
-"""Units of length and time in which a motion is of order one."""
+"""Units of length and time that make a motion of order one."""
 
 from __future__ import annotations
 

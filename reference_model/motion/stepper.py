@@ -21,7 +21,7 @@ Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
 
 STABLE = 3.0
-"""Step times largest decay rate at which stability begins to limit DOP853; the limit is 6."""
+"""Step times largest decay rate where stability begins to limit DOP853; the limit is 6."""
 
 STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""

@@ -3,8 +3,8 @@
 In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). All functions
 of the pin take the equations of motion and complex positions.
 
-A friction disc sticks only as a whole. The moment of its shaft is constant meanwhile, and beside it an isotropic
-contact can hold a force up to its limit surface. So the centre is a stuck pin with reduced friction.
+A friction disc sticks only as a whole. Friction then holds the constant moment of its shaft, and at the same time a
+force up to the limit surface. So the centre is a stuck pin with reduced friction.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     p, q, g = abs(constant), abs(turning), motion.friction
     if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
         return math.inf
-    # The angle between the two pulls, in the sense in which it grows; friction holds outside ± limit. The half-angle
+    # The angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle
     # form of the law of cosines is accurate where an arccos would lose digits.
     angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
     limit = 2.0 * math.atan2(

@@ -173,7 +173,7 @@ class Radau:
 
     @property
     def settled(self) -> bool:
-        """Whether the step size has settled."""
+        """True if the step size has settled."""
         return self._unchanged >= SETTLED
 
     @property
@@ -259,6 +259,5 @@ class Radau:
         return None
 
     def _rates(self, values: FloatArray) -> FloatArray:
-        """Return the rates at ``values`` (n, k), and count the evaluations."""
         self.nfev += values.shape[1]
         return self._fun(values)

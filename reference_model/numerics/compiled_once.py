@@ -26,13 +26,13 @@ with suppress(ImportError):  # on Windows
     import fcntl
 
 LONG = 1.0
-"""Time in s after which a line on standard error announces the compilation; loading takes less."""
+"""Time in s before a line on standard error announces the compilation; loading takes less."""
 
 VERSIONS = 4
 """Number of source versions whose compiled functions are kept."""
 
 UNUSED = 86_400.0
-"""Age in s from which older versions are deleted; a running process may still need a younger one."""
+"""Age in s of versions that are deleted; a running process may still need a younger one."""
 
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 

@@ -26,13 +26,13 @@ CONVERGED = 1e-7
 
 ITERATIONS = 8
 QUICK = 3
-"""Largest number of Newton iterations, and largest number after which the step may grow."""
+"""Largest number of Newton iterations, and largest number that lets the step grow."""
 
 TURN = 0.97
 """Smallest cosine of the angle between the tangents at neighbouring points."""
 
 SHORTEST = 1e-9
-"""Step in units of the scales at which the continuation gives up."""
+"""Smallest step, in units of the scales."""
 
 
 class ContinuationError(RuntimeError):
@@ -57,7 +57,7 @@ class Curve:
 
     @property
     def closed(self) -> bool:
-        """Whether the curve returns to its first point."""
+        """True if the curve returns to its first point."""
         return not self.ends
 
 
@@ -174,7 +174,6 @@ def _along(slopes: FloatArray) -> FloatArray:
 
 
 def _slopes(function: Function, point: FloatArray) -> FloatArray:
-    """Return the derivatives of ``function`` by central differences, shape (m, d)."""
     columns = []
     for i in range(len(point)):
         shift = np.zeros(len(point))

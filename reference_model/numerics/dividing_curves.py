@@ -1,4 +1,4 @@
-"""Curves in a rectangle on which a function of two variables changes its sign.
+"""Curves in a rectangle where a function of two variables changes sign.
 
 A grid shows where they are. Each curve is followed from point to point: the next point is the zero of the function on
 an arc ahead of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be
@@ -31,25 +31,24 @@ TURN = 0.35
 """
 
 SHORTEST = 1e-7
-"""Step, as a fraction of the rectangle, at which a search gives up."""
+"""Smallest step of a search, as a fraction of the rectangle."""
 
 MOST_POINTS = 10_000
-"""Number of points after which a search gives up if the curve neither closes nor leaves the rectangle."""
+"""Largest number of points of a curve that neither closes nor leaves the rectangle."""
 
 EXACT = 1e-13
 """Default error of a point across the curve, as a fraction of the rectangle."""
 
 SAME = 0.25
-"""Distance from a curve, in steps, up to which a zero counts as a point of it."""
+"""Largest distance from a curve, in steps, of a zero that counts as a point of it."""
 
 
 def dividing_curves(
     function: Function, low: FloatArray, high: FloatArray, cells: int, error: float = EXACT
 ) -> tuple[Curve, ...]:
-    """Return the curves in a rectangle on which ``function`` changes its sign, with points of shape (n, 2).
+    """Return the curves in a rectangle where ``function`` changes sign, with points of shape (n, 2).
 
-    The limits at which a curve ends have the indices 0 and 1 (lower limits of both variables), 2 and 3 (upper
-    limits).
+    Each curve names the limits where it ends: 0 and 1 are the lower limits of both variables, 2 and 3 the upper.
 
     Parameters
     ----------
@@ -116,7 +115,7 @@ class _Square:
         return first + share * (second - first)
 
     def follow(self, start: complex, across: complex) -> tuple[ComplexArray, tuple[int, ...]]:
-        """Return the curve through ``start``, shape (n,), and the limits at which it ends."""
+        """Return the curve through ``start``, shape (n,), with the limits at its ends."""
         ahead, last = self.walk(start, 1j * across)
         if last is None:
             return np.array(ahead), ()
@@ -126,7 +125,7 @@ class _Square:
         return np.array([*behind[:0:-1], *ahead]), (first, last)
 
     def walk(self, start: complex, along: complex) -> tuple[list[complex], int | None]:
-        """Return the points from ``start`` on and the limit at which they end, or None if the curve closes."""
+        """Return the points from ``start`` on and the limit at their end, or None if the curve closes."""
         path, heading, width, step = [start], cmath.phase(along), 0.5 * math.pi, 0.25 * self.step
         while step > SHORTEST and len(path) < MOST_POINTS:
             home = start - path[-1]
@@ -152,7 +151,7 @@ class _Square:
         return self.zero(lambda angle: last + cmath.rect(step, angle), heading - width, heading + width, step)
 
     def end(self, last: complex, step: float, heading: float) -> complex:
-        """Return the point less than one ``step`` ahead at which the curve first reaches a limit."""
+        """Return the point less than one ``step`` ahead where the curve first reaches a limit."""
 
         def point(part: float) -> complex:
             turned = self.ahead(last, part, heading, 0.5 * math.pi)
@@ -190,7 +189,6 @@ def _edges(side: Callable[[complex], bool], cells: int) -> Iterator[tuple[comple
 
 
 def _crosses(path: ComplexArray, first: complex, second: complex) -> bool:
-    """Return whether the polygon ``path``, shape (n,), crosses the line between two points."""
     chords = np.diff(path)
     across = _cross(second - first, path - first)
     ends = _cross(chords, first - path[:-1]) * _cross(chords, second - path[:-1])
@@ -202,7 +200,6 @@ def _cross(a: ComplexArray | complex, b: ComplexArray) -> FloatArray:
 
 
 def _distance(path: ComplexArray, point: complex) -> float:
-    """Return the distance of a ``point`` from the polygon ``path``, shape (n,)."""
     chords, to_point = np.diff(path), point - path[:-1]
     share = np.clip((np.conj(chords) * to_point).real / np.abs(chords) ** 2, 0.0, 1.0)
     return float(np.min(np.abs(to_point - share * chords)))

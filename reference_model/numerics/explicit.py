@@ -124,7 +124,6 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
         return True, None
 
     def _take(self, h: float) -> FloatArray:
-        """Return the unknowns after a step of ``h``, and store the rates at its stages."""
         known, rates, new = self._known, self._rates, self._new
         np.multiply(_WEIGHTS[:, 1:], h, out=self._scaled[:, 1:])
         unknowns: list[float] = []

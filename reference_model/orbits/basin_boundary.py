@@ -89,7 +89,7 @@ class Separatrix:
         return replace(self.releases, tolerance=max(ROUGH, self.releases.tolerance))
 
     def miss(self, start: ArrayLike) -> float:
-        """Return the angle by which the pin misses the orbit at its first release near it.
+        """Return the angular distance from the orbit at the pin's first release near it.
 
         It is positive for releases after that of the orbit. Without a near release it is ±NEAR, depending on the
         final motion.
@@ -157,8 +157,7 @@ def basin_boundary(
 ) -> tuple[Curve, ...]:
     """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
-    The limits at which a curve ends have the indices 0 and 1 (lower limits of both components), 2 and 3 (upper
-    limits).
+    Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
 
     Parameters
     ----------
@@ -210,7 +209,6 @@ def _require_on_boundary(point: FloatArray, miss: float) -> None:
 
 
 def _checked_places(components: tuple[str, str]) -> list[int]:
-    """Return the indices of two components in the state; raise ``ValueError`` if they are invalid."""
     if len(components) != 2 or components[0] == components[1] or not set(components) <= set(COMPONENTS):
         raise ValueError(f"components = {components!r}: they must be two of {', '.join(COMPONENTS)}")
     return [COMPONENTS.index(name) for name in components]

@@ -1,10 +1,10 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
 At a release the pin rests on the disc and its pull equals friction, (7) with equality. These positions lie on half a
-circle, so one number summarises the motion before: the angle α between 0 and π by which the pull lags behind that of
-the offset. The map from one α to the next is a function of one variable. Its fixed points are the orbits, and its
-slope there is their multiplier. Of the other three multipliers one belongs to a shift in time, and two are zero,
-because stick forgets the time and the velocity of the stop.
+circle, so one number summarises the motion before: the lag α of the pull behind that of the offset, between 0 and π.
+The map from one α to the next is a function of one variable. Its fixed points are the orbits, and its slope there is
+their multiplier. Of the other three multipliers one belongs to a shift in time, and two are zero, because stick
+forgets the time and the velocity of the stop.
 
 The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
@@ -223,7 +223,7 @@ class StickSlipOrbit(Orbit):
     stick_time : float
         Duration of stick in s.
     multiplier : float
-        Factor by which a small deviation of the release angle grows in a period.
+        Growth factor per period of a small deviation of the release angle.
 
     """
 

@@ -75,7 +75,7 @@ class Shock:
 
 
 def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
-    """Return the smallest shock after which ``pin`` goes to the whirl instead of returning to its equilibrium.
+    """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
     Raises
     ------

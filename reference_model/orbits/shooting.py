@@ -152,14 +152,14 @@ class Orbit:
     period : float
         Period in s.
     residual : float
-        Distance by which the orbit misses its start, relative to its size.
+        Distance between start and end of the orbit, relative to its size.
     trajectory : Trajectory
         One period at equally spaced times, both ends included.
     problem : ShootingProblem
-        The return map by which it was found.
+        Its return map.
     turn : float
-        Angle in rad by which the motion has rotated about the axis after a period, including whole turns; 0 if it
-        recurs without rotation.
+        Rotation of the motion about the axis in a period, in rad, including whole turns; 0 if it recurs without
+        rotation.
 
     """
 

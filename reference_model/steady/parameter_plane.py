@@ -48,7 +48,6 @@ class ParameterPlane:
     upper: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Check the offset, the support, the names and the ranges."""
         if self.disc.offset != 0.0:
             raise ValueError(
                 f"offset = {self.disc.offset:g} m: boundaries are defined for whirls without offset; set it to 0"

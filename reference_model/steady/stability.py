@@ -66,7 +66,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of u_x, u_y, S and φ, on which friction depends, by x, y, φ and by their rates.
+        # Derivatives of the arguments of friction, u_x, u_y, S and φ, by x, y, φ and by their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]
@@ -196,7 +196,7 @@ def whirl_eigenvalues(
 
 
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N above which the rotation of a centred disc about the axis is unstable.
+    """Return the largest μN in N for a stable rotation of a centred disc about the axis.
 
     With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the moment
     of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that turns with

@@ -60,26 +60,23 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one: that of (3) if μN < C·|X0| and ω ≠ 0. There is none
+    A pin has at most one: that of (3) if μN < C·|X0| and ω ≠ 0. It has none
 
-    - if μN >= C·|X0|, which includes X0 = 0; at equality the pin would rest on the axis, and stick there;
-    - if ω = 0 with friction: a pin at rest on a disc at rest sticks;
+    - if μN >= C·|X0|, which includes X0 = 0; at equality the pin would stick on the axis;
+    - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    On a nonlinear support its force at the deflection |X0| takes the place of C·|X0|, for a disc too, and (Cρ)² +
-    (μN·F)² = (C·X0)² below becomes ρ² + d² = X0² with the deflection d at the force μN·F.
-
-    A disc has an equilibrium if friction cannot hold it at rest on the axis against springs and shaft. On the
-    continuous ring it is unique: at a given radius the torsional balance leaves one spin, and with the radius the
-    friction force grows as the spring force does, (Cρ)² + (μN·F)² = (C·X0)², because F and M are derivatives of one
-    convex function of slip. If X0 = 0, C = 0 or ω = 0 the centre does not slide and the disc only spins. A disc that
-    does not spin relative to the master disc (b = 0, ω = Ω) behaves like a pin. There is none
+    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring it
+    is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² + (μN·F)² =
+    (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. If X0 = 0, C = 0 or ω
+    = 0 the disc spins about a centre without slip. If b = 0 and ω = Ω it behaves like a pin. It has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    Without friction the centre rests at (X0, 0). :func:`why_no_equilibrium` returns the condition that fails.
+    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
+    the deflection d at the force μN·F. :func:`why_no_equilibrium` returns the condition that fails.
 
     Parameters
     ----------
@@ -144,10 +141,10 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`. :func:`why_no_whirl` returns the
     condition that fails.
 
-    A nonlinear support carries the pin faster on a larger circle. Only one circle has the speed μN/β, see
+    On a nonlinear support the frequency grows with the circle. The pin's circle has the speed μN/β, see
     :func:`reference_model.formulas.pin.whirl_radius`. It is a whirl if the disc turns faster; otherwise, and if β =
-    0, the pin finally sticks. The circles of a disc, whose friction acts only partly along the circle, are smaller
-    and slower, so a disc may have whirls where a pin sticks.
+    0, the pin finally sticks. The circles of a disc are smaller and slower, because its friction acts only partly
+    along the circle, so a disc may have whirls where a pin sticks.
 
     Parameters
     ----------

@@ -128,5 +128,4 @@ def row_of(values: FloatArray, number: int) -> FloatArray:
 
 @scalar
 def _accept(lanes: _Lanes) -> None:
-    """Accept the trial of every lane."""
     lanes.now = lanes.trial

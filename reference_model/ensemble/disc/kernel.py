@@ -155,7 +155,6 @@ def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> 
 
 @scalar
 def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Return whether the steady motion that a disc on a ring has reached attracts."""
     return attracts(z, v, r, law, circle, near)
 
 

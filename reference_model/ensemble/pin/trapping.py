@@ -130,7 +130,6 @@ def _look_about_whirl(pin: PinOnDisc, known: NDArray[Any]) -> None:
 
 
 def _on_section(crossings: FloatArray, k: float) -> FloatArray:
-    """Return states (n, 4) for crossings (n, 3)."""
     x, y, v = crossings.T
     return np.column_stack((x, y, np.zeros_like(x), k * v))
 
@@ -147,7 +146,6 @@ def _run(
 
 
 def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:
-    """Return the derivative of a map at zero by central differences."""
     points = DIFFERENCE * size * np.concatenate((np.eye(dimension), -np.eye(dimension)))
     images = flow(points)
     return np.asarray((images[:dimension] - images[dimension:]).T / (2.0 * DIFFERENCE * size))

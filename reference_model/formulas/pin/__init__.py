@@ -11,9 +11,9 @@ The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 The balances (3) and (11) also hold for a support that hardens or has a stop, with its force in place of the spring's.
 All other formulas refuse a nonlinear support.
 
-A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. The exceptions are
-(12)–(16), which the paper also uses for ω < k: they are statements about a matrix and its characteristic equation,
-and refuse only |ω| = k, where ω/(ω − k) is undefined.
+A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16),
+statements about a matrix that the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where
+ω/(ω − k) is undefined.
 
 """
 

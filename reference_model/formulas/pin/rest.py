@@ -102,5 +102,4 @@ def _require_equilibrium(pin: PinOnDisc) -> None:
 
 
 def _equilibrium_deflection(pin: PinOnDisc) -> float:
-    """Return the deflection in m for the force μN."""
     return Support.of(pin).deflection(pin.friction_force)

@@ -134,7 +134,7 @@ def sticking_radius(pin: PinOnDisc) -> float:
 
 
 def resonant_disc_speed(pin: PinOnDisc) -> float:
-    """Return ω* below (9) in rad/s, the speed at which the sticking domain is largest.
+    """Return ω* below (9) in rad/s, the disc speed with the largest sticking domain.
 
     Raises
     ------

@@ -40,7 +40,7 @@ def whirl_frequency(pin: PinOnDisc) -> float:
 
 
 def driven_radius(pin: PinOnDisc, drive: float) -> float:
-    """Return the radius in m of a circle on which the support carries a pin at the speed ``drive`` (N) / β."""
+    """Return the radius in m of a pin that the support carries on a circle at the speed ``drive`` (N) / β."""
     if pin.linear_support:
         return drive / (pin.damping * pin.natural_frequency)
     return Support.of(pin).circle(pin.mass * (drive / pin.damping) ** 2)

@@ -53,7 +53,6 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
 
 
 def _change(before: list[float], y: list[float]) -> float:
-    """Return the relative change of slip from ``before`` to the unknowns ``y``."""
     after = y[-len(before) :]
     return math.dist(before, after) / max(math.hypot(*after), LEAST_SLIP)
 

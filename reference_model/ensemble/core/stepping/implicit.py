@@ -343,7 +343,6 @@ def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
 
 @scalar
 def _size_of(matrix: FloatArray) -> float:
-    """Return the Frobenius norm."""
     total = 0.0
     for row in matrix:
         for value in row:
