@@ -106,8 +106,8 @@ def _what_is_unknown(system: System) -> str:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":
             return (
-                f"{name} = {value:g}: compiled runs support linear supports only: release and the surroundings "
-                "of an equilibrium are in closed form; use reference_model.simulate"
+                f"{name} = {value:g}: compiled runs need a linear support, because they compute release and "
+                "the surroundings of an equilibrium in closed form; set it to 0 or use reference_model.simulate"
             )
     points = getattr(system, "contact_points", None) or 0
     if points > MOST_POINTS:

@@ -15,7 +15,7 @@ START = [0.1, 0.0, 0.0, 0.0]
     ("system", "states", "options", "message"),
     [
         ("pin", START, {}, r"system = 'pin': it must be a PinOnDisc or a DiscOnDisc"),
-        (HARDENING, START, {}, r"hardening = 2: a compiled run takes linear supports only"),
+        (HARDENING, START, {}, r"hardening = 2: compiled runs need a linear support"),
         (FIG5, [0.1, 0.0], {}, r"initial_states has shape \(1, 2\): PinOnDisc takes 4 numbers"),
         (FIG5, np.zeros((0, 4)), {}, r"initial_states has shape \(0, 4\)"),
         (FIG5, [START, [0.1, 0.0, np.nan, 0.0]], {}, r"initial_states\[1, 2\] = nan: it must be finite"),
