@@ -209,7 +209,7 @@ def test_a_step_beyond_the_limit_is_told_before_the_run_and_one_below_is_not(sol
     assert not warned(row_of_rotors(2)[0], settings(0.9995 * limit, 1000), kind)
     (told,) = warned(row_of_rotors(2)[0], settings(1.0005 * limit, 1000), kind)
     assert told.startswith(f"{solver} is unstable with steps of {1.0005 * limit:.3g} s while the contacts")
-    assert f"t = 0 s, but below {limit:.3g} s: use numberOfSteps >= 1,001, a larger" in told
+    assert f"t = 0 s, and stable below {limit:.3g} s: use numberOfSteps >= 1,001, a larger" in told
     assert not warned(row_of_rotors(2)[0], settings(limit * 1000 / 1001, 1001), kind)
 
 

@@ -150,10 +150,10 @@ def test_a_single_time_tells_in_which_phase_the_motion_begins():
 @pytest.mark.parametrize(
     ("system", "options", "message"),
     [
-        (replace(FIG5, hardening=2.0), {}, "hardening = 2: compiled runs support linear supports only"),
+        (replace(FIG5, hardening=2.0), {}, "hardening = 2: compiled runs need a linear support"),
         (
             replace(FIG9, stop_gap=0.1, stop_stiffness=3.0), {},
-            "stop_stiffness = 3: compiled runs support linear supports only",
+            "stop_stiffness = 3: compiled runs need a linear support",
         ),
         (replace(FIG9, contact_points=25), {}, "contact_points = 25: compiled runs support up to 24"),
         (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs support only the law of the system's parameters"),
