@@ -13,7 +13,7 @@ Modules and packages:
 - ``steady``: steady motions, their stability, and stability boundaries in planes of two parameters;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
 - ``ensemble``: compiled simulation of one trajectory or many;
-- ``numerics``: roots, continuation, collocation, and curves on which a sign changes.
+- ``numerics``: roots, continuation, collocation, and curves where a function changes sign.
 """
 
 from reference_model.contact.annulus import Annulus

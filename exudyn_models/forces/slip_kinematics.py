@@ -8,8 +8,7 @@ any orientation, and the derivatives of the forces follow from those of J.
 J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
 (Squire & Trapp, SIAM Review 40 (1998) 110).
 
-Array elements are assigned one by one, because for a slice numba compiles a message about shapes, which takes as long
-as everything else.
+Array elements are assigned one by one, because the error message for a wrong slice would double the compile time.
 """
 
 from __future__ import annotations

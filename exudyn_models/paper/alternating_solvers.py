@@ -35,7 +35,7 @@ CREEP_ANGLE = 0.15
 """Rotation of the ground in rad per step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""Ratio of slow to fast relaxation time; if it is larger, the steps of creep resolve the slow one."""
+"""Smallest ratio of slow to fast relaxation time for steps of creep that resolve the slow one."""
 
 STEPS_OF_RELAXATION = 20.0
 """Steps of creep per slow relaxation time."""

@@ -146,7 +146,7 @@ def simulate_fixed_step(
 
 @dataclass(frozen=True)
 class Run:
-    """A motion to compute from time 0 on, in units in which it is of order one.
+    """A motion to compute from time 0 on, in units that make it of order one.
 
     Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances.
 

@@ -30,7 +30,7 @@ Energy: TypeAlias = Callable[[Any], float]
 
 @dataclass(frozen=True, eq=False)
 class EnergyBalance:
-    """Energies of a model at the times at which its sensors write, in J and of shape (n,).
+    """Energies of a model at the output times of its sensors, in J and of shape (n,).
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ def add_native_friction(
     contact_points : int
         n >= 1. A built-in contact of a whole circle does not exist.
     reach : float
-        Distance in m, > 0, from the master's node, beyond which a point may leave the triangle.
+        Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 
     Raises
     ------

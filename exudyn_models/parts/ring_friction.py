@@ -116,7 +116,7 @@ def add_ring_friction(
         Static over sliding friction, >= 1. Friction holds up to ``static_ratio``·μN and falls to μN between the slip
         speeds ε and 2ε; the effect of this width is of first order in ε.
     plates : int
-        Number of pairs of faces in series, >= 1, by which friction is multiplied.
+        Number of pairs of faces in series, >= 1, a factor of friction.
     pressure : {"uniform", "wear"} or callable
         Pressure of an annulus: uniform; ∝ 1/r, as in evenly worn linings; or a smooth function of the radius in m
         that returns it >= 0 in any unit, since the load determines its size.

@@ -32,26 +32,22 @@ def solve_dynamic(
 ) -> None:
     """Run ``mbs.SolveDynamic`` with the same arguments, and raise errors that it does not report.
 
-    A step across a load jump has an error of the jump times the part of the step before it, whatever the order of the
-    solver, and more with an implicit one. With ``breaks`` the run is interrupted just before these times and
-    continues just after.
-
-    Exudyn's explicit solvers ignore algebraic constraints, or lose their order when they eliminate them. They also
-    continue with a state that is not finite and report success. A check after every step, which costs about 1.5 μs,
-    ends the run in that case; the model's own function after a step is still called.
-
-    A step beyond the stability limit of sticking contacts gives a run that looks normal. Before a run with a fixed
-    step a ``RuntimeWarning`` reports this, see ``largest_stable_step``. The check includes the contacts of
-    ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Loads and
-    coefficients that are functions are evaluated at the start and at a hundred times of the run, when the warning may
-    come too. They are never evaluated at a time or a motion that is not part of the run.
-
-    An implicit run starts with the actual rates of heat and work, which Exudyn would take as zero. Steps that Exudyn
-    repeats start with the complete state from their beginning, see ``repeated_steps``. For that purpose modified
-    Newton renews its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of
-    friction are repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see
-    ``steep_laws``. If a power of ``add_energy_balance`` or of a heat sensor jumps, a ``RuntimeWarning`` reports it at
-    the end, see ``jumps``.
+    - *Load jumps.* A step across a load jump has an error of the jump times the part of the step before it, and a
+      larger one with an implicit solver. With ``breaks`` the run stops just before these times and continues just
+      after. A ``RuntimeWarning`` at the end reports a jump of a power of ``add_energy_balance`` or of a heat sensor,
+      see ``jumps``.
+    - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and
+      report success with a state that is not finite. A check after every step, which costs about 1.5 μs, ends the run
+      in that case; the model's own function after a step is still called.
+    - *Fixed explicit steps.* If the step exceeds the stability limit of sticking contacts, a ``RuntimeWarning``
+      reports it, because the run looks normal; see ``largest_stable_step``. The check includes the contacts of
+      ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Functions for
+      loads and coefficients are evaluated at the start and at a hundred times of the run, with the motion of the run.
+    - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero.
+      Repeated steps start with the complete state from their beginning, see ``repeated_steps``; for this, modified
+      Newton renews its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of
+      friction are repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see
+      ``steep_laws``.
 
     Parameters
     ----------
@@ -64,7 +60,7 @@ def solve_dynamic(
     updateInitialValues : bool
         Whether the next run continues from the end of this one.
     breaks : sequence of float
-        Increasing times in s within the run at which a load, a coefficient or another function jumps.
+        Increasing times in s within the run when a load, a coefficient or another function jumps.
 
     Raises
     ------

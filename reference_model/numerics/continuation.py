@@ -108,7 +108,7 @@ class _Tracer:
     step: float
 
     def walk(self, first: FloatArray, direction: FloatArray) -> tuple[list[FloatArray], int | None]:
-        """Return the points from ``first`` on and the limit at which they end, or None if the curve closes."""
+        """Return the points from ``first`` on and the limit at their end, or None if the curve closes."""
         points, tangent, step = [first], direction, self.step / 4.0
         while step > SHORTEST:
             try:

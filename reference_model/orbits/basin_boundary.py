@@ -118,7 +118,7 @@ class Separatrix:
             raise ValueError(
                 f"{first} and {second} lead to the same motion: they must lie on different sides of the boundary"
             )
-        # With a smaller tolerance the search would find zeros of noise.
+        # A smaller tolerance would find zeros of noise.
         share = float(brentq(miss, 0.0, 1.0, xtol=SPARE * self.orbit.problem.tolerance, rtol=1e-14))
         point = first + share * (second - first)
         _require_on_boundary(point, miss(share))

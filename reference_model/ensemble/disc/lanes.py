@@ -106,7 +106,7 @@ Later it is ordinary slip with checkpoints.
 """
 
 SUDDEN = 0.05
-"""Excess of the pull over friction, as a share of friction, beyond which slip grows like time and is not stiff."""
+"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time: not stiff."""
 
 
 @written_out

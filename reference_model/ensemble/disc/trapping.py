@@ -38,7 +38,7 @@ APART = 1e-6
 """Differences for the linearisation, in these units."""
 
 INNER = 0.3
-"""Share of the size of a region that a disc on points may not leave at the end."""
+"""Size of the part of a region where a disc on points finally remains, as a share of the region's size."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Golden ratio, whose multiples are spread evenly over [0, 1]."""

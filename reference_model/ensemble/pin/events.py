@@ -76,7 +76,7 @@ REVERSAL_SLIP = 1e-13
 """Slip, in units, below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Time, in units, before any real crossing; an earlier one is the start itself, on the section within rounding."""
+"""Earliest time of a crossing, in units; an earlier one is the start itself, on the section within rounding."""
 
 
 @written_out

@@ -51,10 +51,10 @@ SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
 
 TICK_TURNS = 4.0
-"""Free periods without crossings before a motion is checked nevertheless."""
+"""Number of free periods without a crossing that lead to a check anyway."""
 
 LAST_TICKS = 4.0
-"""Ticks before its end when a motion without early end begins to be watched."""
+"""Number of final ticks when a motion without early end is watched."""
 
 
 PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")

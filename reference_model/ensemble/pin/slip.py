@@ -35,7 +35,7 @@ steps.
 """
 
 SLAVED = 0.02
-"""Largest rate of rotation that is slow, as a share of the rate at which friction aligns slip with its direction."""
+"""Largest slow rotation, as a share of the rate g/s of friction that aligns slip with the pull."""
 
 PLACES = 8
 """Smallest number of points for checking whether the series reaches the end of slip."""
