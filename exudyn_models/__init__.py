@@ -1,21 +1,21 @@
-"""The paper's systems as multibody models in Exudyn, and parts for models of your own.
+"""The paper's systems as multibody models in Exudyn, and parts for your own models.
 
-All that is public has its name here; where it comes from, and where to change it:
+All public names are exported here. They come from these packages:
 
-- ``parts``: what goes into a model of yours. Friction between two bodies, ``add_ring_friction`` with its handle
-  ``RingFriction``, and by Exudyn's own contact ``add_native_friction``; an elastic support, ``add_radial_support``
-  with its ``RadialSupport``; what friction heats, ``add_thermal_node`` with its ``ThermalNode``; the
-  ``EnergyBalance`` of a run, ``add_energy_balance`` and ``spring_energy``. Friction and support are
-  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport`` too, as soon as this package is imported.
-- ``solver``: how to run it. ``solve_dynamic`` is ``mbs.SolveDynamic`` that tells what went wrong;
-  It returns a list of ``ModeChange`` if contacts stick exactly. ``largest_stable_step`` is for explicit solvers with
-  a fixed step.
-- ``drivetrain``: engine, clutch and vehicle, made of these parts. ``Drivetrain`` has the parameters,
-  ``PASSENGER_CAR`` is one and ``four_cylinder`` its torque; ``build_drivetrain`` returns a ``DrivetrainModel``.
-- ``paper``: the pin and the disc of the paper. ``simulate`` has the call and the result of the reference's,
-  ``simulate_fixed_step`` is for studies of convergence, ``simulate_with_native_contact`` goes without our friction;
-  ``build_pin_on_disc`` and ``build_disc_on_disc`` return the models, ``eigenvalues`` small motions about a state.
-- ``forces``: the compiled laws below all of them.
+- ``parts``: parts for your model. ``add_ring_friction`` adds friction between two bodies and returns a
+  ``RingFriction``; ``add_native_friction`` uses Exudyn's own contact; ``add_radial_support`` adds an elastic support
+  and returns a ``RadialSupport``; ``add_thermal_node`` adds a ``ThermalNode`` that friction heats;
+  ``add_energy_balance`` (``EnergyBalance``) and ``spring_energy`` check a run. Importing this package also defines
+  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
+- ``solver``: ``solve_dynamic`` is ``mbs.SolveDynamic`` with checks and clear errors. It returns a ``ModeChange`` for
+  each change of a contact with exact stick. ``largest_stable_step`` is for explicit solvers with a fixed step.
+- ``drivetrain``: engine, clutch and vehicle made of these parts. ``Drivetrain`` contains the parameters,
+  ``PASSENGER_CAR`` is an example and ``four_cylinder`` its engine torque; ``build_drivetrain`` returns a
+  ``DrivetrainModel``.
+- ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference;
+  ``simulate_fixed_step`` is for convergence studies; ``simulate_with_native_contact`` uses Exudyn's contact;
+  ``build_pin_on_disc`` and ``build_disc_on_disc`` return the models; ``eigenvalues`` linearises about a state.
+- ``forces``: the compiled force laws.
 """
 
 from exudyn_models.drivetrain.model import DrivetrainModel, build_drivetrain
@@ -25,7 +25,7 @@ from exudyn_models.paper.models.disc_on_disc import build_disc_on_disc
 from exudyn_models.paper.models.pin_on_disc import build_pin_on_disc
 from exudyn_models.paper.native_contact import simulate_with_native_contact
 from exudyn_models.paper.simulate import simulate, simulate_fixed_step
-from exudyn_models.parts import create_functions as _create_functions  # noqa: F401  for its methods of mbs
+from exudyn_models.parts import create_functions as _create_functions  # noqa: F401  registers methods of mbs
 from exudyn_models.parts.energy_balance import EnergyBalance, add_energy_balance, spring_energy
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.native_contact import add_native_friction

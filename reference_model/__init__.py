@@ -1,18 +1,19 @@
-"""The radial dynamics of friction discs in plain NumPy and SciPy, with exact Coulomb friction.
+"""Radial dynamics of friction discs with exact Coulomb friction, in NumPy and SciPy.
 
-Where to find what:
+Modules and packages:
 
-- to begin with: ``plain``, the paper's equations as printed, integrated by SciPy, in 100 lines;
-- parameters and results: ``systems``, ``trajectory``; the force of a support that may harden or stop: ``support``;
-- the door to a simulation: ``simulation``;
-- ``contact``: the laws of friction of a pin, of points, of a ring and of an annulus, and what they can hold;
-- ``formulas``: the paper's closed forms, of the ``pin`` and the ``disc``; harmonic balance for a hardening support,
-  balances of torques, characteristic polynomials; and ``power_balance``, a check of any engine;
-- ``motion``: what a simulation goes through, slip and stick, from one phase to the next;
-- ``steady``: steady motions, their stability, and where it is lost, as curves in planes of two parameters;
-- ``orbits``: periodic motions by shooting, their branches, the map from release to release, boundaries of basins;
-- ``ensemble``: many trajectories at once, or a single one, compiled;
-- ``numerics``: roots, curves by continuation, curves on which a sign changes.
+- ``plain``: the paper's equations as printed, integrated by SciPy in 100 lines; read it first;
+- ``systems``, ``trajectory``: parameters and results;
+- ``support``: the force of a support that may harden or have a stop;
+- ``simulation``: :func:`simulate`;
+- ``contact``: friction laws of a pin, points, a ring and an annulus, and the limit surface;
+- ``formulas``: the paper's closed forms for the ``pin`` and the ``disc``, harmonic balance for a hardening support,
+  torque balances, characteristic polynomials, and ``power_balance``, which checks any engine;
+- ``motion``: the event-driven simulation of slip and stick;
+- ``steady``: steady motions, their stability, and stability boundaries in planes of two parameters;
+- ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
+- ``ensemble``: compiled simulation of one trajectory or many;
+- ``numerics``: roots, continuation, collocation, and curves where a function changes sign.
 """
 
 from reference_model.contact.annulus import Annulus
@@ -40,7 +41,7 @@ from reference_model.systems import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 __version__ = "0.1.0"
-"""Of all three packages: ``pyproject.toml`` takes it from here."""
+"""Version of all packages; ``pyproject.toml`` reads it from here."""
 
 __all__ = [
     "Annulus",

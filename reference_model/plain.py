@@ -1,7 +1,7 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-One thing is changed. Where the paper divides by the slip speed, this file divides by max(slip speed, ε): so friction
-has a value at rest too, and what sticks creeps slower than ε. The rest of the package needs no ε.
+There is one change. Where the paper divides by the slip speed, this file divides by max(slip speed, ε), so that
+friction has a value at rest too and a sticking body creeps slower than ε. The rest of the package needs no ε.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from reference_model.systems import DiscOnDisc, System, checked_state, checked_t
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 Friction = Callable[[Any, Any, Any, Any], "tuple[Any, Any, Any]"]
-"""From slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex, to F_x, F_y (N) and M (N m)."""
+"""Function of slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex; returns F_x, F_y (N) and M (N m).
+"""
 
 
 def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
-    """Return the friction of (20), whose integral over χ is a mean over ``points`` that slip by (21).
+    """Return the friction of (20), with its integral over χ as a mean over ``points`` whose slip is (21).
 
-    One point and R = 0 is the pin of (1).
+    One point and R = 0 give the pin of (1).
     """
     chi = 2.0 * np.pi * np.arange(points) / points
 
@@ -42,7 +43,7 @@ def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
 
 
 def by_law(load: float, law: Contact) -> Friction:
-    """Return the friction of a contact in closed form, or of another law than Coulomb's on a ring."""
+    """Return the friction of a contact law in closed form."""
 
     def friction(slip_x: Any, slip_y: Any, relative_spin: Any, angle: Any) -> tuple[Any, Any, Any]:
         force, moment = law.force_and_moment(complex(slip_x, slip_y), relative_spin, angle)
@@ -52,7 +53,7 @@ def by_law(load: float, law: Contact) -> Friction:
 
 
 def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
-    """Return C in N/m, and what a hardening and a stop, which the paper has not, add at the deflection w."""
+    """Return the secant stiffness in N/m at the deflection w: the paper's C, plus hardening and stop."""
     squared = w_x**2 + w_y**2
     d = np.sqrt(squared)
     beyond = (d - system.stop_gap) / d if d.real > system.stop_gap else 0.0
@@ -60,7 +61,7 @@ def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
 
 
 def rates(system: System, friction: Friction, state: Any) -> list[Any]:
-    """Return the time derivatives of a state, (4,) or (6,): (1) of a pin and (19) of a disc."""
+    """Return the time derivatives of a state, (4,) or (6,): (1) for a pin and (19) for a disc."""
     (x, y, *angle), (vx, vy, *spin) = np.reshape(state, (2, -1)).tolist()
     omega, C = system.disc_speed, stiffness(system, x - system.offset, y)
     turning = (omega - spin[0], angle[0]) if isinstance(system, DiscOnDisc) else (0.0, 0.0)
@@ -76,17 +77,19 @@ def rates(system: System, friction: Friction, state: Any) -> list[Any]:
 def simulate(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Return the motion as :func:`reference_model.simulate` does, but that nothing is said to stick: it creeps."""
-    # Any finer, and Radau no longer solves for the creep: slip is the difference of two velocities.
+    """Return the motion like :func:`reference_model.simulate`, but with creep instead of stick phases."""
+    # With a finer tolerance Radau cannot resolve the creep, because slip is the difference of two velocities.
     clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), 1e-10)
     start, times = checked_state(system, initial_state), checked_times(times)
     (x, y, *_), (vx, vy, *_) = np.split(start, 2)
     R, points = 0.0, 1
-    if isinstance(system, DiscOnDisc):  # where a point of a ring rests, the mean is wrong by some 1/points²
+    if isinstance(
+        system, DiscOnDisc
+    ):  # where a point of a ring rests, the error of the mean is about 1/points²
         R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
     size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
     speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0
-    epsilon = 10.0 * fine * speed  # stick is wrong by ε at least, and finer steps would not help it
+    epsilon = 10.0 * fine * speed  # the error of stick is at least ε, so a finer tolerance would not help
     friction = on_ring(system.friction_force, R, points, epsilon)
     run = solve_ivp(
         lambda _, state: rates(system, friction, state), (times[0], times[-1]), start, "Radau", times,
@@ -94,7 +97,7 @@ def simulate(
     )  # fmt: skip
     if not run.success:
         raise SimulationError(f"Radau gave up: {run.message}; try a larger tolerance")
-    states = np.vstack((start, *np.transpose(run.y)[1:]))  # SciPy returns none at a single time
+    states = np.vstack((start, *np.transpose(run.y)[1:]))  # SciPy returns no states for a single time
     phase = Phase("slip", float(times[0]), float(times[-1]), start)
     solution = Solution("Radau", tolerance, run.nfev, len(run.t), time.perf_counter() - clock, epsilon)
     return Trajectory(system, times, states, (phase,), solution)

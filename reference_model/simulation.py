@@ -1,4 +1,4 @@
-"""The door to a simulation: plain, or compiled where speed matters."""
+"""Simulation of one trajectory, in NumPy or by compiled code."""
 
 from __future__ import annotations
 
@@ -25,28 +25,26 @@ def simulate(
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     initial_state : array-like of shape (4,) or (6,)
-        At ``times[0]``: of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle in rad, vx, vy and the spin in
-        rad/s. A state that turns with the master disc starts stuck if friction can hold it.
+        State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s for
+        a disc. A state that turns with the master disc starts in stick if friction can hold it.
     times : array-like of shape (n,)
-        Increasing, in s.
+        Increasing times in s.
     tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2: of places as a share of a length L, of velocities, and of the
-        spin times the radius of gyration, as a share of L/T, of the angle in rad. T is 1/ω or that of the springs,
-        whichever is less; L the largest of X0 and, at the start, distance from the axis, speed times T and friction
-        over mass times T² (:class:`motion.nondimensional.Units`). It is meant at all times alike, at ends of steps
-        and between them. A step may err by a twentieth of it. A motion that forgets, by damping or by rest, keeps to
-        it but for a small factor, by which the errors of steps add up until they are forgotten: of random ones the
-        worst had 13, compiled 68, a pin on a disc 45 times as fast as its swings, which forgets in a thousand steps.
-        In one that does not forget, errors add up: to some 40 times the tolerance after 10,000 steps. What parts by
-        itself parts by that growth.
+        Relative accuracy to aim at, from 1e-14 to 1e-2. It applies to positions relative to a length L, to velocities
+        and to the spin times the radius of gyration relative to L/T, and to the angle in rad; L and T are those of
+        :class:`motion.nondimensional.Units`. The accuracy is the same at the ends of steps and between them. The
+        error of one step is at most a twentieth of the tolerance. With damping or rest errors stay within a small
+        multiple of the tolerance: at most 13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that
+        turns 45 times as fast as the pin swings. Otherwise they accumulate, to some 40 times the tolerance after
+        10,000 steps. In unstable motions they grow with the instability.
     contact : Contact or None
-        The law of friction of a disc if it is not that of its parameters.
+        Friction law of a disc; None for the law of the parameters.
     compiled : bool or None
-        Whether the compiled kernel of :mod:`ensemble` is to do it, where speed matters. It is another implementation
-        of the same physics, for linear supports and the laws of the parameters; the first run of a kind of contact
-        on a machine waits for the compiler. None: wherever it can.
+        Whether to use the compiled kernel of :mod:`ensemble`, a separate and faster implementation for linear
+        supports and the laws of the parameters. The first run with a kind of contact on a machine compiles it. None:
+        use it if it supports the system.
 
     Returns
     -------
@@ -55,9 +53,9 @@ def simulate(
     Raises
     ------
     ValueError
-        For a state, times, tolerance or contact that are not as above, or a system that compiled code does not know.
+        If the state, times, tolerance or contact are invalid, or the compiled kernel does not support the system.
     SimulationError
-        If the integrator gives up.
+        If the integrator fails.
 
     """
     if compiled is None:
@@ -65,7 +63,7 @@ def simulate(
 
         compiled = contact is None and is_known(system)
     if compiled:
-        # Here, since the plain one is to start without the compiler.
+        # Imported here so that simulations in NumPy start without loading the compiler.
         from reference_model.ensemble.single_run import simulate_compiled
 
         return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)

@@ -1,10 +1,10 @@
-"""The support of pin and disc: a spring, which may harden, and a stop; its force, its stiffness and its energy.
+"""The support of pin and disc: a spring, which may harden, and a stop.
 
-It pulls the mass towards (X0, 0) with a force that depends on the deflection d = |z − X0| only::
+It pulls the mass towards (X0, 0) with a force that depends only on the deflection d = |z − X0|::
 
     C·d + C₃·d³ + C_s·max(0, d − gap)
 
-The paper takes C alone, and says that in practice the amplitude is limited by what is nonlinear in the radial forces.
+The paper uses C alone, and notes that nonlinear radial forces limit the amplitude in practice.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from reference_model.numerics.roots import zero_between
 from reference_model.systems import FloatArray, System
 
 ROUNDED_UP = 1.0 + 1e-14
-"""Brings a bound that holds but for rounding to the safe side."""
+"""Factor that moves a bound to the safe side of rounding errors."""
 
 
 @dataclass(frozen=True)
 class Support:
-    """Spring, hardening and stop, in N and m or, divided by a mass and scaled, in any units.
+    """Spring, hardening and stop, in N and m or in any consistent scaled units.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Support:
     hardening : float
         C₃ in N/m³.
     stop_gap : float
-        In m.
+        Clearance of the stop in m.
     stop_stiffness : float
         C_s in N/m.
 
@@ -53,9 +53,9 @@ class Support:
         return cls(system.stiffness, system.offset, system.hardening, system.stop_gap, system.stop_stiffness)
 
     def scaled(self, factor: float, length: float = 1.0) -> Support:
-        """Return the support with ``factor`` times the force at every deflection, in this unit of length.
+        """Return the support with all forces multiplied by ``factor``, in units of ``length``.
 
-        The unit of force scales with that of length, so that C takes no more than the factor.
+        The unit of force scales with the unit of length, so C changes by the factor only.
         """
         return Support(
             self.stiffness * factor,
@@ -67,23 +67,23 @@ class Support:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether this is a spring alone."""
+        """True for a linear spring, without hardening or stop."""
         return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
     @property
     def centring(self) -> bool:
-        """Whether it pulls at every deflection, however small."""
+        """True if the support pulls back at every deflection, however small."""
         return self.stiffness > 0.0 or self.hardening > 0.0 or self.stop_stiffness > 0.0 == self.stop_gap
 
     def force(self, z: complex) -> complex:
-        """Return the force on the mass at z = x + iy, of which arrays may be given, too."""
+        """Return the force on the mass at z = x + iy, which may be an array."""
         w = z - self.offset
         if self.linear:
             return -self.stiffness * w
         return -(self._secants(abs(w)) if isinstance(w, np.ndarray) else self.secant(abs(w))) * w
 
     def secant(self, d: float) -> float:
-        """Return force over deflection; at d = 0 its limit."""
+        """Return force over deflection, and its limit at d = 0."""
         if self.linear:
             return self.stiffness
         result = self.stiffness + self.hardening * d * d
@@ -96,20 +96,20 @@ class Support:
         return self.stiffness + self.hardening * d * d + self.stop_stiffness * stop
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force by the deflection; where the stop begins, that beyond."""
+        """Return the derivative of the force by the deflection; at the stop, the derivative from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 
     def stiffness_matrix(self, z: complex) -> FloatArray:
         """Return minus the derivative of the force by x and y, shape (2, 2): the tangent along w, the secant across.
 
-        Raises ``ValueError`` where the stop just begins, because there is none.
+        Raises ``ValueError`` exactly at the stop, where the derivative does not exist.
         """
         w = z - self.offset
         d = abs(w)
         if d == self.stop_gap > 0.0 < self.stop_stiffness:
             raise ValueError(
-                f"deflection = stop_gap = {d:g} m: where the stop begins the force has no derivative"
+                f"deflection = stop_gap = {d:g} m: the force has no derivative where the stop begins"
             )
         along = np.array((w.real, w.imag)) / d if d > 0.0 else np.zeros(2)
         secant = self.secant(d)
@@ -123,22 +123,22 @@ class Support:
         )
 
     def pull(self, d: float) -> float:
-        """Return the size of the force at a deflection."""
+        """Return the magnitude of the force at a deflection."""
         return self.secant(d) * d
 
     def deflection(self, pull: float) -> float:
-        """Return the deflection at which the force is of this size, > 0; inf without springs."""
+        """Return the deflection for a force of the magnitude ``pull`` > 0; inf without springs."""
         return pull / self.stiffness if self.linear and self.stiffness > 0.0 else self._where(1, pull)
 
     def circle(self, twice_kinetic_energy: float) -> float:
-        """Return the radius of the circle about (X0, 0) on which the force carries a mass with mv² > 0 round.
+        """Return the radius of a circle about (X0, 0) whose centripetal force mv²/d the support provides.
 
-        There the force is mv²/d; inf without springs.
+        Returns inf without springs. ``twice_kinetic_energy`` is mv² > 0.
         """
         return self._where(2, twice_kinetic_energy)
 
     def _where(self, power: int, value: float) -> float:
-        """Return d at which secant·d^power, which grows with d, is ``value``."""
+        """Return the solution d of secant·d^power = ``value``, whose left side grows with d."""
         bounds = [math.inf]
         if self.stiffness > 0.0:
             bounds.append((value / self.stiffness) ** (1.0 / power))
@@ -153,8 +153,10 @@ class Support:
 
 
 def require_linear_support(system: System) -> None:
-    """Raise ``ValueError`` if the support hardens or has a stop, for a formula that is derived without."""
+    """Raise ``ValueError`` if the support hardens or has a stop."""
     for name, unit in (("hardening", "N/m³"), ("stop_stiffness", "N/m")):
         value = getattr(system, name)
         if value > 0.0:
-            raise ValueError(f"{name} = {value:g} {unit}: this formula is for a linear support")
+            raise ValueError(
+                f"{name} = {value:g} {unit}: this formula holds for a linear support only; set it to 0"
+            )

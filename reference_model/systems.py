@@ -1,4 +1,4 @@
-"""The systems of the paper: frozen, validated parameters in SI units."""
+"""The paper's systems: frozen, validated parameters in SI units."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 MOST_POINTS = 1000
-"""Of a contact: an engine's work grows with their number, and a continuous ring is closer to more of them."""
+"""Largest number of contact points. For more, a continuous ring is a better model and cheaper."""
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Of the size of a parameter, the least of one that must be > 0: products of several stay floating-point numbers."""
+"""Smallest size of a parameter that must be > 0, and largest size of any: products of several stay finite."""
 
 MOST_RATIO = 1e25
-"""Of a rate in 1/s, or of m·R²/J: powers of it in series stay floating-point numbers, and no step would follow it."""
+"""Largest rate in 1/s, and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """A mass on springs and dampers, pressed on a disc that turns at constant speed: what pin and disc share."""
+    """A mass on springs and dampers, pressed on a disc that turns at constant speed: base class of pin and disc."""
 
     mass: float
     stiffness: float
@@ -61,16 +61,18 @@ class _SupportedMass:
     _least: ClassVar[tuple[tuple[str, float], ...]]
 
     def __init_subclass__(cls) -> None:
-        """Note how small each parameter may be."""
+        """Store the smallest allowed value of each parameter."""
         cls._least = tuple(
             (name, LEAST if name in cls._positive else 0.0 if name in cls._not_negative else -MOST)
             for name in cls._units
         )
 
     def __post_init__(self) -> None:
-        """Refuse what no system can be."""
         values = vars(self)
-        for name, least in self._least:  # searches vary parameters very often: what is sound passes quickly
+        for (
+            name,
+            least,
+        ) in self._least:  # parameter searches create many systems, so valid values must pass quickly
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
                 self._check_numbers()
@@ -83,7 +85,6 @@ class _SupportedMass:
                 )
 
     def _check_numbers(self) -> None:
-        """Make all of them floats; raise ``ValueError`` for one that is out of its range."""
         for name, unit in self._units.items():
             value = finite_number(name, getattr(self, name))
             object.__setattr__(self, name, value)
@@ -96,7 +97,7 @@ class _SupportedMass:
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
-        """Return by parameter what may not be too large of it beside others: its formula and value, in SI units."""
+        """Return formula and value (SI units) of each bounded ratio, by the parameter that an error names."""
         return {
             "stiffness": ("√(stiffness/mass)", self.natural_frequency),
             "stop_stiffness": ("√(stop_stiffness/mass)", math.sqrt(self.stop_stiffness / self.mass)),
@@ -105,12 +106,12 @@ class _SupportedMass:
 
     @property
     def natural_frequency(self) -> float:
-        """k = √(C/m) of eq. 11, in rad/s: of the spring alone, which a hardening or a stop adds to."""
+        """k = √(C/m) of eq. 11 in rad/s, of the linear spring alone."""
         return math.sqrt(self.stiffness / self.mass)
 
     @property
     def linear_support(self) -> bool:
-        """Whether the support is the paper's: a spring alone, neither hardening nor with a stop."""
+        """True for the paper's linear spring, without hardening or stop."""
         return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
 
@@ -118,7 +119,7 @@ class _SupportedMass:
 class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
 
-    Its state is x, y in m and vx, vy in m/s.
+    The state is x, y in m and vx, vy in m/s.
 
     Parameters
     ----------
@@ -135,16 +136,16 @@ class PinOnDisc(_SupportedMass):
     offset : float
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
     hardening : float
-        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 its springs pull with C·|w| + C₃·|w|³.
+        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
     stop_gap : float
-        Play in m before the stop of the support, >= 0.
+        Clearance of the stop in m, >= 0.
     stop_stiffness : float
-        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) where |w| is beyond the gap. 0 for none.
+        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. 0 means no stop.
 
     Raises
     ------
     ValueError
-        If a value is not a finite number or is outside of its range, or so large or small that it would overflow.
+        If a value is not a finite number, is out of range, or is so large or small that products would overflow.
 
     """
 
@@ -153,47 +154,31 @@ class PinOnDisc(_SupportedMass):
 
 @dataclass(frozen=True, kw_only=True)
 class DiscOnDisc(_SupportedMass):
-    """A friction disc on springs and dampers that a ring of contact couples to a turning master disc (Fig. 7).
+    """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
-    A torsional damper couples it to a shaft that turns at constant speed (19). Its state is x, y in m, the angle
-    in rad, vx, vy in m/s and the spin in rad/s.
+    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
+    rad, vx, vy in m/s and the spin in rad/s.
 
     Parameters
     ----------
-    mass : float
-        m in kg, > 0.
+    mass, stiffness, damping, friction_force, disc_speed, offset, hardening, stop_gap, stop_stiffness : float
+        As for :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
     polar_inertia : float
         J in kg m², > 0.
-    stiffness : float
-        C of the support in N/m, >= 0, the same in every radial direction.
-    damping : float
-        β of the support in N s/m, >= 0.
-    friction_force : float
-        μN of the whole ring in N, >= 0.
-    disc_speed : float
-        ω of the master disc in rad/s, of either sign.
     contact_radius : float
         R of the ring in m, > 0.
     shaft_damping : float
         b of the torsional damper in N m s/rad, >= 0.
     shaft_speed : float
         Ω of the shaft in rad/s, of either sign.
-    offset : float
-        X0 in m: the springs are relaxed at (X0, 0), the master disc turns about (0, 0).
-    hardening : float
-        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 its springs pull with C·|w| + C₃·|w|³.
-    stop_gap : float
-        Play in m before the stop of the support, >= 0.
-    stop_stiffness : float
-        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) where |w| is beyond the gap. 0 for none.
     contact_points : int or None
-        Number of points that the contact consists of, from 3 to 1000: point i is at the angle φ + 2πi/n and carries
-        N/n. None for the continuous ring of (20).
+        Number n of contact points, from 3 to 1000. Point i lies at the angle φ + 2πi/n and carries N/n. None means
+        the continuous ring of (20).
 
     Raises
     ------
     ValueError
-        If a value is not a finite number or is outside of its range, or so large or small that it would overflow.
+        If a value is not a finite number, is out of range, or is so large or small that products would overflow.
 
     """
 
@@ -214,7 +199,6 @@ class DiscOnDisc(_SupportedMass):
     _not_negative: ClassVar[tuple[str, ...]] = (*_SupportedMass._not_negative, "shaft_damping")
 
     def __post_init__(self) -> None:
-        """Refuse what no disc can be."""
         super().__post_init__()
         if self.contact_points is not None:
             points = finite_number("contact_points", self.contact_points)
@@ -225,7 +209,7 @@ class DiscOnDisc(_SupportedMass):
             ):
                 raise ValueError(
                     f"contact_points = {self.contact_points}: it must be a whole number from 3 to {MOST_POINTS}, or "
-                    "None for the continuous ring; a single point is a PinOnDisc"
+                    "None for the continuous ring; use PinOnDisc for a single point"
                 )
             object.__setattr__(self, "contact_points", int(points))
 
@@ -258,28 +242,28 @@ PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
     kind: tuple((name, kind._units[name], least) for name, least in kind._least)
     for kind in (PinOnDisc, DiscOnDisc)
 }
-"""Name and unit of each parameter of a system, and how small it may be; the number of points stands apart."""
+"""Name, unit and smallest value of each parameter of a system, except ``contact_points``."""
 
 UNITS = DiscOnDisc._units
-"""Unit of each parameter, those of a pin among them."""
+"""Unit of each parameter of a disc, which include those of a pin."""
 
 SMALLEST_TOLERANCE = 1e-14
-"""What double precision can reach."""
+"""Smallest tolerance that double precision can reach."""
 
 LARGEST_STATE = 1e50
-"""Largest size of a component of a state in its SI unit: energies, and forces of hardening springs, stay finite."""
+"""Largest size of a state component in its SI unit: energies and forces of hardening springs stay finite."""
 
 ANGLE = 2
-"""Place of the angle among the states of a disc."""
+"""Index of the angle in the state of a disc."""
 
 
 def finite_number(name: str, value: Any) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` naming it if it is not a finite number."""
+    """Return ``value`` as a float; raise ``ValueError`` with its name if it is not a finite number."""
     try:
         number = float(value)
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {value!r}: it must be a number") from None
-    except OverflowError:  # an integer beyond all floats
+    except OverflowError:  # an integer larger than any float
         number = math.inf
     if not math.isfinite(number):
         raise ValueError(f"{name} = {number}: it must be finite")
@@ -287,7 +271,7 @@ def finite_number(name: str, value: Any) -> float:
 
 
 def require_system(system: System, *allowed: type[System]) -> None:
-    """Raise ``ValueError`` unless ``system`` is one of the ``allowed``: of both, unless some are given."""
+    """Raise ``ValueError`` unless ``system`` is an instance of the ``allowed`` classes, by default of either."""
     allowed = allowed or (PinOnDisc, DiscOnDisc)
     if not isinstance(system, allowed):
         names = " or a ".join(kind.__name__ for kind in allowed)
@@ -295,7 +279,7 @@ def require_system(system: System, *allowed: type[System]) -> None:
 
 
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
-    """Return ``initial_state`` as an array of shape ``(system.state_size,)``, or raise ``ValueError``."""
+    """Return ``initial_state`` as an array of shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
     require_system(system)
     state = _float_array("initial_state", initial_state)
     if state.shape != (system.state_size,):
@@ -314,7 +298,7 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
 
 
 def checked_times(times: ArrayLike) -> FloatArray:
-    """Return ``times`` as an increasing array of shape (n,) in s; raise ``ValueError`` otherwise."""
+    """Return ``times`` in s as an array of shape (n,); raise ``ValueError`` unless they increase."""
     result = _float_array("times", times)
     if result.ndim != 1 or result.size == 0:
         raise ValueError(f"times has shape {result.shape}: it must be a list of at least one time")
@@ -327,7 +311,7 @@ def checked_times(times: ArrayLike) -> FloatArray:
 
 
 def checked_tolerance(tolerance: float) -> float:
-    """Return ``tolerance`` if double precision can reach it, or raise ``ValueError``."""
+    """Return ``tolerance``; raise ``ValueError`` if double precision cannot reach it or it exceeds 1e-2."""
     number = finite_number("tolerance", tolerance)
     if not SMALLEST_TOLERANCE <= number <= 1e-2:
         raise ValueError(f"tolerance = {number:g}: it must lie between {SMALLEST_TOLERANCE} and 1e-2")

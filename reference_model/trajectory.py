@@ -1,4 +1,4 @@
-"""The result of a simulation, the same for every engine."""
+"""The result of a simulation, in the same form for every engine."""
 
 from __future__ import annotations
 
@@ -13,33 +13,30 @@ from reference_model.systems import FloatArray, System
 
 
 class SimulationError(RuntimeError):
-    """An engine gave up or returned numbers that are not finite; the message says when and what to change."""
+    """An engine failed or returned non-finite numbers; the message names the time and a remedy."""
 
 
 MOST_STEPS = 5_000_000
-"""Some minutes' work; a motion that takes more is hardly meant."""
+"""Largest number of steps, some minutes of work. A longer motion is almost certainly a mistake."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""A motion is given up early if, at the pace of this many steps, it needs more than that many others."""
+"""Number of steps for a measurement of the pace, and largest number of remaining steps at that pace."""
 
 
 @dataclass
 class StepCount:
-    """Counts the steps of a motion from the time 0 to ``end``, in any unit of time.
-
-    This is bookkeeping, no physics: every engine gives up at the same number of steps.
-    """
+    """Counts the steps of a motion from time 0 to ``end``, in any unit of time; all engines share the limit."""
 
     end: float
     steps: int = 0
     _looked_back: tuple[float, int] = (0.0, 0)
 
     def look_from(self, t: float) -> None:
-        """Judge the pace from the time ``t`` on: what went before, or comes now, is slow for a short while only."""
+        """Measure the pace from the time ``t`` on, after a short slow passage."""
         self._looked_back = t, self.steps
 
     def count(self, t: float) -> str:
-        """Count one more step, to the time ``t``; return what is wrong if there are, or will be, too many."""
+        """Count one more step, which ends at ``t``; return a message if there are or will be too many, else ""."""
         self.steps += 1
         if self.steps > MOST_STEPS:
             return f"more than {MOST_STEPS:,} steps"
@@ -53,10 +50,10 @@ class StepCount:
 
 @dataclass(frozen=True)
 class Phase:
-    """A span of time in which the contact slips or sticks.
+    """A time span of slip, stick or pivoting.
 
-    ``initial_state`` is the state at ``start``; a phase ends where the next one starts. In a "pivot" phase one
-    of several contact points rests on the master disc and the disc turns about it.
+    ``initial_state`` is the state at ``start``. A phase ends where the next one starts. In a "pivot" phase one of
+    several contact points rests on the master disc and the disc turns about it.
     """
 
     kind: Literal["slip", "pivot", "stick"]
@@ -68,7 +65,7 @@ class Phase:
 def phases_of(
     begun: Sequence[tuple[Literal["slip", "pivot", "stick"], float, FloatArray]], end: float
 ) -> tuple[Phase, ...]:
-    """Return the phases from their kinds, starts in s and first states; each lasts to the next one or to ``end``."""
+    """Return the phases for their kinds, starts in s and first states; the last phase lasts until ``end``."""
     ends = [*(start for _, start, _ in begun[1:]), end]
     return tuple(
         Phase(kind, start, until, state) for (kind, start, state), until in zip(begun, ends, strict=True)
@@ -82,15 +79,15 @@ class Solution:
     Parameters
     ----------
     method : str
-        The integrator in words.
+        Description of the integrator.
     tolerance : float
-        The tolerance that was asked for.
+        Requested tolerance.
     evaluations, steps : int
-        Evaluations of the equations of motion, and accepted steps.
+        Number of evaluations of the equations of motion, and of accepted steps.
     wall_time : float
-        In s.
+        Wall time in s.
     regularisation : float
-        Slip speed ε in m/s below which friction is not full but μN·|w|/ε; 0 for exact Coulomb friction.
+        Slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
 
     """
 
@@ -103,25 +100,25 @@ class Solution:
 
 
 NOT_TOLD = Solution("not told", tolerance=math.nan, evaluations=0, steps=0, wall_time=math.nan)
-"""Of an engine that says nothing of how it computes."""
+"""Placeholder for an engine that does not report how it computes."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """The motion of a system at the times that were asked for.
+    """The motion of a system at the requested times.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     times : array of shape (n,)
-        In s.
+        Requested times in s.
     states : array of shape (n, 4) or (n, 6)
-        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
+        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
     phases : tuple of Phase
-        From ``times[0]`` to ``times[-1]``, without gaps; () where an engine does not tell them.
+        Phases from ``times[0]`` to ``times[-1]`` without gaps; () if the engine does not report them.
     solution : Solution
-        How it was computed.
+        How the trajectory was computed.
 
     """
 
@@ -132,13 +129,12 @@ class Trajectory:
     solution: Solution = NOT_TOLD
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only: a result does not change."""
         for array in (self.times, self.states):
             array.flags.writeable = False
 
     @property
     def at_end(self) -> FloatArray:
-        """The last state, shape (4,) or (6,)."""
+        """Last state, shape (4,) or (6,)."""
         return np.asarray(self.states[-1])
 
     @property
@@ -148,7 +144,7 @@ class Trajectory:
 
     @property
     def slip_velocity(self) -> FloatArray:
-        """Velocity of the centre relative to the disc below, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
+        """Velocity of the centre relative to the master disc, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
         velocities = self.system.state_size // 2
         x, y = self.states.T[:2]
         vx, vy = self.states.T[velocities : velocities + 2]
@@ -162,10 +158,10 @@ class Trajectory:
 
     @property
     def stick_phases(self) -> tuple[Phase, ...]:
-        """The phases in which pin or disc turn with the disc below."""
+        """Phases of rotation with the master disc."""
         return tuple(phase for phase in self.phases if phase.kind == "stick")
 
     @property
     def stick_times(self) -> FloatArray:
-        """Times in s at which stick phases begin and end, one after the other, shape (2·phases,)."""
+        """Alternating start and end times in s of the stick phases, shape (2·phases,)."""
         return np.array([time for phase in self.stick_phases for time in (phase.start, phase.end)])

@@ -1,1 +1,1 @@
-"""The drivetrain around a clutch disc: its parameters, the model made of public parts, and a picture of it."""
+"""The drivetrain around a clutch disc: parameters, a model made of public parts, and a picture."""

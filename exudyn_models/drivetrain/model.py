@@ -1,8 +1,8 @@
 """A dry clutch in its drivetrain, built of public parts: the paper's disc between an engine and a vehicle.
 
-Engine and flywheel press on the clutch disc with both of its facings. The disc sits on the gearbox's input shaft,
-which is elastic in radial direction and whose axis may lie beside that of the engine. A torsional spring and damper
-lead from the disc to the gearbox and the vehicle.
+Engine and flywheel press on both facings of the clutch disc. The disc sits on the gearbox's input shaft, which is
+elastic in radial direction and whose axis may be offset from the engine's. A torsional spring and damper connect the
+disc to the gearbox and the vehicle.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ from reference_model.systems import FloatArray
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 ENERGY_UNIT = 1e3
-"""J in which the energy balance counts."""
+"""Unit of energy of the energy balance in J."""
 
 ANGLE, SPEED = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
-"""What a rotor's node tells."""
+"""Output variables of a rotor's node."""
 
 
 @dataclass(frozen=True, eq=False)
 class DrivetrainMotion:
-    """How a drivetrain moved; all arrays of shape (n,) or, of the disc, (n, 3).
+    """The motion of a drivetrain; all arrays of shape (n,) or, for the disc, (n, 3).
 
     Parameters
     ----------
     times : array
-        In s.
+        Times in s.
     engine_angle, engine_speed, vehicle_angle, vehicle_speed : array
-        In rad and rad/s.
+        Angles in rad and speeds in rad/s.
     disc, disc_velocity : array
-        x, y in m and the angle in rad; in m/s and rad/s.
+        x, y in m and the angle in rad; their rates in m/s and rad/s.
     energy : EnergyBalance
-        At the same times.
+        Energy balance at the same times.
 
     """
 
@@ -64,7 +64,7 @@ class DrivetrainMotion:
 
     @property
     def slip(self) -> FloatArray:
-        """By how much the engine turns faster than the disc, in rad/s."""
+        """Speed of the engine relative to the disc, in rad/s."""
         return np.asarray(self.engine_speed - self.disc_velocity[:, 2])
 
 
@@ -77,15 +77,15 @@ class DrivetrainModel:
     container, mbs : SystemContainer, MainSystem
         ``container`` owns ``mbs`` and must live as long.
     engine, disc, vehicle : NodeIndex
-        Of the three bodies.
+        Nodes of the three bodies.
     friction : RingFriction
         The clutch. ``friction.change(normal_load=...)`` engages it.
     support : RadialSupport
-        Of the disc on its shaft.
+        Support of the disc on its shaft.
     sensors : tuple of SensorIndex
-        Of coordinates and velocities of engine, disc and vehicle.
+        Sensors of coordinates and velocities of engine, disc and vehicle.
     balance : callable
-        Reads the energy balance after a run.
+        Returns the energy balance after a run.
 
     """
 
@@ -100,7 +100,7 @@ class DrivetrainModel:
     balance: Callable[[], EnergyBalance]
 
     def slip(self) -> float:
-        """Return the slip (rad/s) of the current motion, for a controller."""
+        """Return the current slip in rad/s, for a controller."""
         variable = exu.OutputVariableType.Coordinates_t
         engine, disc = (self.mbs.GetNodeOutput(node, variable) for node in (self.engine, self.disc))
         return float(engine - disc[2])
@@ -110,13 +110,13 @@ class DrivetrainModel:
     ) -> DrivetrainMotion:
         """Return the motion from the start to ``until`` (s), sampled every ``sample_every`` s.
 
-        By DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad, m/s, rad/s and in
-        ``ENERGY_UNIT``.
+        It is computed by DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad,
+        m/s, rad/s and ``ENERGY_UNIT``.
 
         Raises
         ------
         SimulationError
-            If Exudyn gives up or a state is not finite.
+            If Exudyn fails or a state is not finite.
 
         """
         settings = exu.SimulationSettings()
@@ -156,27 +156,27 @@ def build_drivetrain(
     vehicle_torque: Torque | None = None,
     shaft_torque: float = 0.0,
 ) -> DrivetrainModel:
-    """Build a drivetrain whose disc turns with the gearbox about the shaft's axis.
+    """Build a drivetrain whose disc initially turns with the gearbox about the shaft's axis.
 
     Parameters
     ----------
     drivetrain : Drivetrain
-        The parameters.
+        Parameters of the drivetrain.
     normal_load : float or callable
-        As ``add_ring_friction`` takes it: all facings carry it.
+        Load as in ``add_ring_friction``; all facings carry it.
     regularisation : float
         ε in m/s, > 0.
     engine_speed, gearbox_speed : float
-        With which the run starts, in rad/s.
+        Initial speeds in rad/s.
     engine_torque, vehicle_torque : callable, optional
         Torques on engine and vehicle.
     shaft_torque : float
-        In N m, by which the torsional spring is wound up at the start.
+        Initial torque of the torsional spring in N m.
 
     Raises
     ------
     ValueError
-        If a number is out of its range.
+        If a number is out of range.
 
     """
     container = exu.SystemContainer()
@@ -205,7 +205,6 @@ def build_drivetrain(
 
 
 def _add_disc(mbs: Any, drivetrain: Drivetrain, speed: float) -> Any:
-    """Add the clutch disc, which turns about the shaft's axis with ``speed`` (rad/s); return its ``NodeIndex``."""
     e = drivetrain.unbalance
     node = mbs.AddNode(
         items.NodeRigidBody2D(
@@ -218,7 +217,7 @@ def _add_disc(mbs: Any, drivetrain: Drivetrain, speed: float) -> Any:
         items.ObjectRigidBody2D(
             nodeNumber=node,
             mass=drivetrain.disc_mass,
-            # Exudyn counts it about the node.
+            # Exudyn expects the inertia about the node.
             inertia=drivetrain.disc_inertia + drivetrain.disc_mass * e * e,
             centerOfMass=[e, 0.0],
         )
@@ -227,7 +226,6 @@ def _add_disc(mbs: Any, drivetrain: Drivetrain, speed: float) -> Any:
 
 
 def _add_shaft(mbs: Any, drivetrain: Drivetrain, disc: Any) -> RadialSupport:
-    """Add the gearbox's input shaft, which holds the disc radially."""
     return add_radial_support(
         mbs,
         None,
@@ -242,7 +240,6 @@ def _add_shaft(mbs: Any, drivetrain: Drivetrain, disc: Any) -> RadialSupport:
 
 
 def _add_torsional_spring(mbs: Any, drivetrain: Drivetrain, vehicle: Any, disc: Any) -> Any:
-    """Add the torsional spring and damper between gearbox and disc; return their ``ObjectIndex``."""
     return mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamper(
             markerNumbers=[_coordinate(mbs, vehicle, 0), _coordinate(mbs, disc, 2)],
@@ -260,7 +257,7 @@ def _add_balance(
     torsion: Any,
     torsional_damping: float,
 ) -> Callable[[], EnergyBalance]:
-    """Add the energy balance of what the torques do; return what reads it."""
+    """Add the energy balance for the works of the torques; return the function that reads it."""
 
     def torsional_heat(mbs: Any, t: float) -> float:
         rate = mbs.GetObjectOutput(torsion, exu.OutputVariableType.Velocity)
@@ -280,7 +277,6 @@ def _add_balance(
 
 
 def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:
-    """Add sensors of coordinates and velocities of each node; return their ``SensorIndex``."""
     return tuple(
         mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
         for node in nodes
@@ -289,7 +285,6 @@ def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:
 
 
 def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
-    """Add a rotor about the z-axis; return its ``NodeIndex``."""
     node = mbs.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[speed])
     )
@@ -298,19 +293,17 @@ def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
 
 
 def _coordinate(mbs: Any, node: Any, coordinate: int) -> Any:
-    """Add a marker of a coordinate of a node; return its ``MarkerIndex``."""
     return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
 
 
 def _add_torques(mbs: Any, **torques: tuple[Any, Torque | None]) -> dict[str, Power]:
-    """Let torques act on the nodes of rotors, where there are any; return their powers by the rotors' names."""
+    """Apply torques to the nodes of rotors, where given; return their powers by the rotors' names."""
     return {
         name: _add_torque(mbs, node, torque) for name, (node, torque) in torques.items() if torque is not None
     }
 
 
 def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
-    """Let ``torque`` act on a rotor; return its power."""
 
     def now(mbs: Any, t: float) -> tuple[float, float]:
         """Return torque and speed."""

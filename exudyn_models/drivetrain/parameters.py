@@ -1,4 +1,4 @@
-"""Parameters of a drivetrain: engine with flywheel, dry clutch and vehicle, and the torques that act on them."""
+"""Parameters of a drivetrain: engine with flywheel, dry clutch and vehicle, and the torques on them."""
 
 from __future__ import annotations
 
@@ -10,42 +10,42 @@ from typing import Any, TypeAlias
 from reference_model.systems import finite_number
 
 Torque: TypeAlias = Callable[[float, float, float], float]
-"""Takes time (s), angle (rad) and speed (rad/s) of a shaft, and returns a torque in N m."""
+"""Takes time (s), angle (rad) and speed (rad/s) of a shaft; returns a torque in N m."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drivetrain:
-    """Parameters of an engine with flywheel, a dry clutch and a vehicle, as seen from the gearbox's input shaft.
+    """Parameters of an engine with flywheel, a dry clutch and a vehicle, reduced to the gearbox's input shaft.
 
     Parameters
     ----------
     engine_inertia : float
-        Of crankshaft, flywheel and clutch cover in kg m², > 0.
+        Inertia of crankshaft, flywheel and clutch cover in kg m², > 0.
     disc_mass, disc_inertia : float
-        Of the clutch disc in kg and kg m², > 0.
+        Mass in kg and inertia in kg m² of the clutch disc, > 0.
     unbalance : float
         Distance in m of the disc's centre of mass from the centre of its facings, >= 0.
     inner_radius, outer_radius : float
-        Of the facings in m; a ring if they are alike.
+        Radii of the facings in m; equal for a ring.
     faces : int
         Number of facings, >= 1.
     friction_coefficient : float
         μ of a facing, >= 0.
     offset : float
-        X0 in m: the shaft's axis is at (X0, 0), that of the engine at (0, 0).
+        X0 in m: the shaft's axis is at (X0, 0), the engine's at (0, 0).
     radial_stiffness, radial_damping : float
         C in N/m and β in N s/m of the disc on its shaft, >= 0.
     hardening, stop_gap, stop_stiffness : float
-        C₃ in N/m³, play in m and C_s in N/m of that support, as ``add_radial_support`` takes them.
+        C₃ in N/m³, clearance in m and C_s in N/m of that support, as in ``add_radial_support``.
     torsional_stiffness, torsional_damping : float
         Between disc and gearbox, in N m/rad and N m s/rad, >= 0.
     vehicle_inertia : float
-        Of gearbox, wheels and vehicle in kg m², as seen from the input shaft, > 0.
+        Inertia of gearbox, wheels and vehicle in kg m², reduced to the input shaft, > 0.
 
     Raises
     ------
     ValueError
-        If a value is not a finite number or is outside of its range.
+        If a value is not a finite number or is out of range.
 
     """
 
@@ -68,7 +68,6 @@ class Drivetrain:
     vehicle_inertia: float
 
     def __post_init__(self) -> None:
-        """Refuse what no drivetrain can be; what its parts are made of is checked by those."""
         for field in fields(self):
             value = finite_number(field.name, getattr(self, field.name))
             if field.name.endswith(("inertia", "mass", "outer_radius")) and value <= 0.0:
@@ -80,19 +79,19 @@ class Drivetrain:
 
     @property
     def friction_radius(self) -> float:
-        """Torque over friction force of facings that slip about their centre under uniform pressure, in m."""
+        """Torque over friction force of slipping facings under uniform pressure, in m."""
         ri, ro = self.inner_radius, self.outer_radius
         return 2.0 / 3.0 * (ri * ri + ri * ro + ro * ro) / (ri + ro)
 
     @property
     def contact(self) -> dict[str, Any]:
-        """The facings as ``add_ring_friction`` takes them."""
+        """The facings as arguments of ``add_ring_friction``."""
         if self.inner_radius == self.outer_radius:
             return {"contact_radius": self.outer_radius}
         return {"inner_radius": self.inner_radius, "outer_radius": self.outer_radius}
 
     def normal_load(self, torque: float) -> float:
-        """Return the load in N of each facing under which the slipping clutch transmits ``torque`` (N m)."""
+        """Return the load in N per facing of a slipping clutch that transmits ``torque`` (N m)."""
         return torque / (self.faces * self.friction_coefficient * self.friction_radius)
 
 
@@ -115,23 +114,22 @@ PASSENGER_CAR = Drivetrain(
 )
 """A passenger car of 1,300 kg in first gear: typical values, and assumptions where none are published.
 
-- Vehicle: 1300 kg on wheels of 0.3 m behind 13 : 1, 0.69 kg m², and the gearbox.
+- Vehicle: 1300 kg on wheels of 0.3 m behind a ratio of 13 : 1, 0.69 kg m², plus the gearbox.
 - Engine with flywheel, and disc: assumed, below the inertias of a light truck in Applied Sciences 9 (2019) 4287,
-  table A3, 0.3 and 0.045 kg m²; clamp loads there are up to 10 kN. Facings of 228 by 150 mm are a size sold for
-  petrol engines of 150 N m; dry ones have μ = 0.2 to 0.4 (Modelica Standard Library, Rotational.Components.Clutch).
+  table A3, 0.3 and 0.045 kg m²; clamp loads there reach 10 kN. Facings of 228 by 150 mm are sold for petrol engines
+  of 150 N m; dry ones have μ = 0.2 to 0.4 (Modelica Standard Library, Rotational.Components.Clutch).
 - Torsional spring: 17 N m per degree.
-- Radially, assumed: the stiffness of a steel shaft of 18 mm that is free over 0.31 m, which puts the natural
-  frequency at 2865 turns a minute, 5 % of critical damping, play of 0.5 mm in the pilot bearing, 0.2 mm between the
-  axes, an unbalance of 18 g mm. That the radial mode of clutch discs becomes unstable in engagement is known:
-  Proceedings of the IMechE, Part C (2020), doi 10.1177/0954406220927065.
+- Radial support, assumed: a steel shaft of 18 mm over a free length of 0.31 m, which gives a natural frequency of
+  2865 rpm; 5 % of critical damping; 0.5 mm clearance in the pilot bearing; 0.2 mm between the axes; an unbalance of
+  18 g mm. Instability of the radial mode of clutch discs in engagement is known: Proceedings of the IMechE, Part C
+  (2020), doi 10.1177/0954406220927065.
 """
 
 
 def four_cylinder(mean: float, ripple: float) -> Torque:
-    """Return the torque of a four-stroke engine with four cylinders, which fire twice a turn.
+    """Return the torque of a four-stroke engine with four cylinders, which fire twice per revolution.
 
-    It is T·(1 + r·cos 2θ): the mean T = ``mean`` in N m, and what the firing order adds to it, ``ripple`` = r times
-    the mean.
+    It is T·(1 + r·cos 2θ) with the mean T = ``mean`` in N m and ``ripple`` = r.
     """
     mean, ripple = finite_number("mean", mean), finite_number("ripple", ripple)
     return lambda time, angle, speed: mean * (1.0 + ripple * math.cos(2.0 * angle))

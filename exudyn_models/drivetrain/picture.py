@@ -1,7 +1,7 @@
-"""A drivetrain in three dimensions, by Exudyn's ray tracer, which needs no display.
+"""A three-dimensional picture of a drivetrain by Exudyn's ray tracer, which needs no display.
 
-The clutch cover is cut open, so that the disc between it and the flywheel shows. Radial motion is enlarged: a tenth
-of a millimetre would not be seen.
+The clutch cover is cut open to show the disc between it and the flywheel. Radial motion is enlarged, because a tenth
+of a millimetre would be invisible.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ BEARING = 1.5
 """Distance of the shaft's bearing from the disc over the radius of the disc."""
 
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
-"""Of the model: the engine is behind on the right, the gearbox in front on the left."""
+"""Orientation of the model: engine in the back on the right, gearbox in front on the left."""
 
 SPRINGS = 6
 
 COVERED = 1.25 * math.pi
-"""Angle in rad over which the cover is left."""
+"""Angle in rad of the part of the cover that is drawn."""
 
 
 def draw_drivetrain(
@@ -59,13 +59,13 @@ def draw_drivetrain(
     Parameters
     ----------
     drivetrain : Drivetrain
-        The parameters.
+        Parameters of the drivetrain.
     engine_angle : float
-        In rad.
+        Angle of the engine in rad.
     disc : three floats
-        x, y in m and the angle in rad.
+        x, y in m and the angle in rad of the disc.
     magnification : float
-        By which x and y, the offset and the play of the shaft are enlarged.
+        Factor for x and y, the offset and the clearance of the shaft.
     size : two ints
         Width and height in pixels.
 
@@ -91,9 +91,9 @@ def draw_drivetrain(
 
 @functools.lru_cache(maxsize=4)
 def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any, Any]:
-    """Return what turns with the engine, what is on the disc, shaft and bearing: they take most of a picture's time.
+    """Return the parts on the engine and on the disc, shaft and bearing, which take most of a picture's time.
 
-    The shaft is as long as it is where it is not tilted.
+    The shaft has the length that it has without tilt.
     """
     outer, inner, shaft = drivetrain.outer_radius, drivetrain.inner_radius, SHAFT * drivetrain.outer_radius
     on_engine = (
@@ -117,14 +117,12 @@ def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[
 
 
 def _ring(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:
-    """Return a ring about the z-axis between two heights."""
     return graphics.Cylinder(
         [0.0, 0.0, low], [0.0, 0.0, high - low], outer, list(colour), radiusInner=inner, nTiles=64
     )
 
 
 def _sector(outer: float, inner: float, low: float, high: float, colour: Colour) -> Any:
-    """Return the part of a ring that the cut through the cover leaves."""
     around = np.exp(1j * np.linspace(0.0, COVERED, 64))
     edge = np.concatenate((outer * around, inner * around[::-1]))
     corners = len(edge)
@@ -138,7 +136,6 @@ def _sector(outer: float, inner: float, low: float, high: float, colour: Colour)
 
 
 def _spring(radius: float, angle: float, thickness: float) -> Any:
-    """Return a torsional spring: a short cylinder along the circumference."""
     middle, along = radius * np.exp(1j * angle), 1j * np.exp(1j * angle)
     length = 3.0 * thickness
     start = middle - 0.5 * length * along
@@ -156,19 +153,18 @@ def _moved(part: Any, place: FloatArray, angle: float) -> Any:
 
 
 def _rendered(parts: list[Any], height: float, centre: Sequence[float], size: tuple[int, int]) -> Image:
-    """Return the picture of a scene that is ``height`` high (m) about its ``centre``."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     mbs.AddObject(items.ObjectGround(visualization=items.VObjectGround(graphicsData=parts)))
     mbs.Assemble()
     settings: Any = container.visualizationSettings
     settings.general.backgroundColor = [1.0, 1.0, 1.0, 1.0]
-    settings.raytracer.numberOfThreads = 1  # more take longer than they save
+    settings.raytracer.numberOfThreads = 1  # more would cost more time than they save
     view = settings.view0
     view.window.renderWindowSize = list(size)
     view.window.showComputationInfo = False
     view.scene.drawCoordinateSystem = False
-    start = settings.openGL.advanced  # what the ray tracer looks from; until the first picture is there
+    start = settings.openGL.advanced  # the ray tracer's camera, until the first picture exists
     start.initialModelRotation = VIEW.as_matrix().T.tolist()
     start.initialCenterPoint = list(centre)
     start.initialZoom = start.initialMaxSceneSize = 0.5 * height

@@ -1,1 +1,1 @@
-"""Laws of friction and support as compiled functions: the forces that Exudyn asks for, on any pair of bodies."""
+"""Compiled force laws of friction and support, for any pair of bodies in Exudyn."""

@@ -1,4 +1,4 @@
-"""Friction on any pair of nodes, by the transpose of the slip Jacobian: generalised forces and derivatives."""
+"""Friction on any pair of nodes: generalised forces by the transposed slip Jacobian, and their derivatives."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from exudyn_models.forces.laws.product import Law, friction_force_under
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, Floats, Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
-to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than it is told to be
+to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than the given length
 
 
 @compiled
@@ -35,15 +35,15 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of those by the coordinates and by the velocities. The generalised forces on both nodes,
-    shape (n,), the disc's radius in m, P in m/s and S in rad/s come with them.
+    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
+    both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
-    # Friction is −μN·∂P/∂(u, S), or P/ε of that; P does not change if slip and disc are turned alike.
+    # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; P does not change if slip and disc are rotated together.
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
@@ -83,10 +83,10 @@ def friction_derivatives_on_nodes(
 def force_on_any(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on both nodes, as a function for Exudyn behind its first two arguments.
+    """Return the generalised forces on both nodes, in a user function's signature after two arguments.
 
-    ``parameters`` are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes; there is
-    a ``law`` where the friction force is no number, and 1 N in its place.
+    ``parameters`` are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes. If the
+    friction force is not constant it is given by ``law``, and the contact contains 1 N in its place.
     """
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
@@ -98,7 +98,7 @@ def force_on_any(
         speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
         friction = friction_force_under(law, contact[3], t, radius, speed, spin)
         fx, fy, moment = friction * fx, friction * fy, friction * moment
-    for k in range(len(q)):  # in the place of the velocities, which are not needed any more
+    for k in range(len(q)):  # overwrites the velocities, which are no longer needed
         velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
     result: Floats = to_tuple(velocities, len(q))
     return result
@@ -106,7 +106,7 @@ def force_on_any(
 
 @compiled
 def _slip(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
-    """Return their product: so small a one takes longer by a library."""
+    """Return their product; for such a small one a library would take longer."""
     ux = uy = spin = 0.0
     for k in range(len(velocities)):
         ux += to_slip[0, k] * velocities[k]
@@ -126,7 +126,7 @@ def jacobian_on_any(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force stands with a minus, shape (n, n)."""
+    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (n, n)."""
     contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
     return friction_derivatives_on_nodes(
         kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
@@ -152,7 +152,7 @@ def slip_in_step(
     end: FloatArray,
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
-    """Return P (m/s) at start and end of a step and of the change between; S (rad/s) and radius (m) at the end."""
+    """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
     to_slip, axes, (cosine, sine) = slip_jacobian(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = _slip(to_slip, end_rates)

@@ -1,7 +1,7 @@
-"""Friction of a rotor on a rotor or on the ground, both about one axis. A constant one needs no compiled code.
+"""Friction of a rotor on a rotor or on the ground about one axis, without compiled code if constant.
 
-All of a contact slips in its own direction there, and force and slip of the centre are zero: with the mean radius r
-of the contact P = r·|S|, and M = −μN·r·sign(S), or that times P/ε where P < ε. Points share that alike.
+The whole contact slips in circumferential direction, and force and slip of the centre are zero. With the mean radius
+r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P < ε. Points share this equally.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from reference_model.systems import FloatArray
 
 
 def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
-    """Return whether this is a contact of which ``functions_on_axis`` are the functions."""
+    """Return whether ``functions_on_axis`` apply to this contact."""
     return kinds[0] in (ROTOR, GROUND) and kinds[1] == ROTOR and factors.geometry[4] == NONE_HELD
 
 
 def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, Any]:
-    """Return force and Jacobian as the user functions that Exudyn calls."""
+    """Return force and Jacobian as user functions for Exudyn."""
     grounded, contact = kinds[0] == GROUND, factors.geometry
     if factors.contact is not None:
         force = _constant(grounded, factors.contact)
@@ -47,7 +47,7 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     ) -> FloatArray:
         spin = q_t[0] if grounded else q_t[1] - q_t[0]
         by_spin = velocity_factor * _slope(factors, t, spin)
-        # Exudyn takes derivatives of the left-hand side.
+        # Exudyn expects derivatives of the left-hand side.
         return -by_spin * (np.ones((1, 1)) if grounded else np.array([[1.0, -1.0], [-1.0, 1.0]]))
 
     return force, jacobian
@@ -74,7 +74,7 @@ def _constant(grounded: bool, contact: Contact) -> Any:
 def force_on_ground(
     parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the moment on a rotor from mean radius (m) and ε (m/s), for Exudyn behind two arguments."""
+    """Return the moment on a rotor as a user function for Exudyn; ``parameters`` are mean radius (m) and ε (m/s)."""
     return (_moment(parameters, law, t, q_t[0]),)
 
 

@@ -55,7 +55,9 @@ class AxialStick:
     lock : int
         Object number of the constraint that locks the contact.
     mode : Mode or None
-        None outside of ``solve_dynamic``, which is the only solver that switches modes.
+        Present mode, None before the first run.
+    running : bool
+        Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
     idle : bool
         Whether the contact rests although it is in a mode of sliding, because locked contacts and joints hold it. Its
         share of the load is then not determined, and it takes all that it can hold.
@@ -68,6 +70,7 @@ class AxialStick:
     static_ratio: float
     lock: int = -1
     mode: Mode | None = None
+    running: bool = False
     idle: bool = False
 
     @property
@@ -140,7 +143,7 @@ class AxialStick:
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes, as the user function of the connector."""
-        if self.mode is None:
+        if not self.running:
             raise ValueError(
                 "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
                 "give add_ring_friction a regularisation for any other solver"

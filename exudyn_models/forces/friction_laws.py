@@ -1,21 +1,21 @@
 """Coulomb friction of a pin, of points on a ring, of a ring and of an annulus, compiled for Exudyn's user functions.
 
 All are gradients of a slip potential. With u the slip of the disc's centre and S = φ̇ − ω, a point at the radius R
-and the angle α slips with u + S·R·(−sin α, cos α), and the mean of its magnitude over the contact is the potential
-P(u, S). The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S: they work against the slip with the power μN·P.
+and the angle α slips with u + S·R·(−sin α, cos α). The mean of its magnitude over the contact is the potential P(u,
+S). The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S, so both dissipate the power μN·P.
 
-Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε: with v/√(v²+ε²) every
-release leaves an error of ε^0.8 behind, here all errors are of first order in ε.
+Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε. With v/√(v²+ε²) every
+release would leave an error of ε^0.8; here all errors are of first order in ε.
 
-- *The contact as a whole* is viscous where P < ε: force and moment are those in the same direction of (u, S) at
-  P = ε, times P/ε. As these are on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if
-  Coulomb friction could hold it.
-- *One of n points* on the way through rest, because alone it can jump. Where the slowest of them slips with v below
-  4δ/3, the others slip as if the disc turned about a place nearer to it: with their own slip less v, where v < δ, and
-  less v·(4 − 3v/δ) beyond. Its own friction is viscous below δ. So its force grows from nothing to its share of μN,
-  while the others have the directions that they have when the disc pivots about it: again those of the limit surface.
-  δ = (3/4)·ε/(1 + (4/π)/sin(π/n)) makes sure that at P = ε no two points are slower than 4δ/3: they are 2R·sin(π/n)
-  apart, and if the slip of one is v, then P <= v + (4/π)R|S|.
+- *The contact as a whole* is viscous for P < ε: force and moment are those for the same direction of (u, S) at P = ε,
+  times P/ε. Since these lie on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if Coulomb
+  friction could hold it.
+- *One of n points* is regularised when it passes through rest, because its friction alone could jump. Below δ its own
+  friction is viscous. While its slip v is below 4δ/3 the friction of the others is that for a centre of rotation
+  closer to the point: for their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the point grows
+  from zero to its share of μN, while the others act as if the disc pivots about it, which again gives a point of the
+  limit surface. δ = (3/4)·ε/(1 + (4/π)/sin(π/n)) ensures that at P = ε no two points are
+  slower than 4δ/3: they are 2R·sin(π/n) apart, and if the slip of one is v, then P <= v + (4/π)R|S|.
 """
 
 from __future__ import annotations
@@ -35,28 +35,28 @@ from exudyn_models.forces.slip_potential import (
 from reference_model.systems import FloatArray
 
 CONTINUOUS = 0
-"""Number of contact points by which the compiled functions know the continuous ring or annulus."""
+"""Number of contact points that represents the continuous ring or annulus in compiled code."""
 
 NONE_HELD = -1
-"""In place of the number of a point: none is held."""
+"""Index of a point that represents none."""
 
 Contact = tuple[float, int, float, float, int, float]
-"""R in m, number of points, μN in N, ε in m/s, the point held or ``NONE_HELD``, and the inner radius in m.
+"""R in m, number of points, μN in N, ε in m/s, the held point or ``NONE_HELD``, and the inner radius in m.
 
-The inner radius is R, but of an annulus, whose outer radius is R. In place of its number of points stands
-``CONTINUOUS`` or, under a pressure that is not uniform, what ``density_of`` returns for that, which is negative.
+The inner radius is R, except for an annulus, whose outer radius is R. The number of points of an annulus is
+``CONTINUOUS`` or, under a nonuniform pressure, the negative result of ``density_of``.
 
-The friction of the point held is viscous at any slip: it models one that rests while the disc pivots about it:
-without the bend of its law at δ its friction is linear, and can not throw off Newton's iteration.
+The friction of the held point is viscous at any slip, which models a point that rests while the disc pivots about it.
+Without the kink of its law at δ its friction is linear and cannot disturb Newton's method.
 """
 
 CONTACT_SIZE = 6
-"""Numbers of a ``Contact``."""
+"""Number of components of a ``Contact``."""
 
 
 @compiled
 def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
-    """Return the ``Contact`` whose numbers ``parameters`` begin with, and the rest of them."""
+    """Return the ``Contact`` at the start of ``parameters``, and the rest of them."""
     radius, points, friction, epsilon, held, inner = parameters[:CONTACT_SIZE]
     return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
 
@@ -74,9 +74,9 @@ def mean_radius(contact: Contact) -> float:
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
 
-F there is of degree 1 in the slip, F = K·slip with the secant K. Newton's iteration starts from the slip that the
-disc would have without acceleration, thousands of times its creep: with the derivative alone it goes round in circles
-for one load in ten on six points, one in six on three. With 0.3 of K it found all of them in 7 turns.
+There F is of degree 1 in the slip, F = K·slip with the secant K. Newton's method starts from the slip that the disc
+would have without acceleration, thousands of times its creep. With the derivative alone it cycles for one load in ten
+on six points, and one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations.
 """
 
 
@@ -94,7 +94,7 @@ def ring_friction(
     """Return force and moment on the disc and moment on the master: F_x, F_y (N), M, M_master (N m).
 
     ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
-    ``angle`` (rad) is φ, the spins are in rad/s. The force on the master is −F.
+    ``angle`` (rad) is φ, and the spins are in rad/s. The force on the master is −F.
     """
     radius, _, friction, epsilon, _, _ = contact
     ux = dvx + master_spin * dy  # slip of the disc's centre
@@ -113,7 +113,7 @@ def ring_friction(
 def friction_of_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, float]:
-    """Return F_x, F_y (N) and M (N m) on the disc, whose centre slips with u (m/s) and which spins with φ̇ − ω."""
+    """Return F_x, F_y (N) and M (N m) on the disc for the centre slip u (m/s) and the relative spin φ̇ − ω."""
     radius, points, friction, epsilon, _, inner = contact
     if points > CONTINUOUS:
         return _force_of_points(ux, uy, radius * spin, angle, contact)
@@ -163,7 +163,7 @@ def _force_of_points(
         mean += speed / points
         if speed < lowest:
             slowest, lowest = i, speed
-        arm *= turn  # on to the next point
+        arm *= turn  # to the next point
     delta = point_regularisation(epsilon, points)
     if held == NONE_HELD and mean >= epsilon and lowest >= BEND * delta:
         return force.real, force.imag, radius * moment
@@ -189,17 +189,17 @@ def _force_of_points(
 
 @compiled
 def _length(vector: complex) -> float:
-    """Return |v|. abs(), which stays in range where |v|² does not, would nearly double what a point costs."""
+    """Return |v| without the overflow protection of abs(), which would nearly double the cost of a point."""
     return math.sqrt(vector.real * vector.real + vector.imag * vector.imag)
 
 
 BEND = 4.0 / 3.0
-"""Slip of the slowest point, over δ, from which on it acts as all others."""
+"""Smallest slip of the slowest point, over δ, without effect on the other points."""
 
 
 @compiled
 def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
-    """Return which part of the slowest point's slip the others lose, and whether its own friction is viscous."""
+    """Return the share of the slowest point's slip that the others lose, and whether its own friction is viscous."""
     if held != NONE_HELD or speed <= delta:
         return 1.0, True
     return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
@@ -224,9 +224,9 @@ def ring_friction_derivatives(
     disc_spin: float,
     contact: Contact,
 ) -> FloatArray:
-    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
+    """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
 
-    For points that creep as a whole they hold a ``SECANT`` share, which lets Newton's iteration converge.
+    For points that creep as a whole they contain a ``SECANT`` share, which makes Newton's method converge.
     """
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
@@ -263,14 +263,13 @@ def derivatives_by_slip(
 def _derivatives_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """As ``derivatives_by_slip``."""
     radius, points, friction, epsilon, held, _ = contact
     share = friction / points
     delta = point_regularisation(epsilon, points)
     mean, by_mean, slow = _potential_of_points(ux, uy, spin, angle, contact)
     creeps = mean < epsilon
     creep = mean / epsilon if creeps else 1.0
-    # What the others lose of the slip of the slowest point, and its derivatives.
+    # The slip of the slowest point that the others lose, and its derivatives.
     _, slow_slip, by_slow = _slip_of_point(ux, uy, spin, angle + 2.0 * math.pi * slow / points, radius)
     drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
     loss = drawn * slow_slip
@@ -318,7 +317,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the point that is held, or else slowest."""
+    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
     radius, points, _, _, held, _ = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)
@@ -346,11 +345,11 @@ def _slip_of_point(
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """As ``derivatives_by_slip``; nothing depends on the angle here."""
+    """Like ``derivatives_by_slip``, for circles, where nothing depends on the angle."""
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the direction in which slip starts: take one without spin.
+    # At rest the slope depends on the direction of the slip to come; this is one without rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)
@@ -358,7 +357,7 @@ def _derivatives_of_circles(
     by_spin, mixed = math.copysign(by_spin, spin), math.copysign(mixed, -spin)
     mean = by_speed * speed + by_spin * spin
     sliding = mean > epsilon
-    # The potential is P, or P²/(2ε) near rest; the direction of the slip counts in both.
+    # The potential is P, or P²/(2ε) near rest.
     factor = 1.0 if sliding else by_speed * size / epsilon if mean == 0.0 else mean / epsilon
     tip = 0.0 if sliding else 1.0 / epsilon
     along = -friction * (factor * by_speed_twice + tip * by_speed * by_speed)

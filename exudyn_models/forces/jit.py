@@ -1,7 +1,7 @@
-"""Compiled functions: kept on disk, and called from Exudyn in the cheapest way.
+"""Compiled functions, kept on disk, that Exudyn calls with little overhead.
 
-Exudyn passes coordinates to a user function as lists of floats. Of a call with 14 numbers numba spends 180 ns on
-finding out their types, and Python 60 ns on unpacking and packing lists: ``taking_lists`` does without both.
+Exudyn passes coordinates to a user function as lists of floats. In a call with 14 numbers numba spends 180 ns on
+finding their types, and Python 60 ns on unpacking and packing lists. ``taking_lists`` avoids both.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import numba.extending
 
 from reference_model.numerics.compiled_once import compiled_for, digest_of
 
-extending: Any = numba.extending  # not typed throughout
+extending: Any = numba.extending  # not fully typed
 
 SOURCES = Path(__file__).parents[1]
-"""The folder of all sources of a compiled function."""
+"""Folder of all sources of a compiled function."""
 
 digest_of(SOURCES)
 
@@ -27,7 +27,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compiled(function: Function) -> Function:
-    """Compile ``function`` into compiled functions that call it; ``taking_lists`` compiles it for Python."""
+    """Compile ``function`` for calls from compiled code; ``taking_lists`` compiles it for calls from Python."""
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
@@ -37,7 +37,7 @@ class Floats(numba.types.UniTuple):
 
 def _tuple_of_list(kind: Floats, argument: Any, context: Any) -> Any:
     api = context.pyapi
-    # What is no list or too short for an item leaves an error behind, also if it goes on from there as no float.
+    # An item that is missing or not a float sets an error, which is checked after all items.
     items = [api.float_as_double(api.list_getitem(argument, i)) for i in range(len(kind))]
     value = context.context.make_tuple(context.builder, kind, items)
     return extending.NativeValue(value, is_error=api.c_api_error())
@@ -49,12 +49,11 @@ extending.unbox(Floats)(_tuple_of_list)
 
 @cache
 def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
-    """Return a compiled function of tuples as one of lists of as many floats, without numba's choice by type.
+    """Return a compiled function of tuples as a function of lists of floats, without numba's dispatch by type.
 
-    ``sizes`` says for every argument how long its list is; or it is ``float``, or a type of numba, or None for an
-    argument that the function does not look at, which may be anything.
-
-    Raises, when it is called, ``TypeError`` for anything else than lists of numbers, or if one is too short.
+    ``sizes`` contains for each argument the length of its list, ``float``, a numba type, or None for an unused
+    argument, which may be anything. The returned function raises ``TypeError`` if an argument is not a list of
+    numbers or is too short.
     """
     floats: Any = Floats
     kinds = {None: numba.none, float: numba.float64}

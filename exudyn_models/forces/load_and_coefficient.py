@@ -20,33 +20,33 @@ NumberOrFunction: TypeAlias = float | Callable[..., float]
 """A load or coefficient; a function takes any of ``ARGUMENTS``, by name."""
 
 Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
-"""A coefficient, also as a table for ``curve_of_table``."""
+"""A coefficient, which may also be a table for ``curve_of_table``."""
 
 DIFFERENCE = 1e-5
-"""Relative step of the central differences that give the slopes of μN over all of the motion."""
+"""Relative step of the central differences for the derivatives of μN by the motion."""
 
 
 class LoadAndCoefficient:
-    """Friction coefficient μ and normal load N of a contact, which may be changed between two runs.
+    """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
 
     Parameters
     ----------
     contact : Contact
-        Its μN counts nothing.
+        The contact; its μN is ignored.
     friction_coefficient : float, table or callable
-        μ >= 0, or as a table over P, or as a function of any of ``ARGUMENTS``.
+        μ >= 0, a table over P, or a function of any of ``ARGUMENTS``.
     normal_load : float or callable
-        N in N, >= 0, or as such a function.
+        N in N, >= 0, or such a function.
     static_ratio : float
         Static over sliding friction, >= 1, see ``peak_over_sliding``.
     plates : int
-        Contacts alike, >= 1, that all carry N.
+        Number of equal contacts, >= 1, that each carry N.
 
     Raises
     ------
     ValueError
-        If a number is negative or not finite or a function takes other arguments, and in a run if a function
-        returns such a number.
+        If a number is negative or not finite, or a function takes other arguments; in a run if a function returns an
+        invalid number.
 
     """
 
@@ -58,7 +58,7 @@ class LoadAndCoefficient:
         static_ratio: float = 1.0,
         plates: int = 1,
     ) -> None:
-        #: The contact with 1 N in place of its μN.
+        #: The contact with 1 N in place of μN.
         self.geometry = _with(contact, 1.0)
         self.contact_radius = contact[0]
         self._static_ratio, self._plates = _checked_static_ratio(static_ratio), _checked_plates(plates)
@@ -78,22 +78,22 @@ class LoadAndCoefficient:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
         self.depends_on_slip = not self._reads <= {"time", "radius"}
-        #: Whether no function of Python is called for it.
+        #: Whether it calls no Python function.
         self.compiled = all(function is None or function.address != 0.0 for function in functions)
         is_number = not self._reads and functions == [None, None]
-        #: The contact with its μN, or None where that is no number.
+        #: The contact with its μN, or None if μN is not constant.
         self.contact = _with(self.geometry, constant) if is_number else None
-        #: What μN is, where it is no number.
+        #: The law of μN, or None if it is constant.
         self.law: Law | None = None if is_number else law_of(constant, self._static_ratio, curve, *functions)
 
     def contact_at(self, t: float) -> Contact:
-        """Return the contact with μN at the time t (s), or with 1 N in its place if that depends on the motion."""
+        """Return the contact with μN at the time t (s), or with 1 N if that depends on the motion."""
         if self.depends_on_motion:
             return self.geometry
         return _with(self.geometry, self.friction_force(t, math.nan, math.nan, math.nan))
 
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
-        """Return the friction force μN in N, of all plates, at a time in s and a motion as ``ARGUMENTS`` tell it."""
+        """Return the friction force μN in N of all plates, at a time in s and for a motion as in ``ARGUMENTS``."""
         if self.contact is not None:
             return self.contact[2]
         motion = t, radius, slip_speed, relative_spin
@@ -129,7 +129,6 @@ def _with(contact: Contact, friction: float) -> Contact:
 
 @cache
 def _of_python() -> Callable[..., Any]:
-    """Return ``friction_force_under`` as Python calls it."""
     return taking_lists(friction_force_under, LAW, *[float] * 5)
 
 

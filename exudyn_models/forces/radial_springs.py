@@ -1,9 +1,9 @@
-"""Springs that may harden, a stop and a damper between a base and a disc, as the functions that Exudyn calls.
+"""Springs that may harden, a stop and a damper between a base and a disc, as user functions for Exudyn.
 
-The force at the deflection w is −K·w − β·ẇ with the secant stiffness K = C + C₃·d² + C_s·(1 − gap/d), d = |w|,
-the last term beyond the gap only. w and ẇ are those that an observer on the base sees: ẇ is the slip J(q)·q̇ of
-``slip_kinematics``, and Jᵀ puts the whole reaction on the base. Where the base only turns about the z-axis the forces
-are written out, at a part of the cost.
+The force at the deflection w is −K·w − β·ẇ with the secant stiffness K = C + C₃·d² + C_s·(1 − gap/d), d = |w|, the
+last term only beyond the gap. w and ẇ are relative to the base: ẇ is the slip J(q)·q̇ of ``slip_kinematics``, and Jᵀ
+applies the full reaction to the base. For a base that only turns about the z-axis the forces are written out, which
+is cheaper.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ Law = tuple[float, float, float, float, float]
 """C (N/m), C₃ (N/m³), gap (m), C_s (N/m) and β (N s/m)."""
 
 Offset = tuple[float, float]
-"""Place in m at which the springs are relaxed, in the axes of the base and from its node."""
+"""Position in m of the relaxed springs, in the axes of the base and from its node."""
 
 ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
-"""Of the coordinates of a planar base those that the model has not: a rotor is one without x and y."""
+"""Numbers of fixed coordinates of a planar base, which the model does not contain: a rotor has fixed x and y."""
 
 
 def support_functions(
@@ -42,8 +42,8 @@ def support_functions(
 ) -> tuple[ForceFunction, JacobianFunction]:
     """Return force and Jacobian of a support on the nodes of base and disc.
 
-    ``reference`` are the reference coordinates of both, shape (n,); the model has not the first ``hidden`` of them,
-    which are zero: ``ON_GROUND``, ``ON_ROTOR`` or none.
+    ``reference`` contains the reference coordinates of both, shape (n,). The first ``hidden`` of them are zero and
+    not part of the model: ``ON_GROUND``, ``ON_ROTOR`` or 0.
     """
     if kinds[0] == PLANAR:
         force = _force_on_flat_base(hidden, reference, offset, law)
@@ -53,7 +53,7 @@ def support_functions(
 
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    """Return the force where the base only turns about the z-axis; its first ``hidden`` coordinates are zero."""
+    """Return the force for a base that only turns about the z-axis; its first ``hidden`` coordinates are zero."""
     xb, yb, angle, x, y, *tilts = reference.tolist()
     parameters = [*law, *offset, x - xb, y - yb, angle]
     size = len(reference) - hidden
@@ -76,7 +76,7 @@ def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law:
 
 
 def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
-    """Return the Jacobian over all coordinates of base and disc but the first ``hidden``, which are zero."""
+    """Return the Jacobian over all coordinates of base and disc except the first ``hidden``, which are zero."""
     zeros = np.zeros(len(reference))
 
     def jacobian(
@@ -92,7 +92,7 @@ def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, 
         coordinates[hidden:] += q
         velocities[hidden:] = q_t
         derivatives = support_derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
-        return -derivatives[hidden:, hidden:]  # Exudyn takes those of the left-hand side
+        return -derivatives[hidden:, hidden:]  # Exudyn expects derivatives of the left-hand side
 
     return jacobian
 
@@ -126,7 +126,7 @@ def elastic_energy(square: float, law: Law) -> float:
 
 
 Parameters = Sequence[float]
-"""A ``Law``, an ``Offset``, and the reference values of the disc's place relative to the base and of its angle."""
+"""A ``Law``, an ``Offset``, and the reference values of the disc's relative position and of the base's angle."""
 
 
 @compiled
@@ -161,7 +161,8 @@ def _in_the_plane(
 ) -> tuple[float, float, float]:
     """Return force on the disc (N) and moment on the base (N m), in global axes.
 
-    From place (m) and velocity (m/s) of the disc relative to the base, and the base's angle (rad) and spin (rad/s).
+    Takes position (m) and velocity (m/s) of the disc relative to the base, and the base's angle (rad) and spin
+    (rad/s).
     """
     stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
     x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)
@@ -199,7 +200,7 @@ def support_derivatives_on_nodes(
     offset: Offset,
     law: Law,
 ) -> FloatArray:
-    """Return the derivatives of the generalised forces by coordinates and velocities, weighted and added, (n, n)."""
+    """Return the weighted sum of the derivatives of the generalised forces by coordinates and velocities, (n, n)."""
     to_slip, axes, _ = slip_jacobian(kinds, coordinates)
     w = np.array(place_of_disc(kinds, coordinates, axes)) - np.array(offset)
     rate = to_slip @ velocities

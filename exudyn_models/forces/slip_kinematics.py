@@ -1,15 +1,14 @@
-"""Slip as a linear map of the velocities of two nodes, for every kind of node.
+"""Slip as a linear map of the velocities of two nodes, for all kinds of nodes.
 
-The slip u of the disc's centre over the master, in the axes of the master's body, and the relative spin S about the
-master's axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so that their generalised
-forces on both nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. That is an exchange of momentum and
-angular momentum, however the axes lie, and the derivatives of the forces follow from those of J.
+The slip u of the disc's centre over the master, in the master body's axes, and the relative spin S about the master's
+axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so the generalised forces on both
+nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
+any orientation, and the derivatives of the forces follow from those of J.
 
-J is made of sums, products, sines and cosines, whose derivatives are found to all digits from a step along the
-imaginary axis (Squire & Trapp, SIAM Review 40 (1998) 110).
+J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
+(Squire & Trapp, SIAM Review 40 (1998) 110).
 
-Numbers are put into arrays one by one: for a slice numba would compile the text of an error of shapes, which takes as
-long as all the rest.
+Array elements are assigned one by one, because the error message for a wrong slice would double the compile time.
 """
 
 from __future__ import annotations
@@ -31,41 +30,41 @@ KINDS = {
     "RigidBodyRxyz": TAIT_BRYAN,
     "RigidBodyEP": EULER_PARAMETERS,
 }
-"""The kinds of nodes by the names that Exudyn gives them."""
+"""Kinds of nodes, by Exudyn's names."""
 
 SPATIAL = (ROTATION_VECTOR, TAIT_BRYAN, EULER_PARAMETERS)
 
 TRANSLATIONS = (0, 2, 3, 3, 0, 3)
-"""Coordinates of each kind that are a position; those of the rotation follow."""
+"""Number of position coordinates of each kind, which precede those of the rotation."""
 
 SIZES = (1, 3, 6, 6, 0, 7)
-"""Coordinates of each kind; the ground has none."""
+"""Number of coordinates of each kind; the ground has none."""
 
 IMAGINARY_STEP = 1e-30
 
 Kinds = tuple[int, int]
-"""Of the nodes of master and disc."""
+"""Kinds of the nodes of master and disc."""
 
 Floats = Sequence[float]
 
 Array = NDArray[Any]
-"""Of real numbers, or of complex ones where derivatives are asked for."""
+"""Array of real numbers, or of complex ones for derivatives."""
 
 
 Vector = tuple[Any, Any, Any]
-"""In global axes."""
+"""Components in global axes."""
 
 Axes = tuple[Vector, Vector, Vector]
-"""Of a body: x, y and z."""
+"""The x, y and z axes of a body."""
 
 
 @compiled
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
 
-    That is the angle of the disc's x-axis, or of its y-axis if its x-axis lies along the master's z-axis.
-    ``coordinates`` are those of master and disc with their reference values, n in all, in m and rad. A rotor turns
-    about the z-axis through the global origin, where the ground rests, a planar body about one parallel to it.
+    The angle is that of the disc's x axis, or of its y axis if its x axis lies along the master's z axis.
+    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A rotor turns
+    about the z axis through the global origin, where the ground rests, and a planar body about a parallel axis.
     """
     master, disc = kinds
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
@@ -93,7 +92,7 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
 
 @compiled
 def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, Any]:
-    """Return the place of the disc's node over the axis of the master with ``axes``, in two of these, in m."""
+    """Return the position in m of the disc's node relative to the master, along the x and y of its ``axes``."""
     master, disc = kinds
     x = y = 0.0 * coordinates[0]
     for i in range(max(TRANSLATIONS[master], TRANSLATIONS[disc])):
@@ -109,14 +108,14 @@ def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, An
 
 @compiled
 def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
-    """Return the distance in m of the disc's node from the axis of the master with ``axes``, across it."""
+    """Return the distance in m of the disc's node from the axis of the master with ``axes``."""
     x, y = place_of_disc(kinds, coordinates, axes)
     return np.sqrt(x * x + y * y)
 
 
 @compiled
 def frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return place and axes of a body with coordinates from ``q[at]`` on, and what each rate of angles adds to ω."""
+    """Return position and axes of a body with coordinates from ``q[at]`` on, and how ω depends on their rates."""
     zero = 0.0 * q[0]
     one, none = zero + 1.0, (zero, zero, zero)
     place, angle = none, at + TRANSLATIONS[kind]
@@ -148,10 +147,10 @@ def _cosine_and_sine(angle: Any) -> tuple[Any, Any]:
 
 @compiled
 def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
-    """Return axes by Rodrigues' formula, 1 + sin(θ)/θ·[v] + (1 − cos(θ))/θ²·[v]²."""
+    """Return the axes by Rodrigues' formula, 1 + sin(θ)/θ·[v] + (1 − cos(θ))/θ²·[v]²."""
     square = x * x + y * y + z * z
     theta = np.sqrt(square)
-    # Half angles keep the digits of 1 − cos(θ).
+    # Half angles avoid cancellation in 1 − cos(θ).
     (cosine_of_half, sine_of_half) = _cosine_and_sine(theta / 2.0)
     half = sine_of_half / theta if theta != 0.0 else theta + 0.5
     linear, quadratic = 2.0 * cosine_of_half * half, 2.0 * half * half
@@ -169,9 +168,9 @@ def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
 def _rotated_by_euler_parameters(
     p: Any, x: Any, y: Any, z: Any
 ) -> tuple[Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return axes and ω = 2·(p·v̇ − ṗ·v + v×v̇), with the parameters p and v = (x, y, z), over each of their rates.
+    """Return the axes and the contributions of each rate to ω = 2·(p·v̇ − ṗ·v + v×v̇), with v = (x, y, z).
 
-    Both are those of Exudyn, quadratic and linear in parameters whose norm is 1 but for the error of Newton's method.
+    Both are Exudyn's, quadratic and linear in parameters whose norm is 1 up to the error of Newton's method.
     """
     pp, xx, yy, zz = p * p, x * x, y * y, z * z
     axes = (
@@ -185,12 +184,12 @@ def _rotated_by_euler_parameters(
 
 @compiled
 def _lever(start: Vector, end: Vector, axis: Vector) -> Vector:
-    """Return the cross product of what is between two places and an axis."""
+    """Return the cross product of the difference of two positions and an axis."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     return y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]
 
 
 @compiled
 def _product(a: Vector, b: Vector) -> Any:
-    """Return a·b without the complex conjugate."""
+    """Return a·b without complex conjugation."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

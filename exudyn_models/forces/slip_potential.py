@@ -1,16 +1,15 @@
-"""The slip potential P of circles of contact: that of a ring in closed form, that of an annulus averaged over it.
+"""The slip potential P of circular contacts: a ring in closed form, and an annulus as an average of rings.
 
 P is the mean slip speed over the contact; friction is −μN times its gradient, see ``friction_laws``.
 
-A circle of radius r whose centre slips with U and which turns with S over what it touches has a rim that moves with
-W = r·|S|. Its P(U, W) is a complete elliptic integral, from an arithmetic-geometric mean without cancellation.
+A circle of radius r whose centre slips with U and which turns with S relative to its counterpart has a rim speed W =
+r·|S|. Its P(U, W) is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
 
-An annulus has the mean of the rings that it consists of, under a uniform or another pressure, by Gauss's rule over
-the radius. The slopes of P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point of the ring is at rest: the
-rule is split there, and a substitution r = r₀ + (r₁ − r₀)·t³ on either side draws its rings towards r₀. So the error
-of n rings on a side falls like n^(−12), and that of the curvatures, which have ln|r − r₀|, like n^(−6): for the 12
-taken here they are 4e-10 and 5e-7 of the largest values. Where r₀ is outside of the annulus the same substitution
-leaves 1e-14, and more only within a thousandth of its edge.
+For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
+P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
+r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. So the error of n rings per side falls like n^(−12),
+and that of the curvatures, which contain ln|r − r₀|, like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the
+largest values. If r₀ is outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
 """
 
 from __future__ import annotations
@@ -24,19 +23,20 @@ from exudyn_models.forces.laws.pressures import share_of_ring
 from reference_model.systems import FloatArray
 
 NEAREST = 1e-15
-"""Relative distance from U = W below which the slope of the ring's friction grows no more.
+"""Relative distance from U = W below which the slope of the ring's friction stays constant.
 
-It is infinite there, like a logarithm: the slope at this distance is a secant over what a step can't resolve.
+The slope is infinite at U = W, like a logarithm. At this distance it is a secant over an interval that a step cannot
+resolve.
 """
 
 RINGS = 12
-"""Of an annulus on either side of r₀."""
+"""Number of rings of an annulus on either side of r₀."""
 
 CLUSTERING = 3
-"""Exponent of the substitution that draws the rings towards r₀."""
+"""Exponent of the substitution that clusters the rings at r₀."""
 
 FARTHEST = 4.0
-"""r₀ over the outer radius, beyond which it makes no difference where it is."""
+"""Largest r₀ over the outer radius; beyond it the position of r₀ makes no difference."""
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(RINGS)
 
@@ -45,7 +45,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(RINGS)
 def slip_potential_gradient(
     speed: float, spin: float, inner: float, outer: float, density: int
 ) -> tuple[float, float]:
-    """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), a ring if alike.
+    """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), equal for a ring.
 
     U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. The ``density`` of pressure is that of ``density_of``.
     """
@@ -93,14 +93,14 @@ def slip_potential_hessian(
 
 @compiled
 def _resting_radius(speed: float, spin: float, outer: float) -> float:
-    """Return r₀ = U/|S| in m, which counts as ``FARTHEST`` where it is beyond that."""
+    """Return r₀ = U/|S| in m, at most ``FARTHEST`` outer radii."""
     farthest = FARTHEST * outer
     return speed / spin if speed < farthest * spin else farthest
 
 
 @compiled
 def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return, of the annulus inside and outside of r₀, t where it begins, and its other end less r₀ (0 if empty)."""
+    """Return t at the start and the other end minus r₀ (0 if empty), for the parts inside and outside r₀."""
     below, above = inner - resting, outer - resting
     inside = (0.0, 0.0) if below >= 0.0 else (max(0.0, above / below) ** (1.0 / CLUSTERING), below)
     outside = (0.0, 0.0) if above <= 0.0 else (max(0.0, below / above) ** (1.0 / CLUSTERING), above)
@@ -109,7 +109,7 @@ def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, flo
 
 @compiled
 def _ring(i: int, resting: float, start: float, length: float) -> tuple[float, float]:
-    """Return radius and width of a ring of one of the ``_sides``, in m."""
+    """Return radius and width in m of a ring of one of the ``_sides``."""
     t = start + (1.0 - start) * (0.5 + 0.5 * _POINTS[i])
     width = 0.5 * (1.0 - start) * _WEIGHTS[i] * CLUSTERING * t ** (CLUSTERING - 1)
     return resting + length * t**CLUSTERING, abs(length) * width
@@ -117,14 +117,14 @@ def _ring(i: int, resting: float, start: float, length: float) -> tuple[float, f
 
 @compiled
 def ring_potential_slopes(speed: float, rim: float) -> tuple[float, float]:
-    """Return ∂P/∂U and ∂P/∂W of a ring whose centre slips with U >= 0 and whose rim turns with W >= 0, not both zero.
+    """Return ∂P/∂U and ∂P/∂W of a ring with the centre slip U >= 0 and the rim speed W >= 0, not both zero.
 
-    With k = W/U <= 1, a₀ = 1, b₀ = √(1 − k²) and c₀ = k, the arithmetic-geometric mean A and
-    T = Σ 2^(n−1)·c_n²/k² over n >= 1 give the complete elliptic integrals (DLMF 19.8.6), and with them::
+    With k = W/U <= 1, a₀ = 1, b₀ = √(1 − k²) and c₀ = k, the arithmetic-geometric mean A and T = Σ 2^(n−1)·c_n²/k²
+    over n >= 1 give the complete elliptic integrals (DLMF 19.8.6), and with them::
 
         ∂P/∂U = [(1/2 − T) + (1 − k²)(1/2 + T)]/A,   ∂P/∂W = k(1/2 − T)/A,   ∂²P/∂W² = (1/2 + T)/(A·U)
 
-    P is symmetric in U and W, which gives W > U.
+    The case W > U follows from the symmetry of P in U and W.
     """
     if speed >= rim:
         return _slopes(speed, rim)
@@ -134,7 +134,7 @@ def ring_potential_slopes(speed: float, rim: float) -> tuple[float, float]:
 
 @compiled
 def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, float]:
-    """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² at U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
+    """Return ∂²P/∂U², ∂²P/∂U∂W and ∂²P/∂W² for U, W >= 0, not both zero; ``NEAREST`` bounds them at U = W."""
     larger, smaller = max(speed, rim), min(speed, rim)
     ratio = smaller / larger
     complement = max((larger - smaller) / larger, NEAREST) * (1.0 + ratio)
@@ -151,7 +151,7 @@ def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, f
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
     """Return the derivatives of P by its larger and by its smaller argument."""
     ratio = smaller / larger
-    complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without its cancellation
+    complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without cancellation
     if complement == 0.0:
         return 2.0 / math.pi, 2.0 / math.pi
     mean, t = _mean(ratio, complement)
@@ -167,12 +167,12 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
     a = 0.5 * (1.0 + b)
     b = math.sqrt(b)
     share = 0.25 / a
-    c = m * share  # (1 − b₀)/2 without its cancellation
+    c = m * share  # (1 − b₀)/2 without cancellation
     t = c * share
-    if c > 1e-5:  # the next c is less than its square, and enters as a square
+    if c > 1e-5:  # the next c is less than the square of this one, and enters as a square
         weight, total = 1.0, 0.0
         while c > 1e-5:
-            c = 0.5 * (a - b)  # its rounding error is small beside the terms before
+            c = 0.5 * (a - b)  # its rounding error is small compared with the earlier terms
             a, b = 0.5 * (a + b), math.sqrt(a * b)
             weight *= 2.0
             total += weight * c * c
@@ -182,7 +182,7 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
 
 @compiled
 def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: float, density: int) -> float:
-    """Return P in m/s for the arguments of ``slip_potential_gradient``, which both may be zero here."""
+    """Return P in m/s for the arguments of ``slip_potential_gradient``, which may both be zero here."""
     if speed == 0.0 and spin == 0.0:
         return 0.0
     by_speed, by_spin = slip_potential_gradient(speed, spin, inner, outer, density)

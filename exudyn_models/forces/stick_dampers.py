@@ -1,12 +1,12 @@
-"""What a contact that sticks is to the bodies on both of its sides: a damper between them.
+"""Equivalent dampers of a sticking contact between its two bodies.
 
-With x = (u, S), the slip of the disc's centre and the relative spin, friction near rest is −(μN/ε)·P·∇P of the mean
-slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, and just that where
-the disc only moves sideways or only turns: friction resists slip like a damper (μN/ε)·V or less. x = J·q̇ of
-``slip_jacobian`` makes it one between two bodies, D = (μN/ε)·Jᵀ·V·J.
+With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
+with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, with
+equality if the disc only translates or only rotates. So friction resists slip at most like a damper (μN/ε)·V. With x
+= J·q̇ of ``slip_jacobian`` it is the damper D = (μN/ε)·Jᵀ·V·J between two bodies.
 
-Where P > ε one of several points can stick alone, while the disc pivots about it. It then is a damper with its share
-of μN over the δ of ``friction_laws``.
+For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
+μN over the δ of ``friction_laws``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from reference_model.systems import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class StickDampers:
-    """The dampers that a contact in stick is between two nodes with their ``reference`` coordinates, shape (n,)."""
+    """Equivalent dampers of a contact between two nodes with ``reference`` coordinates, shape (n,)."""
 
     kinds: Kinds
     reference: FloatArray
@@ -38,34 +38,34 @@ class StickDampers:
 
     @property
     def vary(self) -> bool:
-        """Whether load or coefficient is a function."""
+        """True if load or coefficient is a function."""
         return self.factors.contact is None
 
     def at(self, t: float, coordinates: FloatArray) -> FloatArray:
-        """Return D, and that of each point which can stick alone, shape (1 + points, n, n).
+        """Return D and the damper of each point that can stick alone, shape (1 + points, n, n).
 
-        They are those at the time t (s) and the nodes' ``coordinates`` without reference values, shape (n,).
+        They hold at the time t (s) and the nodes' ``coordinates`` relative to the reference, shape (n,).
         """
         place = self.reference + coordinates
         to_slip, axes, (cosine, sine) = slip_jacobian(self.kinds, place)
         friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0, 0.0)
         dampers = friction * slip_dampers(self.factors.geometry, math.atan2(sine, cosine))
-        if not to_slip[:2].any():  # two rotors: all points slip alike
+        if not to_slip[:2].any():  # two rotors: all points slip equally
             dampers = dampers[:1]
         return np.asarray(to_slip.T @ dampers @ to_slip)
 
 
 def slip_dampers(contact: Contact, angle: float) -> FloatArray:
-    """Return V/ε in s/m and s m, and that of each point that sticks alone, shape (1 + points, 3, 3).
+    """Return V/ε in s/m and s m, and the same for each point that sticks alone, shape (1 + points, 3, 3).
 
-    The disc's ``angle`` (rad) over the master is that of its first point.
+    ``angle`` (rad) is that of the disc's first point relative to the master.
     """
     outer, points, _, epsilon, held, _ = contact
     if points <= CONTINUOUS:
         radius = mean_radius(contact)
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
     angles = angle + 2.0 * math.pi * np.arange(points) / points
-    maps = np.zeros((points, 2, 3))  # of (u, S) to the slip of each point
+    maps = np.zeros((points, 2, 3))  # maps (u, S) to the slip of each point
     maps[:, 0, 0] = maps[:, 1, 1] = 1.0
     maps[:, 0, 2], maps[:, 1, 2] = -outer * np.sin(angles), outer * np.cos(angles)
     shares = maps.transpose(0, 2, 1) @ maps / points

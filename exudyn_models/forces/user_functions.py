@@ -1,8 +1,8 @@
-"""Force and Jacobian of a friction contact as the user functions that Exudyn calls.
+"""Force and Jacobian of a friction contact as user functions for Exudyn.
 
-Exudyn calls compiled code as it would call Python, and this asks functions for load and coefficient by itself. A
-Jacobian under a friction force that depends on the motion is put together in Python. Two rotors on one axis under a
-friction force that is a number need no compiled code.
+Exudyn calls compiled code like Python, and compiled code evaluates functions for load and coefficient itself. The
+Jacobian for a friction force that depends on the motion is assembled in Python. Two rotors on one axis with a
+constant friction force need no compiled code.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def force_and_jacobian(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return both functions for load and coefficient as they are now and the nodes' ``reference`` coordinates.
+    """Return both functions, for the present load and coefficient and the nodes' ``reference`` coordinates.
 
-    The force carries the ``StickDampers`` of the contact.
+    The force function carries the contact's ``StickDampers`` as an attribute.
     """
     if on_one_axis(kinds, factors):
         force, jacobian = functions_on_axis(kinds, factors)
@@ -51,7 +51,7 @@ _DAMPERS = "stick_dampers"
 
 
 def stick_dampers_of(force: Any) -> StickDampers | None:
-    """Return what a ``force`` of ``force_and_jacobian`` carries, None for any other function."""
+    """Return the dampers that a ``force`` of ``force_and_jacobian`` carries; None for any other function."""
     return getattr(force, _DAMPERS, None)
 
 
@@ -67,7 +67,7 @@ def _compiled_functions(
     if factors.depends_on_motion:
         return bound, _jacobian_by_motion(kinds, reference, factors)
 
-    @cache  # compiled where it is needed first: explicit solvers don't
+    @cache  # compiled when first needed, which explicit solvers never do
     def derive() -> Callable[..., Any]:
         return taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
 
@@ -98,6 +98,6 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         )
         derivatives *= factors.friction_force(t, *motion)
         derivatives += np.outer(forces, factors.friction_force_slopes(t, *motion) @ motion_derivatives)
-        return -derivatives  # Exudyn takes those of the left-hand side
+        return -derivatives  # Exudyn expects derivatives of the left-hand side
 
     return jacobian

@@ -1,4 +1,4 @@
-"""A motion in turns of slip and creep, each by the solver and in the axes that suit it."""
+"""Motions that alternate between slip and creep, each solved by the solver and in the axes that suit it."""
 
 from __future__ import annotations
 
@@ -23,37 +23,36 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import LOOK_BACK
 
 CREEP_NEWTON_TOLERANCE = 1e-6
-"""Residual of Newton's iteration while creeping, relative to μN (and μN·R, where that is less).
+"""Residual of Newton's method during creep, relative to μN (and μN·R, if that is smaller).
 
 It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
-"""By how much the viscous part of the friction law is continued in the model of a creeping system."""
+"""Extension of the viscous part of the friction law in the model of a creeping system, as a factor."""
 
 CREEP_ANGLE = 0.15
-"""rad by which the ground turns in a step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
+"""Rotation of the ground in rad per step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""A relaxation that takes so many times as long as the fastest one is resolved by the steps of creep."""
+"""Smallest ratio of slow to fast relaxation time for steps of creep that resolve the slow one."""
 
 STEPS_OF_RELAXATION = 20.0
-"""Steps of creep in one slow relaxation time."""
+"""Steps of creep per slow relaxation time."""
 
 Part = int | frozenset[int]
-"""What of a contact creeps: ``WHOLE``, or some of several points by what an ``add`` takes as ``held``."""
+"""Creeping part of a contact: ``WHOLE``, or some of several points, as the argument ``held`` of ``add``."""
 
 Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 
 
 @dataclass(frozen=True)
 class Friction:
-    """A way to put friction between two discs.
+    """A kind of friction between two discs.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` is a function like
-    ``RegularisedContact.creeping``: it says what of the contact creeps so that a model in which it stays viscous can
-    take over; for some of several points that is made by the argument ``held`` of ``add``. Both are asked in the
-    units and in the axes of a run.
+    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping``, like ``RegularisedContact.creeping``,
+    returns the part of the contact that creeps and may be modelled with unlimited viscosity. For single points the
+    argument ``held`` of ``add`` makes such a model. Both use the units and the axes of a run.
     """
 
     add: Callable[..., Any]
@@ -61,7 +60,7 @@ class Friction:
 
 
 def nothing_creeps(contact: RegularisedContact, state: list[float]) -> None:
-    """Say that nothing creeps: one solver then goes through all of the motion."""
+    """Return None: nothing creeps, so that one solver follows the whole motion."""
 
 
 RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
@@ -69,7 +68,7 @@ RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
 
 @dataclass(frozen=True)
 class SlipSolver:
-    """What goes through slip, as ``solver_run.solve`` takes it: an integrator, its step and its tolerance."""
+    """The solver for slip: integrator, step and tolerance as in ``solver_run.solve``."""
 
     integrator: str
     step: float
@@ -84,30 +83,31 @@ def solve_in_turns(
     friction: Friction,
     seconds: float,
 ) -> Recording:
-    """Solve up to the last of ``times`` with ``solver`` where the contact slips, generalised-α where it creeps.
+    """Solve up to the last of ``times``, with ``solver`` in slip and generalised-α in creep.
 
-    There an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn with
-    the master disc what creeps rests but for its creep, which changes as the ground turns: steps of a part of a turn
-    make an error of a small part of the creep, which is what the regularisation itself makes. No step sees ω.
+    In creep an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn
+    with the master disc a creeping body almost rests, and its creep changes as the ground turns. So steps need not
+    resolve ω: steps of a fraction of a turn have an error of a small fraction of the creep, and the creep is the
+    error of the regularisation itself.
 
-    What creeps, all of the contact or one of several points, feels the viscous part of the law only. Meanwhile the
-    model is therefore one in which that part has no end, and Newton's iteration can not be thrown off by the bend of
-    the law. The creep ends where, between two steps, something else creeps, or nothing.
+    A creeping part, the whole contact or one of several points, feels only the viscous part of the law. Meanwhile the
+    model extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
+    between two steps, as soon as a different part creeps, or none.
 
     Parameters
     ----------
     contact : RegularisedContact
-        Of the system, in units in which its motion is of order one, as are all other numbers.
+        Contact of the system. This and all other numbers are in units that make the motion of order one.
     state : array of shape (4,) or (6,)
-        At the start.
+        Initial state.
     times : array of shape (n,)
-        From 0 on.
+        Times from 0 on.
     solver : SlipSolver
-        Of slip.
+        Solver for slip.
     friction : Friction
-        Between the discs.
+        Friction between the discs.
     seconds : float
-        The unit of time in s, for messages.
+        Unit of time in s, for messages.
 
     """
     motion = _Turns(
@@ -128,7 +128,7 @@ def solve_in_turns(
 
 @dataclass(frozen=True)
 class _Turns:
-    """A motion under way."""
+    """A motion in progress."""
 
     contact: RegularisedContact
     solver: SlipSolver
@@ -137,9 +137,9 @@ class _Turns:
     count: StepCount
 
     def slip(self, state: FloatArray, start: float, first_step: float) -> tuple[Steps, Part | None]:
-        """Solve from ``state`` on until something has settled to creep, and record it.
+        """Solve from ``state`` until something has settled to creep, and record the run.
 
-        Return the steps and what creeps, None where a part of the run ends before that.
+        Returns the steps and the creeping part, or None if this part of the run ends before.
         """
         watch = _Slip(self)
         run = solve(
@@ -159,10 +159,10 @@ class _Turns:
         return run, watch.settled
 
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
-        """Solve from the last of the steps ``before`` on while ``part`` creeps, and record it.
+        """Solve from the last of the steps ``before`` while ``part`` creeps, and record the run.
 
-        Return the steps, and ``part`` if it goes on creeping. It ``began`` to at that time. What is held until it is
-        not any more starts so gently that it has to be released in time: the steps before that become smaller.
+        Returns the steps, and ``part`` if it still creeps. ``began`` is the start of its creep. A release starts so
+        gently that it must be found in time, so the steps before it become smaller.
         """
         state, start = before.states[-1], float(before.times[-1])
         step, until = self._creep_step(before, part, began)
@@ -196,13 +196,13 @@ class _Turns:
                 return before, part if crossing is None else None
             state, start, step = before.states[-1], float(before.times[-1]), step / REFINEMENT
             until = min(until, start + 2.0 * REFINEMENT * step)
-            balanced = balanced or len(run.times) > 1  # only what has crept for a step is
+            balanced = balanced or len(run.times) > 1  # only after a step of creep
 
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
-        """Return the number of the step after which smaller ones are needed, None if all are fine.
+        """Return the index of the last step before smaller steps are needed; None if they are not.
 
-        They are for a release at ``crossing``, and where the load comes so near to what friction holds that the error
-        of the creep, (ωh)²/12 of it, decides whether and when it is exceeded.
+        Smaller steps are needed for a release at ``crossing``, and where the load comes so close to the friction
+        limit that the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -215,13 +215,13 @@ class _Turns:
         return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
     def _release_step(self, run: Steps, last: int) -> float:
-        """Return the step in which what is released after step ``last`` gets no faster than a part of ε."""
+        """Return the step that lets a body released after step ``last`` gain only a fraction of ε."""
         ratio = self.contact.in_master_axes.slip_ratios(run.states[last : last + 2])[:, WHOLE]
         rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
         return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
 
     def _creep_step(self, before: Steps, part: Part, began: float) -> tuple[float, float]:
-        """Return the step for creep from the last of the steps ``before`` on and the time up to which it holds."""
+        """Return the step for creep from the last of the steps ``before``, and the end of its validity."""
         system, end = self.contact.system, self.count.end
         state, start = before.states[-1], float(before.times[-1])
         speed = abs(system.disc_speed)
@@ -236,7 +236,6 @@ class _Turns:
         return step, end
 
     def _creep_model(self, axes: Axes, state: FloatArray, part: Part) -> Any:
-        """Build the system in which ``part`` of the contact creeps without an end to the creep, in ``axes``."""
         system, add = self.contact.system, self.friction.add
         viscous = 1.0
         if part == WHOLE:
@@ -253,11 +252,11 @@ class _Turns:
         )
 
     def _end_of_creep(self, run: Steps, part: Part) -> float | None:
-        """Return the time at which in ``run`` something else than ``part`` creeps first, None if nothing does."""
+        """Return the first time in ``run`` when another part than ``part`` creeps; None if there is none."""
         seen, states_at = self.contact.in_master_axes, creep_between(run)
 
         def first_other(times: FloatArray) -> int | None:
-            """Return the number of the first of ``times`` at which something else creeps."""
+            """Return the index of the first of ``times`` when another part creeps."""
             states = enumerate(states_at(times).tolist())
             return next((i for i, state in states if self.friction.creeping(seen, state) != part), None)
 
@@ -279,29 +278,29 @@ class _Turns:
 
 
 CROSSING = 1e-9
-"""Error of the time at which a creep ends, in steps."""
+"""Error of the end of creep, in steps."""
 
 GRAZING = 1e-6
-"""(ωh)² of the steps that tell whether and when friction can't hold a load: that is off by 1e-7 of itself."""
+"""(ωh)² of the steps that decide whether and when friction cannot hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""By how much steps become smaller, once or several times, before a release."""
+"""Ratio of the steps before and after a reduction for a release; there may be several reductions."""
 
 PARTS = 16
-"""Of a step, at whose ends creep that is near to its end is looked at."""
+"""Number of checks per step of creep that is close to its end."""
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
-    """Return the numbers of the steps of ``run`` at which the creep is largest, and more than ``above``·ε.
+    """Return the indices of the maxima of creep above ``above``·ε among the steps of ``run``.
 
-    The first and the last one may be among them: what is largest may lie shortly after or before it.
+    They may include the first and the last step, because the maximum may lie shortly after or before.
     """
     ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 
 
 def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
-    """Return times in ``run`` at which the creep may have ended: the last, and those about its maxima near ε."""
+    """Return possible ends of creep in ``run``: its last time, and those around its maxima near ε."""
     steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * np.linspace(0.0, 1.0, PARTS + 1)[1:]
@@ -309,7 +308,7 @@ def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
 
 
 class _Slip:
-    """Watches whether what slips comes to creep and has settled to that, and ends a run in time to look back."""
+    """Watches whether slip has settled to creep, and ends a run in time to measure the pace."""
 
     def __init__(self, motion: _Turns) -> None:
         self.motion, self.settled = motion, None
@@ -332,7 +331,7 @@ class _Slip:
 
 
 class _Creep:
-    """Watches whether ``part`` goes on creeping, and at much the same speed of the pivoting disc if it is a point."""
+    """Watches whether ``part`` still creeps and, if it is a point, whether the disc pivots at a similar speed."""
 
     def __init__(self, motion: _Turns, state: FloatArray, part: Part) -> None:
         self.creeping, self.seen, self.part = motion.friction.creeping, motion.contact.in_master_axes, part
@@ -353,8 +352,8 @@ class _Creep:
 def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
     """Return the step for a disc on points that pivots about one of them, from the last of ``steps``.
 
-    Its centre goes about the point at the distance R with its spin over the master disc. Either turns, the ground
-    with the speed of the master, and the slip P changes in a time P/|dP/dt|.
+    Its centre moves about the point at the distance R with its spin relative to the master disc. This direction
+    turns, the ground turns with the speed of the master, and the slip P changes in a time P/|dP/dt|.
     """
     system, epsilon = contact.system, contact.epsilon
     ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]
@@ -368,9 +367,9 @@ def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
 
 
 def _newton_tolerance(system: System) -> float:
-    """Return the residual at which Newton's iteration ends while ``system`` creeps.
+    """Return the tolerance of Newton's method for the residual while ``system`` creeps.
 
-    A moment counts as a force at R, or at 1 if that is less.
+    A moment counts as a force at R, or at 1 if that is smaller.
     """
     lever = min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0
     return CREEP_NEWTON_TOLERANCE * system.friction_force * lever

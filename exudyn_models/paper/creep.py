@@ -1,4 +1,4 @@
-"""What of a contact creeps: under the regularised law, what friction holds slips with less than ε, not with zero."""
+"""Creep of a contact: under the regularised law a held contact slips slower than ε instead of resting."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from exudyn_models.forces.slip_potential import ring_potential_slopes, ring_pote
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 WHOLE = 0
-"""Column of the contact as a whole; single points, where there are some, have the columns after it."""
+"""Column of the contact as a whole; columns of single points follow, if there are any."""
 
 RELAXATIONS = 40.0
-"""What comes to rest settles to its creep like exp(−t/relaxation time); after 40 times that nothing is left of it."""
+"""Number of relaxation times until slip has settled to its creep; the rest is exp(−t/relaxation time)."""
 
 
 @dataclass(frozen=True)
 class RegularisedContact:
-    """The contact of a system under the law that is viscous where it slips with less than ε.
+    """The contact of a system under the regularised law, which is viscous below the slip speed ε.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     epsilon : float
-        ε > 0 of the contact as a whole, in the unit of speed of the system.
+        ε > 0 of the contact as a whole, in the system's unit of speed.
 
     """
 
@@ -38,21 +38,21 @@ class RegularisedContact:
 
     @cached_property
     def point_epsilon(self) -> float:
-        """δ, below which the friction of one of several points is viscous."""
+        """δ, the slip speed below which the friction of one of several points is viscous."""
         return point_regularisation(self.epsilon, len(self._angles_of_points))
 
     @cached_property
     def in_master_axes(self) -> RegularisedContact:
-        """The same, seen from axes that turn with the master disc, which rests there."""
+        """The contact in axes that turn with the master disc, which rests there."""
         return replace(self, system=replace(self.system, disc_speed=0.0))
 
     @cached_property
     def relaxation_times(self) -> tuple[float, float]:
-        """Times in s in which slip below ε relaxes to its creep: the faster and the slower of centre and rim.
+        """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
-        The viscous part of the law resists slip of a pin with μN/ε per m/s; that of a disc and of its rim on a
-        continuous ring with half of that or more, and on one of n points that rests alone with the n-th part. The
-        inertia of the rim, J/R², may be far larger than the mass. Without friction both are infinite.
+        The viscous part of the law resists slip of a pin with μN/ε per m/s, that of a disc or its rim on a continuous
+        ring with at least half of it, and that of one resting point of n with 1/n of it. The inertia of the rim,
+        J/R², may be far larger than the mass. Without friction both times are infinite.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -66,20 +66,21 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s after which slip below ε has settled to its creep but for slow relaxations."""
+        """Time in s that slip below ε needs to settle to its creep, except for slow relaxations."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
     def _angles_of_points(self) -> FloatArray:
-        """Angles in rad of the points of a disc from its first one; none of a pin or of the continuous ring."""
+        """Angles in rad of the points of a disc from its first one; empty for a pin or the continuous ring."""
         if not isinstance(self.system, DiscOnDisc) or self.system.contact_points is None:
             return np.zeros(0)
         return 2.0 * math.pi * np.arange(self.system.contact_points) / self.system.contact_points
 
     def slip_ratios(self, states: FloatArray) -> FloatArray:
-        """Return slip speeds over those below which the law is viscous, shape (n, 1 or 1 + points) for n ``states``.
+        """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
 
-        First the (mean) slip speed of the contact over ε, then the slip speed of each point over δ.
+        The first column is the (mean) slip speed of the contact over ε, the others are the slip speeds of the points
+        over δ.
         """
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         if not isinstance(system, DiscOnDisc):
@@ -95,7 +96,7 @@ class RegularisedContact:
         return np.hstack((speeds.mean(axis=1, keepdims=True) / epsilon, speeds / self.point_epsilon))
 
     def slip_ratio_rates(self, state: FloatArray, acceleration: FloatArray) -> FloatArray:
-        """Return the rates in 1/s at which ``slip_ratios`` grow, one of each, where nothing is at rest."""
+        """Return the growth rates in 1/s of ``slip_ratios`` for one state, where nothing is at rest."""
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         size = len(acceleration)
         z, v, a = (complex(*vector[:2]) for vector in (state, state[size:], acceleration))
@@ -113,11 +114,11 @@ class RegularisedContact:
         return np.asarray([growths.mean() / epsilon, *(growths / self.point_epsilon)])
 
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
-        """Return the load on friction over what it can take, shape (n,), for a system that creeps as a whole.
+        """Return the load on friction over the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is the load at rest. The viscous friction of the creep, P/ε of the limit, lacks what changes the creep and
-        what damps it. Along the slip (u, φ̇ − ω), which is normal to the limit surface, that is the power that goes
-        into both over μN·P.
+        This is the load at rest. The viscous friction of the creep, P/ε of the limit, lacks the forces that change
+        and damp the creep. Along the slip (u, φ̇ − ω), which is normal to the limit surface, these are the power that
+        goes into both over μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)
@@ -134,13 +135,13 @@ class RegularisedContact:
         return np.asarray(ratios + power / limit)
 
     def creeping(self, state: list[float]) -> int | None:
-        """Return the column of ``slip_ratios`` that is below 1, or None; of several, ``WHOLE``."""
+        """Return the column of ``slip_ratios`` that is below 1, or None; ``WHOLE`` if several are."""
         system, size = self.system, len(state) // 2
         x, y, vx, vy = state[0], state[1], state[size], state[size + 1]
         speed = math.hypot(vx + system.disc_speed * y, vy - system.disc_speed * x)
         if isinstance(system, DiscOnDisc):
-            # Mostly a bound is enough to know: the mean of a ring is no less than the slip of the centre, or of the
-            # rim about it, and no point slips less than their difference.
+            # Usually a bound suffices: the mean over a ring is at least the slip of the centre or of the rim, and no
+            # point slips less than their difference.
             rim = abs(system.contact_radius * (state[5] - system.disc_speed))
             speed = max(speed, rim) if system.contact_points is None else abs(speed - rim)
         if speed >= self.epsilon:
@@ -152,6 +153,5 @@ class RegularisedContact:
 
 
 def _growth(slip: NDArray[np.complex128], rate: NDArray[np.complex128]) -> FloatArray:
-    """Return the rate of |slip|."""
     speed = np.abs(slip)
     return np.asarray((slip.conjugate() * rate).real / np.where(speed > 0.0, speed, 1.0))

@@ -12,10 +12,10 @@ from reference_model.systems import FloatArray
 
 
 def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
-    """Return the function of times (s) that gives the states of a body that creeps there, shape (len(times), 2d).
+    """Return the function of times (s) that gives the states of a creeping body, shape (len(times), 2d).
 
-    Its velocities are cubics between those of the steps, with their accelerations: in a short step the creep is so
-    little that the rounding of positions must not touch them.
+    Its velocities are cubic Hermite interpolants of the solver's velocities and accelerations. In a short step the
+    creep is so small that rounding of positions would spoil it.
     """
     velocities = _velocities(steps)
 
@@ -27,8 +27,8 @@ def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
 
 
 def creep_until(steps: Steps, time: float) -> Steps:
-    """Return ``steps`` of a body that creeps up to ``time`` (s), which lies after the first of them."""
-    before = int(np.searchsorted(steps.times, time))  # the steps that are kept as they are
+    """Return ``steps`` of a creeping body up to ``time`` (s), which lies after the first of them."""
+    before = int(np.searchsorted(steps.times, time))
     return Steps(
         np.append(steps.times[:before], time),
         np.vstack((steps.states[:before], creep_between(steps)(np.array([time])))),
@@ -46,9 +46,9 @@ def _velocities(steps: Steps) -> CubicHermiteSpline:
 def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     """Return the states at ``times`` (s), shape (len(times), 2d).
 
-    Between two steps each coordinate is the polynomial of fifth degree that has position, velocity and acceleration
-    of both ends; velocities are its derivative. Its error is h⁶/46080 of the sixth derivative, below the error of
-    the step itself. At a step the result is the solver's own state.
+    Between two steps each coordinate is the quintic polynomial with the positions, velocities and accelerations of
+    both ends, and velocities are its derivative. Its error is h⁶/46080 times the sixth derivative, below the error of
+    the step. At a step the result is the solver's state.
     """
     index = np.clip(np.searchsorted(steps.times, times, side="right") - 1, 0, max(len(steps.times) - 2, 0))
     after = np.minimum(index + 1, len(steps.times) - 1)
@@ -59,7 +59,7 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     p0, p1 = steps.states[index, :size], steps.states[after, :size]
     v0, v1 = h * steps.states[index, size:], h * steps.states[after, size:]
     a0, a1 = h * h * steps.accelerations[index], h * h * steps.accelerations[after]
-    # Remainders after the Taylor polynomial of the left end.
+    # Residuals of the Taylor polynomial from the left end.
     dp = p1 - p0 - v0 - a0 / 2.0
     dv = v1 - v0 - a0
     da = a1 - a0

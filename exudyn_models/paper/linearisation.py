@@ -1,4 +1,4 @@
-"""Small motions about a state, by Exudyn's own linearisation."""
+"""Eigenvalues of small motions about a state, by Exudyn's linearisation."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from exudyn_models.solver.linear_matrices import state_matrix
 from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
 REGULARISATION = 1e-12
-"""ε in m/s: friction is Coulomb's wherever the contact slips by more."""
+"""ε in m/s, small enough for exact Coulomb friction at any actual slip."""
 
 
 def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
-    """Return the eigenvalues in 1/s of the motion about ``state``, in which the contact slides.
+    """Return the eigenvalues in 1/s of the motion about ``state`` with a sliding contact.
 
-    Four of a pin, five of a disc on a continuous ring, where nothing depends on the angle, and six of one on points.
-    Exudyn gives the mass matrix M and the derivatives −K and −D of its forces by coordinates and velocities: they are
-    the λ of (λ²M + λD + K)v = 0. (Exudyn's ``ComputeODE2Eigenvalues`` adds those of the master disc and of what else
-    moves freely, and can not leave coordinates out of complex ones.)
+    There are four for a pin, five for a disc on a continuous ring, where nothing depends on the angle, and six for a
+    disc on points. They are the λ of (λ²M + λD + K)v = 0 with the mass matrix M and the derivatives −K and −D of the
+    forces by coordinates and velocities, which Exudyn computes. Exudyn's ``ComputeODE2Eigenvalues`` includes the
+    master disc and other free motions, and cannot omit coordinates of complex eigenvalues.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     state : array of shape (4,) or (6,)
-        As ``simulate`` takes it: usually that of an equilibrium.
+        State as in ``simulate``, usually an equilibrium.
 
     Raises
     ------
     ValueError
-        If the state is none of the system, or the contact or a point of it is at rest.
+        If the state does not fit the system, or if the contact or a point of it is at rest.
 
     """
     start = checked_state(system, state)

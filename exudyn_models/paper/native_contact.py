@@ -1,4 +1,4 @@
-"""The paper's pin and disc with Exudyn's own contact in place of ours: the same motion, by code that is not ours."""
+"""The paper's pin and disc with Exudyn's own contact: the same motion by independent code."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from reference_model.trajectory import Trajectory
 def simulate_with_native_contact(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Return the motion as ``simulate`` does, with the built-in contact of a pin or of a disc on points.
+    """Return the motion like ``simulate``, with Exudyn's built-in contact of a pin or of a disc on points.
 
-    Steps, ε and errors follow ``tolerance`` in the same way, but for one: a disc on points that friction holds no
-    longer lets go gently, like t², and its stick phase ends when its slip reaches ε, late by some √ε.
+    Steps, ε and errors follow ``tolerance`` in the same way, with one exception: a disc on points is released gently,
+    like t², and its stick phase ends when its slip reaches ε, late by about √ε.
 
-    Raises as ``simulate`` does, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
+    Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -45,9 +45,9 @@ def simulate_with_native_contact(
 
 
 def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:
-    """Return ``WHOLE`` if all points slip with less than δ, else the numbers of those that do, or None.
+    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None.
 
-    A disc that is hardly held any more creeps with some of its points faster than that, under Coulomb friction.
+    A disc that is hardly held creeps with some of its points faster than δ, under Coulomb friction.
     """
     part, system = contact.creeping(state), contact.system
     if part is None or not isinstance(system, DiscOnDisc):
@@ -65,9 +65,9 @@ def _add_friction(
     held: Part | None = None,
     **contact: Any,
 ) -> Any:
-    """Add friction of which each point is viscous below δ, as in the law of ``add_ring_friction`` with ε.
+    """Add friction whose points are viscous below δ, as in the law of ``add_ring_friction`` with ε.
 
-    Points that are ``held`` stay viscous all the same: Exudyn keeps to one branch of the law within a step.
+    ``held`` points stay viscous anyway, because Exudyn keeps to one branch of the law within a step.
     """
     delta = point_regularisation(regularisation, contact.get("contact_points") or 1)
     return add_native_friction(mbs, master_node, disc_node, regularisation=delta, **contact)
@@ -76,8 +76,8 @@ def _add_friction(
 def _reach(system: System, state: FloatArray, span: float) -> float:
     """Return a distance in m > 0 from the master's axis that no contact point exceeds within ``span`` (s).
 
-    Friction can raise w of the energy m·w²/2 of centre and support by no more than μN/m a second, and all else only
-    lowers it. So |v| <= w takes the centre no further than w·span, and the spring stretches to no more than w/k.
+    The energy of centre and support is m·w²/2. Friction can increase w by at most μN/m per second, and everything
+    else decreases it. So |v| <= w moves the centre by at most w·span, and stretches the spring by at most w/k.
     """
     k = system.natural_frequency
     w = math.sqrt(2.0 * support_energy(system, state) / system.mass)
@@ -87,4 +87,4 @@ def _reach(system: System, state: FloatArray, span: float) -> float:
         reach = min(reach, abs(system.offset) + w / k)
     if isinstance(system, DiscOnDisc):
         reach += system.contact_radius
-    return 1.01 * reach or 1.0  # a pin that can not move needs a triangle all the same
+    return 1.01 * reach or 1.0  # a pin that cannot move also needs a triangle

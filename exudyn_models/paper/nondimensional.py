@@ -1,4 +1,4 @@
-"""Units of length, time and mass in which a motion is of order one, so that tolerances mean the same in any units."""
+"""Units of length, time and mass that make a motion of order one, so that tolerances do not depend on SI scales."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from exudyn_models.paper.scales import hardened_stiffness
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 RIM_SHARE = 1e-4
-"""The least length in contact radii: rounding of the rim's speed, 1e-16·R·ω, is to stay well below ε."""
+"""Smallest length in contact radii: rounding of the rim's speed, 1e-16·R·ω, must stay well below ε."""
 
 
 @dataclass(frozen=True)
 class Units:
-    """Units of length in m, of time in s and of mass in kg, and what a system is in them."""
+    """Units of length in m, time in s and mass in kg."""
 
     length: float
     time: float
@@ -25,11 +25,11 @@ class Units:
 
     @classmethod
     def of(cls, system: System, state: FloatArray) -> Units:
-        """Return those of the motion of ``system`` from ``state`` (shape (4,) or (6,)).
+        """Return the units for the motion of ``system`` from ``state``, shape (4,) or (6,).
 
-        Time goes by the fastest of springs and master disc; without them by a stop, by the dampers or by the time in
-        which friction takes the slip away, whichever there is first. Length goes by where the centre is, how far its
-        speed and how far friction take it in the unit of time: a fast spin must not hide its motion.
+        Time is scaled by the faster of springs and master disc; without them by a stop, by the dampers, or by how
+        fast friction stops the slip, in this order. Length is scaled by the position of the centre and the distances
+        that its speed and friction cover in the unit of time, because a fast spin must not hide its motion.
         """
         velocities = system.state_size // 2
         push = system.friction_force / system.mass
@@ -49,7 +49,7 @@ class Units:
 
     @property
     def speed(self) -> float:
-        """In m/s."""
+        """Unit of speed in m/s."""
         return self.length / self.time
 
     def of_system(self, system: System) -> System:
@@ -76,6 +76,6 @@ class Units:
         return replace(system, **changes)
 
     def of_states(self, size: int) -> FloatArray:
-        """Return the unit of each of the ``size`` components of a state, in m and m/s, rad and rad/s."""
+        """Return the units of the ``size`` components of a state, in m and m/s, rad and rad/s."""
         places = [self.length, self.length, 1.0][: size // 2]
         return np.array([*places, *(place / self.time for place in places)])

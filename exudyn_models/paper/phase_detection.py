@@ -1,4 +1,4 @@
-"""When the contact slips and when it sticks, read from the motion under the regularised law."""
+"""Slip, pivot and stick phases, detected from the motion under the regularised law."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 NOTHING = -1
-"""In place of the part of the contact that creeps."""
+"""Marker for a contact without a creeping part."""
 
 
 def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, ...]:
     """Return the phases from the first to the last step, without gaps.
 
-    Under the regularised law what sticks creeps, with less than ε as long as Coulomb friction can hold it. While the
-    contact creeps as a whole, the system sticks; while one of several points does, the disc pivots about it.
-    It does not where friction can't hold the load, which is slip that passes through zero; where a point's creep ends
-    before it has settled; and after a release until the slip speed has reached 2ε, because it stays near ε for a
-    while and may pass it several times by the errors of single steps.
+    Under the regularised law a sticking part creeps, slower than ε as long as Coulomb friction could hold it. While
+    the contact creeps as a whole the system sticks; while one of several points does, the disc pivots about it. There
+    are three exceptions: friction cannot hold the load, so that slip passes through zero; the creep of a point ends
+    before it has settled; and after a release the slip speed stays near ε for a while and may cross it several times
+    by step errors, so it must first reach 2ε.
 
-    A phase *starts* where the slip speed, which falls linearly until it is ε, would be zero if it went on falling
-    like that. Sticking *ends* where the load reaches what friction can hold, and a pivot where the slip speed of the
-    point reaches its δ. All these times have errors of first order in ε.
+    A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
+    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All these times have
+    errors of first order in ε.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
@@ -67,7 +67,7 @@ def _leave_what_is_held(
     load: FloatArray,
     creeping: NDArray[np.int_],
 ) -> None:
-    """Change ``creeping`` at all steps so that only what friction holds creeps there, from stick to its release."""
+    """Change ``creeping`` at all steps to the parts that friction holds, from stick to its release."""
     released = 0
     for first, beyond in _runs(creeping):
         if creeping[first] == NOTHING:
@@ -82,19 +82,19 @@ def _leave_what_is_held(
             creeping[first:beyond] = NOTHING
             continue
         if creeping[first] == WHOLE and hesitates and creeping[released - 1] == WHOLE:
-            creeping[released:first] = WHOLE  # slip that comes back before it got anywhere is no release
+            creeping[released:first] = WHOLE  # slip that soon returns is not a release
         released = beyond
 
 
 NEIGHBOURS = 100
-"""Steps at both ends of a run with nothing new that are kept: the time of rest lies a few of them after its start."""
+"""Steps that are kept at both ends of a run with nothing new; the time of rest depends on a few of them."""
 
 
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
-    """Return which of ``steps`` are to be kept so that the phases are the same without the others, shape (n,).
+    """Return which ``steps`` are needed to find the phases, shape (n,).
 
-    Of each run in which the same part creeps, or nothing: its ends, where its slip is largest, where the load is
-    last one that friction holds, and where it is held most clearly.
+    In each run of steps with the same creeping part, or none, these are the ends, the largest slip, the last step
+    whose load friction can hold, and the step that is held most clearly.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
@@ -111,19 +111,18 @@ def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.boo
 
 
 def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArray, NDArray[np.int_]]:
-    """Return the slip ratios at all steps and what creeps there, a column of them or ``NOTHING``."""
+    """Return the slip ratios at all steps and the creeping part, as their column or ``NOTHING``."""
     ratios = contact.slip_ratios(steps.states)
     below = ratios < 1.0
     return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
 
 
 def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
-    """Return the kind of phase in which ``part`` of the contact creeps."""
     return "slip" if part == NOTHING else "stick" if part == WHOLE else "pivot"
 
 
 def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
-    """Return the first index of every run of equal values and the one beyond its last."""
+    """Return the first index of every run of equal values and the index after its last."""
     edges = [0, *(np.flatnonzero(values[1:] != values[:-1]) + 1).tolist(), len(values)]
     return list(itertools.pairwise(edges))
 
@@ -131,9 +130,9 @@ def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
 def _time_of_rest(
     contact: RegularisedContact, steps: Steps, ratio: FloatArray, part: int, left: int
 ) -> float:
-    """Return the time at which the slip of ``part`` would be zero if it went on falling as at step ``left``.
+    """Return the time when the slip of ``part`` would reach zero at its rate at step ``left``.
 
-    ``ratio`` is its slip ratio. Without such a fall the contact rests since the next step.
+    ``ratio`` is its slip ratio. If it does not fall, the contact rests from the next step on.
     """
     start, end = steps.times[left], steps.times[left + 1]
     rates = contact.slip_ratio_rates(steps.states[left], steps.accelerations[left])
@@ -142,10 +141,10 @@ def _time_of_rest(
 
 
 def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
-    """Return whether friction is able to hold a system that creeps, by all steps but those of perfect rest.
+    """Return whether friction can hold a creeping system, according to all steps with slip.
 
-    On the way through zero the load is first against the slip, then along it; either way it is that which counts
-    together with the friction.
+    When slip passes through zero the load is first against the slip, then along it; either counts together with
+    friction.
     """
     moving = ratio > 0.0
     if not np.any(moving):
@@ -154,13 +153,16 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
 
 
 def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
-    """Return the time at which ``excess`` of load passes zero for the last time between two steps."""
+    """Return the time of the last change of sign of ``excess``, the excess of load, between two steps."""
     held = np.flatnonzero(excess[first:beyond] < 0.0)
     return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
 
 
 def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
-    """Return the time between steps ``left`` and ``left + 1`` at which ``values`` pass zero, at the latest."""
+    """Return when ``values`` cross zero between steps ``left`` and ``left + 1``.
+
+    The end of the step if they do not.
+    """
     if values[left] >= 0.0 or values[left + 1] <= 0.0:
         return float(times[left + 1])
     share = values[left] / (values[left] - values[left + 1])

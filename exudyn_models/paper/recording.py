@@ -1,4 +1,4 @@
-"""What is kept of a motion that runs: the states that were asked for, and the steps that tell its phases."""
+"""The recorded states of a running motion, and the steps that determine its phases."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 MOST_KEPT = 50_000
-"""Steps that are kept until those that tell nothing of phases are left out."""
+"""Largest number of stored steps; if there are more, those without information about phases are dropped."""
 
 
 class Recording:
-    """Takes the runs of a motion one after the other, and keeps what is asked for.
+    """Records consecutive runs of a motion.
 
     Parameters
     ----------
     contact : RegularisedContact
-        Of the system that moves.
+        Contact of the moving system.
     times : array of shape (n,)
-        Those that were asked for, the first of them the start.
+        Requested times, the first of them the start.
 
     """
 
@@ -36,11 +36,11 @@ class Recording:
 
     @property
     def finished(self) -> bool:
-        """Whether all times are recorded."""
+        """True if all times are recorded."""
         return self._recorded == len(self.times)
 
     def add(self, run: Steps, axes: Axes) -> None:
-        """Record a run in ``axes``, which starts where the one before it ends."""
+        """Record a run in ``axes``, which starts where the previous one ended."""
         stop = int(np.searchsorted(self.times, run.times[-1], side="right"))
         asked = slice(self._recorded, stop)
         self.states[asked] = axes.fixed_states(self.times[asked], states_at(run, self.times[asked]))
@@ -58,7 +58,7 @@ class Recording:
 
 
 def _joined(runs: list[Steps]) -> Steps:
-    """Return consecutive runs as one; each starts with the state with which the one before it ends."""
+    """Join consecutive runs; each starts with the final state of the previous one."""
     first, *rest = runs
     return Steps(
         np.concatenate([first.times, *(run.times[1:] for run in rest)]),

@@ -1,6 +1,6 @@
-"""How fast, how far and how hard a system moves: what the steps and tolerances of a run are measured by.
+"""Scales of time, motion and force of a system, which determine the steps and tolerances of a run.
 
-All numbers are in the units in which ``system`` and ``state`` are given, SI or those of ``nondimensional``.
+All numbers are in the units of ``system`` and ``state``, SI or those of ``nondimensional``.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 
 @dataclass(frozen=True)
 class Scales:
-    """Sizes of a run, which follow from the system, its start and its span.
+    """Scales of a run.
 
     Parameters
     ----------
     time : float
-        In which the motion changes, see ``time_scale``.
+        Time scale of the motion, see ``time_scale``.
     motion : float
-        By which DOPRI5's error, in m and m/s, is measured: 1, or the motion's size above that.
+        Scale of DOPRI5's error, in m and m/s: 1, or the size of the motion if that is larger.
     angle_rounding : float
-        Rounding error in rad of the angle that a disc may have after the span; 0 for a pin.
+        Rounding error in rad of the angle of a disc after the span; 0 for a pin.
     force : float
-        By which the residual of Newton's iteration is measured: the forces on the body in N, or the moments in N m
-        where these are smaller; > 0.
+        Scale of the residual of Newton's method, > 0: the forces on the body in N or the moments in N m, whichever
+        are smaller.
 
     """
 
@@ -39,7 +39,7 @@ class Scales:
 
     @classmethod
     def of(cls, system: System, state: FloatArray, span: float) -> Scales:
-        """Return those of the motion of ``system`` from ``state`` (shape (4,) or (6,)) over ``span`` (s)."""
+        """Return the scales for the motion of ``system`` from ``state``, shape (4,) or (6,), over ``span`` (s)."""
         return cls(
             time_scale(system, state, span),
             _size_of_motion(system, state),
@@ -49,11 +49,11 @@ class Scales:
 
 
 def time_scale(system: System, state: FloatArray, span: float) -> float:
-    """Return the time in s in which the motion changes: the shortest of 1/k, 1/|ω|, m/β, or all of ``span``.
+    """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
-    A disc adds its spin, that of its shaft and J/b. Of a support that hardens k is that at the largest deflection
-    that the energy at the start allows; friction may make it grow further, until the whirl turns with ω. A stop
-    counts as if it were touched.
+    A disc adds its spin, that of its shaft, and J/b. For a hardening support k is that at the largest deflection that
+    the initial energy allows; friction may increase it further, until the whirl turns with ω. A stop counts as
+    touched.
     """
     stiffest = hardened_stiffness(system, state) + system.stop_stiffness
     rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]
@@ -64,14 +64,14 @@ def time_scale(system: System, state: FloatArray, span: float) -> float:
 
 
 def hardened_stiffness(system: System, state: FloatArray) -> float:
-    """Return the largest stiffness in N/m that the springs reach by the energy at the start."""
-    # C·d²/2 + C₃·d⁴/4 = E has the solution C₃·d² = √(C² + 4·C₃·E) − C.
+    """Return the largest stiffness in N/m that the springs reach with the initial energy."""
+    # C·d²/2 + C₃·d⁴/4 = E gives C₃·d² = √(C² + 4·C₃·E) − C.
     root = math.sqrt(system.stiffness**2 + 4.0 * system.hardening * support_energy(system, state))
     return system.stiffness + 3.0 * (root - system.stiffness)
 
 
 def support_energy(system: System, state: FloatArray) -> float:
-    """Return the energy in J of the centre's motion and of its support, from the place where that is relaxed."""
+    """Return the energy in J of the centre's motion and of its support, relative to the relaxed position."""
     position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
     return system.mass * abs(velocity) ** 2 / 2.0 + elastic_energy(
         abs(position - system.offset) ** 2, _law_of(system)
@@ -79,7 +79,7 @@ def support_energy(system: System, state: FloatArray) -> float:
 
 
 def _size_of_motion(system: System, state: FloatArray) -> float:
-    """Return 1, or the largest of distances in m and speeds in m/s where it is above that.
+    """Return the largest of 1, distances in m and speeds in m/s.
 
     A disc adds its spin and those of shaft and master, but not its angle, whose origin is arbitrary.
     """

@@ -1,4 +1,4 @@
-"""simulate(): the same call and the same result as the reference, computed by Exudyn."""
+"""simulate() with Exudyn: the signature and the result of the reference."""
 
 from __future__ import annotations
 
@@ -33,30 +33,30 @@ from reference_model.systems import (
 from reference_model.trajectory import Solution, Trajectory, phases_of
 
 REGULARISATION_PER_TOLERANCE = 100.0
-"""ε = 100·tolerance in the motion's own unit of speed (study in ``benchmarks/exudyn_contact.py``)."""
+"""Ratio of ε, in the motion's own unit of speed, to the tolerance (study in ``benchmarks/exudyn_contact.py``)."""
 
 STEP_TOLERANCE = 1e-2
-"""Tolerance of DOPRI5 relative to the one asked for: thousands of steps add up."""
+"""Tolerance of DOPRI5 over the requested one, because errors of thousands of steps accumulate."""
 
 DISC_STEP_TOLERANCE = 1e-3
-"""The same for a disc: where U = W the ring's friction has an infinite slope, and the spin remembers the error."""
+"""The same for a disc: at U = W the ring's friction has an infinite slope, and the spin remembers the error."""
 
 STOP_STEP_TOLERANCE = 1e-4
-"""The same for a support with a stop: its force has a bend, and what bounces on it passes that many times."""
+"""The same for a support with a stop: its force has a kink, which a bouncing motion passes many times."""
 
 SMALLEST_STEP_TOLERANCE = 1e-13
-"""Below it rounding makes DOPRI5's error estimate useless, and its step collapses."""
+"""Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate, and the step collapses."""
 
 LARGEST_STEP = 6.0
-"""DOPRI5's largest step is 6·tolerance^(1/5) time scales: its order is 5, so errors fall where that binds too."""
+"""Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
-"""Residual at which Newton's iteration ends, relative to the forces at the start."""
+"""Tolerance of Newton's method for the residual, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
 
 METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit": "Exudyn generalised-α"}
-"""What each solver is called in a result."""
+"""Name of each solver in a result."""
 
 
 def simulate(
@@ -74,35 +74,33 @@ def simulate(
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     initial_state : array of shape (4,) or (6,)
-        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
+        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
     times : array of shape (n,)
-        Increasing, in s. States are interpolated between the solver's own steps, which do not depend on ``times``
-        apart from the first and the last.
+        Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
+        the last time.
     tolerance : float
-        The accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``: it means the
-        same in any units. While the contact slips, "explicit" keeps the error near it. What sticking and pivoting add
-        is of first order in the regularisation.
+        Accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``. While the contact
+        slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
     regularisation : float, optional
-        ε in m/s below which friction is viscous; 100·tolerance of the motion's own speed if not given. It should stay
-        well above the tolerance. ``solution.regularisation`` of the result says it in m/s. On a spring next to none
-        μN over √(mass·stiffness) is such a speed, however slow the motion: give ε then.
+        ε in m/s below which friction is viscous; by default 100·tolerance of the motion's own speed, reported as
+        ``solution.regularisation``. It should stay well above the tolerance. For very soft springs pass ε explicitly,
+        because μN over √(mass·stiffness) then counts as the speed, however slow the motion.
     solver : "explicit" or "implicit"
-        "explicit" is DOPRI5, and generalised-α only while the contact, or one of several points, sticks: there the
-        regularised law is stiff. Axes that turn with the master disc let it stick in some 40 steps a turn; to pivot
-        about a point takes steps ~ √ε.
-        "implicit" is generalised-α throughout: second order, with a step ~ √tolerance, an error that falls like
-        the tolerance but is some thousand times larger.
+        "explicit" is DOPRI5, with generalised-α while the contact, or one of several points, sticks, where the
+        regularised law is stiff. In axes that turn with the master disc stick takes some 40 steps per turn; pivoting
+        about a point takes steps ~ √ε. "implicit" is generalised-α throughout: second order, with steps ~ √tolerance
+        and an error proportional to the tolerance but about a thousand times larger.
     friction : Friction, optional
-        What adds the friction between the discs to the model, which is built in the motion's own units.
+        Adds the friction between the discs to the model, which is built in the motion's own units.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range.
+        If an argument is out of range.
     SimulationError
-        If Exudyn can not compute the motion, or would take more than some millions of steps.
+        If Exudyn fails, or would take more than some millions of steps.
 
     """
     state = checked_state(system, initial_state)
@@ -126,11 +124,11 @@ def simulate_fixed_step(
     step: float,
     regularisation: float = 1e-6,
 ) -> Trajectory:
-    """Return the motion computed by one Exudyn integrator with steps of ``step`` (s) throughout.
+    """Return the motion computed by one Exudyn integrator with the constant step ``step`` (s).
 
-    For studies of convergence. ``integrator`` is one of "RK44", "RK67" (explicit, order 4 and 6),
-    "GeneralizedAlpha", "TrapezoidalIndex2" (implicit, order 2). An explicit integrator needs a step below about
-    2·mε/μN wherever the pin sticks. ``solution.tolerance`` is nan. Raises as ``simulate`` does.
+    This is for convergence studies. ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha"
+    or "TrapezoidalIndex2" (implicit, order 2). An explicit integrator needs a step below about 2·mε/μN while the pin
+    sticks. ``solution.tolerance`` is nan. Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -148,27 +146,26 @@ def simulate_fixed_step(
 
 @dataclass(frozen=True)
 class Run:
-    """A motion to compute, from the time 0 on and in units in which it is of order one.
+    """A motion to compute from time 0 on, in units that make it of order one.
 
-    Exudyn takes no negative times, large ones cost digits, and its tolerances are absolute. What was given has been
-    checked; all that follows from it is found once.
+    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances.
 
     Parameters
     ----------
     given : tuple
-        System, initial state and times as they were given.
+        System, initial state and times as given.
     tolerance : float
-        The accuracy to aim at; nan for fixed steps.
+        Accuracy to aim at; nan for fixed steps.
     units : Units
-        Of the motion.
+        Units of the motion.
     contact : RegularisedContact
-        Of the system in these units, with ε.
+        Contact of the system in these units, with ε.
     state, times : array
-        In these units.
+        Initial state and times in these units.
     scales : Scales
-        Of the run in these units.
+        Scales of the run in these units.
     began : float
-        When the work on it began, by ``time.perf_counter``.
+        Start of the computation, by ``time.perf_counter``.
 
     """
 
@@ -190,7 +187,7 @@ class Run:
         tolerance: float,
         regularisation: float | None,
     ) -> Run:
-        """Return the run for ε in m/s; that which goes with ``tolerance`` if it is None."""
+        """Return the run for ε in m/s; None for the ε that belongs to ``tolerance``."""
         began = time.perf_counter()
         units = Units.of(system, state)
         epsilon = (
@@ -215,7 +212,7 @@ class Run:
         """Return DOPRI5 with a step and an error that follow the tolerance."""
         local = max(_step_tolerance(self.contact.system) * self.tolerance, SMALLEST_STEP_TOLERANCE)
         local *= self.scales.motion
-        local = max(local, 2.0 * self.scales.angle_rounding)  # the same for large angles
+        local = max(local, 2.0 * self.scales.angle_rounding)  # rounding of large angles
         return SlipSolver("DOPRI5", LARGEST_STEP * self.tolerance**0.2 * self.scales.time, local)
 
     def implicit(self) -> SlipSolver:
@@ -224,7 +221,7 @@ class Run:
         return SlipSolver("GeneralizedAlpha", step, NEWTON_TOLERANCE * self.scales.force)
 
     def trajectory(self, method: str, solver: SlipSolver, friction: Friction) -> Trajectory:
-        """Return the motion in SI units, by a ``method`` of that name."""
+        """Return the motion in SI units; ``method`` is its description."""
         found = solve_in_turns(self.contact, self.state, self.times, solver, friction, self.units.time)
         system, state, times = self.given
         unit = self.units.of_states(len(state))
@@ -246,7 +243,6 @@ class Run:
 
 
 def _step_tolerance(system: System) -> float:
-    """Return the tolerance of DOPRI5 relative to the one asked for."""
     if system.stop_stiffness > 0.0:
         return STOP_STEP_TOLERANCE
     return DISC_STEP_TOLERANCE if isinstance(system, DiscOnDisc) else STEP_TOLERANCE

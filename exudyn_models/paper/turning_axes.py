@@ -1,4 +1,4 @@
-"""Axes that turn about the master disc's axis: in those that turn with it, what sticks rests."""
+"""Rotating axes about the master disc's axis. A sticking body rests in axes that turn with the disc."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ ComplexArray = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Axes:
-    """Axes that turn with ``speed`` (rad/s) and are the fixed ones at the time ``since`` (s)."""
+    """Axes that turn with ``speed`` (rad/s) and coincide with the fixed ones at the time ``since`` (s)."""
 
     speed: float
     since: float = 0.0
 
     def start(self, state: FloatArray) -> FloatArray:
-        """Return in these axes a state (shape (4,) or (6,)) at the time ``since``."""
+        """Transform a state, shape (4,) or (6,), at the time ``since`` to these axes."""
         return np.asarray(self._added(np.zeros(1), state[None, :], -self.speed)[0])
 
     def fixed_states(self, times: FloatArray, states: FloatArray) -> FloatArray:
-        """Return in fixed axes the ``states`` (shape (n, 4 or 6)) in these at ``times`` (shape (n,))."""
+        """Transform ``states``, shape (n, 4 or 6), at ``times``, shape (n,), from these axes to fixed ones."""
         return self._added(self.speed * (times - self.since), states, self.speed)
 
     def fixed_steps(self, steps: Steps) -> Steps:
-        """Return ``steps`` in these axes as in fixed ones."""
+        """Transform ``steps`` from these axes to fixed ones."""
         z, v, a = (_complex(part) for part in (*np.split(steps.states, 2, axis=1), steps.accelerations))
         turn = np.exp(1j * self.speed * (steps.times - self.since))
         accelerations = steps.accelerations.copy()
@@ -40,7 +40,7 @@ class Axes:
         )
 
     def _added(self, angles: FloatArray, states: FloatArray, speed: float) -> FloatArray:
-        """Return ``states`` with a turn with ``speed`` (rad/s) through ``angles`` (shape (n,)) added to them."""
+        """Return ``states`` with a rotation through ``angles``, shape (n,), at ``speed`` (rad/s) added."""
         positions, velocities = (part.copy() for part in np.split(states, 2, axis=1))
         turn = np.exp(1j * angles)
         z, v = turn * _complex(positions), turn * _complex(velocities)

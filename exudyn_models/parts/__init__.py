@@ -1,1 +1,1 @@
-"""What goes into other people's models: friction with its sensors, Exudyn's own contact, a radial support, energy."""
+"""Parts for other models: friction with sensors, Exudyn's own contact, a radial support, an energy balance."""

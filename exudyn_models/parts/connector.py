@@ -1,8 +1,8 @@
-"""A connector without mass over the nodes of *both* bodies, so that it puts the full reaction on either of them.
+"""A massless connector over the nodes of *both* bodies, which applies the full reaction to both.
 
-It is an ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes: a force F on the
-disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker connectors leave that
-moment out, which is no longer an exchange of momentum between two free bodies.
+It is an ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes. A force F on the
+disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker connectors omit that
+moment, which violates conservation of angular momentum for two free bodies.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction) -> Any:
     """Add a connector over ``nodes``; return its ``ObjectIndex``.
 
-    ``force`` returns what acts on all their coordinates; ``jacobian`` the derivatives of the *negative* of that by
-    coordinates and by velocities, each times the factor that it is handed, added up.
+    ``force`` returns the forces on all their coordinates. ``jacobian`` returns the sum of the derivatives of the
+    *negative* forces by coordinates and by velocities, each multiplied by the factor passed to it.
     """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(
@@ -38,13 +38,13 @@ def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian
 
 
 BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody")
-"""The objects whose nodes may be those of ``KINDS``, by the names that Exudyn gives them."""
+"""Objects, by Exudyn's names, whose nodes may be those of ``KINDS``."""
 
 
 def node_of(name: str, mbs: Any, node_or_body: Any, *, or_ground: bool = False) -> Any:
-    """Return the ``NodeIndex`` of a body from its ``ObjectIndex``, None for a ground, and anything else as it is.
+    """Return the ``NodeIndex`` of a body from its ``ObjectIndex``, None for a ground, and other values unchanged.
 
-    Raises ``ValueError`` for any other object, and for a ground that is not allowed here, shifted or turned.
+    Raises ``ValueError`` for any other object, and for a ground that is not allowed here, or not at the origin.
     """
     if type(node_or_body).__name__ != "ObjectIndex":
         return node_or_body
@@ -52,7 +52,9 @@ def node_of(name: str, mbs: Any, node_or_body: Any, *, or_ground: bool = False) 
         body = mbs.GetObject(node_or_body)
     except exu.ExudynIndexError:
         count = mbs.systemData.NumberOfObjects()
-        raise ValueError(f"{name} {int(node_or_body)} is none of the {count} objects of this model") from None
+        raise ValueError(
+            f"{name} {int(node_or_body)} does not exist: this model has {count} objects"
+        ) from None
     if or_ground and body["objectType"] == "Ground":
         if body["referencePosition"].any() or (body["referenceRotation"] != np.eye(3)).any():
             raise ValueError(
@@ -69,16 +71,16 @@ def node_of(name: str, mbs: Any, node_or_body: Any, *, or_ground: bool = False) 
 
 
 def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(KINDS.values())) -> int:
-    """Return which of ``KINDS`` the node is.
+    """Return the kind of a node, one of ``KINDS``.
 
-    Raises ``ValueError`` if it is not one of those ``allowed``, or if its body turns about another axis than a rotor
-    must, or slides. A body that is added later is not checked.
+    Raises ``ValueError`` if it is not ``allowed``, or if the node's body turns about another axis than a rotor must,
+    or translates. A body that is added later is not checked.
     """
     try:
         kind = mbs.GetNode(node)["nodeType"]
     except exu.ExudynIndexError:
         count = mbs.systemData.NumberOfNodes()
-        raise ValueError(f"{name} {int(node)} is none of the {count} nodes of this model") from None
+        raise ValueError(f"{name} {int(node)} does not exist: this model has {count} nodes") from None
     except exu.ExudynTypeError:
         raise ValueError(
             f"{name} = {node!r} is of type {type(node).__name__}: it must be a NodeIndex or the "
@@ -95,7 +97,6 @@ def checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int] = tuple(
 
 
 def _check_axis(name: str, mbs: Any, node: Any) -> None:
-    """Raise ``ValueError`` if the body of a ``Node1D`` does not turn about the global z-axis."""
     for item in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(item)
         kind = body["objectType"]

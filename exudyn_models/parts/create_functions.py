@@ -1,4 +1,4 @@
-"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts in Exudyn's own style, by its registry."""
+"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts in Exudyn's style, by its registry."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def MainSystemCreateRingFriction(
     pressure: Pressure = "uniform",
     thermalNode: ThermalNode | None = None,
 ) -> RingFriction:
-    """Add friction between two bodies, master and disc; return its handle, with the ``item`` of the connector.
+    """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
-    ``bodyNumbers`` are two, each an ObjectIndex or a NodeIndex, of master and disc. A ground of Exudyn at the global
-    origin, or None, is a master that rests. All else is as ``add_ring_friction`` has it: radii in m, N in N, ε in
-    m/s. Raises ``ValueError`` as that does, or if there are not two bodies.
+    ``bodyNumbers`` contains master and disc, each an ObjectIndex or a NodeIndex. An Exudyn ground at the global
+    origin, or None, is a master at rest. All other arguments are those of ``add_ring_friction``: radii in m, N in N,
+    ε in m/s. Raises ``ValueError`` as that function, or if there are not two bodies.
     """
     master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
@@ -70,11 +70,13 @@ def MainSystemCreateRadialSupport(
     stopStiffness: float = 0.0,
     offset: Sequence[float] = (0.0, 0.0),
 ) -> RadialSupport:
-    """Add springs, a stop and a damper from a base to a disc; return its handle, with the ``item`` of the connector.
+    """Add springs, a stop and a damper from a base to a disc.
 
-    ``bodyNumbers`` are two, each an ObjectIndex or a NodeIndex, of base and disc. The base may be a ground of Exudyn
-    at the global origin, or None. All else is as ``add_radial_support`` has it: N/m, N s/m, N/m³, m. Raises
-    ``ValueError`` as that does, or if there are not two bodies.
+    Return the handle, which contains the connector's ``item``.
+
+    ``bodyNumbers`` contains base and disc, each an ObjectIndex or a NodeIndex. The base may be an Exudyn ground at
+    the global origin, or None. All other arguments are those of ``add_radial_support``: N/m, N s/m, N/m³, m. Raises
+    ``ValueError`` as that function, or if there are not two bodies.
     """
     base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(
@@ -91,7 +93,6 @@ def MainSystemCreateRadialSupport(
 
 
 def _two_bodies(numbers: Sequence[Any]) -> tuple[Any, Any]:
-    """Return both; raise ``ValueError`` if there are not two."""
     if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
         raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
     return numbers[0], numbers[1]

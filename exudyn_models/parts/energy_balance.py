@@ -1,8 +1,7 @@
-"""Where the energy of a model goes: a check of any run, without a reference solution.
+"""The energy balance of a model, which checks any run without a reference solution.
 
-What is put in is what is taken out plus what is stored, at every time of every right run, whatever the bodies and the
-laws between them. Works are integrals of powers that the solver integrates with all other coordinates, so that
-they are as exact as its motion.
+In every correct run energy gains equal losses plus the change of the stored energy, for any bodies and force laws.
+The solver integrates powers to works along with all other coordinates, so works are as accurate as the motion.
 """
 
 from __future__ import annotations
@@ -23,24 +22,24 @@ from reference_model.systems import FloatArray, finite_number
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 Power: TypeAlias = Callable[[Any, float], float]
-"""Takes the ``mbs`` and the time in s, and returns a power in W of the current motion."""
+"""Takes the ``mbs`` and the time in s; returns a power in W of the current motion."""
 
 Energy: TypeAlias = Callable[[Any], float]
-"""Takes the ``mbs`` and returns an energy in J of the current motion."""
+"""Takes the ``mbs``; returns an energy in J of the current motion."""
 
 
 @dataclass(frozen=True, eq=False)
 class EnergyBalance:
-    """Energies of a model at the times at which its sensors write, all in J and of shape (n,).
+    """Energies of a model at the output times of its sensors, in J and of shape (n,).
 
     Parameters
     ----------
     times : array
-        In s.
+        Times in s.
     gains, losses : dict of arrays
-        What each source has put in and each sink has taken out since the start.
+        Energy supplied by each source and removed by each sink since the start.
     stored : array
-        Kinetic energy and that of the springs, itself, not since the start.
+        Kinetic energy plus energy of the springs, as absolute values.
 
     """
 
@@ -51,7 +50,7 @@ class EnergyBalance:
 
     @property
     def residual(self) -> FloatArray:
-        """Gains less losses and the growth of what is stored: zero for the right motion."""
+        """Gains minus losses minus the change of stored energy: zero for the exact motion."""
         put_in, taken_out = (
             sum(parts.values(), np.zeros(len(self.times))) for parts in (self.gains, self.losses)
         )
@@ -59,7 +58,7 @@ class EnergyBalance:
 
     @property
     def turnover(self) -> float:
-        """The energy turned over: the largest of all works, and of the changes of what is stored."""
+        """Energy turned over: the largest of all works and changes of stored energy."""
         parts = [*self.gains.values(), *self.losses.values(), self.stored - self.stored[0]]
         return float(max(np.max(np.abs(part)) for part in parts))
 
@@ -74,31 +73,31 @@ def add_energy_balance(
 ) -> Callable[[], EnergyBalance]:
     """Add an energy balance to ``mbs``; return a function that reads it after a run.
 
-    Kinetic energy of all bodies is counted without being named. Native connectors with an output ``PotentialEnergy``
-    are counted by ``spring_energy``.
+    The kinetic energy of all bodies is included automatically. Use ``spring_energy`` for native connectors with an
+    output ``PotentialEnergy``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        With all its bodies, not yet assembled.
+        The model with all its bodies, not yet assembled.
     gains, losses : dict of Power
-        By their names: drives, loads; friction (``RingFriction.power``), dampers.
+        Powers by name: drives and loads; friction (``RingFriction.power``) and dampers.
     stored : sequence of Energy
-        Of all springs.
+        Energies of all springs.
     unit : float
-        J to a unit of the coordinates that the works are: DOPRI5 weighs their errors with those of all others.
+        Energy in J per unit of the work coordinates, which determines the weight of their errors in DOPRI5.
 
     Raises
     ------
     ValueError
-        If ``unit`` is no positive number, a name is a gain and a loss, or a ``spring_energy`` is that of an object
-        without potential energy. Exudyn tells that of a model that can be assembled: of any other the run tells it.
+        If ``unit`` is not > 0, a name is both a gain and a loss, or a ``spring_energy`` refers to an object without
+        potential energy. The last check needs a model that can be assembled; otherwise the run reports it.
 
     """
     unit = _checked_unit(unit)
     for name in gains:
         if name in losses:
-            raise ValueError(f"{name!r} is among gains and losses: it must be one of them")
+            raise ValueError(f"{name!r} is both a gain and a loss: it must be one of them")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)
@@ -124,7 +123,7 @@ def _checked_unit(unit: float) -> float:
 
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
-    """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` of all of them."""
+    """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` for all of them."""
     powers = list(named.values())
 
     def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
@@ -145,11 +144,11 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
-    """Add a sensor of the kinetic energy of all bodies and of what is ``stored``; return its ``SensorIndex``."""
+    """Add a sensor of the kinetic energy of all bodies plus the ``stored`` energies; return its ``SensorIndex``."""
     bodies: list[int] = []
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
-        if not bodies:  # an object tells only once the model is assembled
+        if not bodies:  # objects have outputs only after assembly
             bodies.extend(_bodies(mbs))
         return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
 
@@ -170,7 +169,7 @@ class _SpringEnergy:
 
 
 def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
-    """Raise ``ValueError`` if one of ``springs`` has no energy; what belongs to it may still be missing."""
+    """Raise ``ValueError`` if one of ``springs`` has no energy, unless the model is still incomplete."""
     for spring in springs:
         try:
             kind = mbs.GetObject(spring.connector)["objectType"]
@@ -187,13 +186,12 @@ def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
                 spring(mbs)
             except exu.ExudynError:
                 raise ValueError(
-                    f"spring_energy of object {int(spring.connector)}: this {kind} tells no potential energy; take "
-                    "a spring of Exudyn without a function of yours, or a function of mbs that returns the energy"
+                    f"spring_energy of object {int(spring.connector)}: this {kind} has no potential energy; use "
+                    "an Exudyn spring without user function, or a function of mbs that returns the energy"
                 ) from None
 
 
 def _bodies(mbs: Any) -> list[int]:
-    """Return the numbers of all objects that have kinetic energy."""
     found = []
     for item in range(mbs.systemData.NumberOfObjects()):
         try:
@@ -205,5 +203,4 @@ def _bodies(mbs: Any) -> list[int]:
 
 
 def _kinetic_energy(mbs: Any, body: int) -> float:
-    """Return the kinetic energy of a body in J."""
     return float(mbs.GetObjectOutputBody(body, exu.OutputVariableType.KineticEnergy))

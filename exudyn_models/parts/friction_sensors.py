@@ -1,4 +1,4 @@
-"""What is to be known of a friction contact in a model: its sensors, and the handle that adds them."""
+"""The handle of a friction contact in a model, and its sensors."""
 
 from __future__ import annotations
 
@@ -45,24 +45,24 @@ Quantity = Literal[
 ]
 
 BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
-"""Values of the sensor ``"mode"``, those of Modelica's clutches."""
+"""Values of the sensor ``"mode"``, as in Modelica's clutches."""
 
 BAND = 0.01
-"""Of the capacity, on either side of it, where the ``"mode"`` stays as it was; a creep of 1 ± ``BAND`` times ε."""
+"""Relative half-width of the band around the capacity that leaves ``"mode"`` unchanged."""
 
 
 @dataclass(frozen=True, eq=False)
 class RingFriction:
-    """Friction that ``add_ring_friction`` has added to a model.
+    """Handle of a friction contact added by ``add_ring_friction``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model.
     item : ObjectIndex
-        Of the connector.
+        Index of the connector.
     nodes : tuple of NodeIndex
-        Of the master, but the ground, and of the disc.
+        Nodes of the master, unless it is the ground, and of the disc.
 
     """
 
@@ -78,17 +78,17 @@ class RingFriction:
 
     @property
     def compiled(self) -> bool:
-        """Whether load and coefficient are found without a function of Python.
+        """True if load and coefficient are computed without Python functions.
 
-        That is so if coefficient and load are numbers, tables or functions of numba (``@numba.njit``), whose values
-        for outer names are those of when it compiled them. Any other function is called as it is, from compiled code
-        too, at the cost of what it does itself.
+        This requires that coefficient and load are numbers, tables or numba functions (``@numba.njit``), which keep
+        the values that outer names had when they were compiled. Any other function is called from compiled code too,
+        at its own cost.
         """
         return self._factors.compiled
 
     @property
     def effective_radius(self) -> float:
-        """The lever in m of μN where the disc only turns: M = μN·r, of all plates."""
+        """Ratio of moment to friction force in m of a disc that only turns: M = μN·r, of all plates."""
         return mean_radius(self._factors.geometry)
 
     def change(
@@ -97,12 +97,12 @@ class RingFriction:
         friction_coefficient: Coefficient | None = None,
         normal_load: NumberOrFunction | None = None,
     ) -> None:
-        """Replace coefficient or load from now on, as ``add_ring_friction`` takes them; None keeps what there is.
+        """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present one.
 
         Raises
         ------
         ValueError
-            If a number is out of its range; both then stay as they were.
+            If a number is out of range; both then stay unchanged.
 
         """
         factors = self._factors
@@ -127,23 +127,17 @@ class RingFriction:
         - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
         - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
         - ``"relative_spin"``: S = φ̇ − ω in rad/s.
-        - ``"capacity_share"``: how much of what friction can hold is used, 1 where the contact slips. It is P/ε below
-          that, and 0 if friction holds nothing.
-        - ``"mode"``: 0 locked, 1 slipping with the disc faster than the master, or sideways, −1 with the disc slower,
-          2 open, that is without load. What tells locked from slipping is the capacity, not how small a slip is: a
-          contact that creeps under nearly all that it can hold is locked. Within ``BAND`` of all of it the mode stays
-          what it was when the sensor was asked before, so that it does not flicker.
-        - ``"power"``: what friction turns into heat, in W.
+        - ``"capacity_share"``: share of the friction capacity in use: 1 in slip, P/ε in creep, and 0 without
+          friction.
+        - ``"mode"``: 0 locked; 1 slipping with the disc faster than the master, or sideways; −1 slipping with the
+          disc slower; 2 open, without load. The capacity distinguishes locked from slipping, not the size of the
+          slip: a contact that creeps at nearly full capacity is locked. Within ``BAND`` of full capacity the mode
+          stays that of the previous evaluation, so that it does not flicker.
+        - ``"power"``: heating power of friction, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
-        ``options`` are those of Exudyn's sensors. Without any the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file.
-
-        Raises
-        ------
-        ValueError
-            If there is no such quantity.
-
+        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
+        ``mbs.GetSensorStoredData`` and writes no file. Raises ``ValueError`` for any other quantity.
         """
         if quantity not in get_args(Quantity):
             raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
@@ -157,7 +151,7 @@ class RingFriction:
     def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
         asked, mode = False, _Mode()
 
-        # Slip is found without the load, so that a load may depend on a sensor of it.
+        # Slip is computed without the load, so that a load may depend on a sensor of slip.
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
             nonlocal asked
             slip, angle, radius, axes = self._slip(mbs, configuration)
@@ -207,13 +201,13 @@ class RingFriction:
         return [stick.capacity_share(mbs, t)]
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return what friction turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
+        """Return the heating power of friction in W, in the form that ``add_energy_balance`` expects."""
         get_coordinates, get_velocities, first, second = self._access
         values = get_velocities()
         velocities = values[first].tolist()
         if second:
             velocities += values[second].tolist()
-        coordinates = velocities  # rotors on one axis make nothing of them
+        coordinates = velocities  # ignored by rotors on one axis
         if get_coordinates:
             values = get_coordinates()
             coordinates = values[first].tolist()
@@ -222,9 +216,9 @@ class RingFriction:
         forces = self._functions["force"](mbs, t, 0, coordinates, velocities)
         return -float(sum(map(mul, forces, velocities)))
 
-    @cached_property  # finding them costs as much as calling them
+    @cached_property  # looking them up costs as much as calling them
     def _access(self) -> tuple[Any, Any, slice, slice | None]:
-        """What returns coordinates, if they are needed, and velocities of the assembled model, and where to look."""
+        """Functions for coordinates, if needed, and velocities of the assembled model, and slices of the nodes."""
         data = self.mbs.systemData
         on_axis = on_one_axis(self._kinds, self._factors)
         first, second, *_ = *self._places, None
@@ -245,14 +239,14 @@ class RingFriction:
         return self.mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **options))
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
-        """Return u_x, u_y (m/s) and S (rad/s), the disc's angle and radius, all in the master's axes, and these."""
+        """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
         to_slip, axes, (cosine, sine) = slip_jacobian(self._kinds, coordinates)
         radius = float(radius_of_disc(self._kinds, coordinates, axes))
         return to_slip @ velocities, math.atan2(sine, cosine), radius, axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
-        """Return coordinates, with their reference values, and velocities of both nodes, shape (n,) each."""
+        """Return coordinates, including reference values, and velocities of both nodes, shape (n,) each."""
         data = mbs.systemData
         q, q_t = (
             np.concatenate(
@@ -262,9 +256,9 @@ class RingFriction:
         )
         return self._reference + q, q_t
 
-    @cached_property  # nodes that are added later come behind
+    @cached_property  # later nodes are added behind them
     def _places(self) -> list[Any]:
-        """Where the coordinates of the nodes are among those of the assembled model."""
+        """Slices of the nodes' coordinates among those of the assembled model."""
         kinds = self._kinds[-len(self.nodes) :]
         places: list[slice] = []
         for node, kind in zip(self.nodes, kinds, strict=True):
@@ -275,7 +269,7 @@ class RingFriction:
         return places
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
-        """Return P/ε, up to 1 the share of the capacity that is used, or None where friction holds nothing."""
+        """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""
         contact, spin = self._factors.geometry, float(slip[2])
         speed = slip_potential_of_contact(float(slip[0]), float(slip[1]), spin, angle, contact)
         if self._factors.friction_force(t, radius, speed, spin) == 0.0:
@@ -294,18 +288,18 @@ class RingFriction:
 
 
 class _Mode:
-    """The mode of a contact, which remembers what it was at an earlier time of the same run."""
+    """The mode of a contact, with a memory of earlier times of the same run."""
 
     def __init__(self) -> None:
         self._time, self._slips = math.inf, False
 
     def at(self, t: float, creep: float | None, spin: float) -> float:
-        """Return the mode at the time t (s) from P/ε, None where friction holds nothing, and S (rad/s)."""
-        if t < self._time:  # another run
+        """Return the mode at the time t (s) from P/ε, None without friction, and S (rad/s)."""
+        if t < self._time:  # a new run
             self._slips = creep is not None and creep >= 1.0
         self._time = t
         if creep is None:
-            self._slips = True  # it is told by its slip when it closes again
+            self._slips = True  # when it closes, its slip determines the mode
             return OPEN
         self._slips = creep >= (1.0 - BAND if self._slips else 1.0 + BAND)
         if not self._slips:

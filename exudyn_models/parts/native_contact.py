@@ -1,9 +1,9 @@
-"""Exudyn's own sphere–triangle contact with friction in place of the user function: an independent witness.
+"""Friction by Exudyn's own sphere-triangle contact instead of a user function, as an independent check.
 
-Spheres on the disc press on one triangle that turns with the master disc. Bodies of the plane keep their height, so
-that the penetration, and with it the normal force, is constant. Exudyn's friction is −μN·v/max(|v|, ε) for the slip v
-of the touching points, with the force and moment on both bodies that follow from it: the law of ``add_ring_friction``
-for points, in code that is not ours.
+Spheres on the disc press on one triangle that turns with the master disc. Planar bodies keep their height, so the
+penetration and the normal force are constant. Exudyn's friction is −μN·v/max(|v|, ε) for the slip v of the touching
+points, with the resulting force and moment on both bodies. This is the law of ``add_ring_friction`` for points, in
+independent code.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from reference_model.systems import finite_number
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 NORMAL_FORCE = 1.0
-"""N of all points together, in N. The discs feel the product μN only, so that μ is what makes it the one asked for.
+"""N of all points together, in N. Only the product μN matters, so μ is scaled to give it.
 
-Rounding tilts the normal by some 1e-15, by which N pushes sideways: it stays small where friction is large, as in the
-model of a creeping disc.
+Rounding tilts the normal by about 1e-15, so about 1e-15·N acts sideways. N is small where friction is large, as in
+the model of a creeping disc.
 """
 
 
@@ -43,34 +43,35 @@ def add_native_friction(
     contact_points: int | None = None,
     reach: float,
 ) -> list[Any]:
-    """Add friction as ``add_ring_friction`` does, by one built-in contact a point; return their ``ObjectIndex``.
+    """Add friction like ``add_ring_friction``, by one built-in contact per point; return their ``ObjectIndex``.
 
-    Sizes perpendicular to the plane are free. They are those of the triangle, because the normal is tilted by
-    rounding like size over penetration. What is left of rounding is a slip of 1e-15 times spin times ``reach``.
+    The dimensions perpendicular to the plane are arbitrary. They equal those of the triangle, because rounding tilts
+    the normal by the ratio of size to penetration. The remaining rounding error is a slip of 1e-15 times spin times
+    ``reach``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Not yet assembled, with both nodes and their bodies.
+        The model, not yet assembled, with both nodes and their bodies.
     master_node, disc_node : NodeIndex or ObjectIndex
-        A rotor's or a planar body's, or None for the ground, and a planar body's.
+        Master: a rotor, a planar body, or None for the ground. Disc: a planar body.
     contact_radius : float
-        R in m, >= 0; the contact is a pin if it is 0.
+        R in m, >= 0; 0 for a pin.
     friction_coefficient : float
-        μ >= 0. Only its product with N counts.
+        μ >= 0; only its product with N matters.
     normal_load : float
         N in N of all points together, >= 0.
     regularisation : float
         ε in m/s, > 0.
     contact_points : int
-        n >= 1. There is no built-in contact of a whole circle.
+        n >= 1. A built-in contact of a whole circle does not exist.
     reach : float
-        In m, > 0. A point further away than that from the master's node may leave the triangle.
+        Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 
     Raises
     ------
     ValueError
-        If a number is out of its range or a node is of a kind that can't be used.
+        If a number is out of range or a node is of an unsupported kind.
 
     """
     radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
@@ -79,7 +80,7 @@ def add_native_friction(
     reach = _checked_extent(reach, points)
     (*masters, disc), _ = checked_pair(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
     master = masters[0] if masters else None
-    size = 2.0 * reach  # from the triangle's middle to a corner; the circle that fits in has half of that
+    size = 2.0 * reach  # from the triangle's centre to a corner; the inscribed circle has half of it
     master_marker = _marker(mbs, master, 0j)
     contacts = []
     for i in range(points):
@@ -94,8 +95,8 @@ def _checked_extent(reach: float, points: int) -> float:
     """Return ``reach`` in m; raise ``ValueError`` if it is not > 0, or the contact is a whole circle."""
     if points == CONTINUOUS:
         raise ValueError(
-            "contact_points = None: Exudyn's built-in contact has single points only; it must be a whole number, "
-            "for instance 6"
+            "contact_points = None: Exudyn's built-in contact supports points only; it must be a whole number, "
+            "for example 6"
         )
     reach = finite_number("reach", reach)
     if reach <= 0.0:
@@ -106,7 +107,7 @@ def _checked_extent(reach: float, points: int) -> float:
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
     """Add the data node of a contact; return its ``NodeIndex``.
 
-    Within a step Exudyn keeps to one branch of the law, in the first step that of the slip speed (m/s) given here.
+    Exudyn keeps to one branch of the law within a step; in the first step it is that of ``slip_speed`` (m/s).
     """
     return mbs.AddNode(
         items.NodeGenericData(
@@ -118,13 +119,13 @@ def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
 def _add_sphere(
     mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, points: int
 ) -> Any:
-    """Add the contact of one of ``points`` spheres with the triangle, which it enters by half of its radius ``size``.
+    """Add the contact of one of ``points`` spheres with the triangle; return its ``ObjectIndex``.
 
-    ``friction_force`` is that of all points together, in N. Return the ``ObjectIndex``.
+    The penetration is half of the sphere's radius ``size``. ``friction_force`` is that of all points together, in N.
     """
     penetration = size / 2.0
     height = penetration - size
-    vectors: Any = exu.Vector3DList  # as of items
+    vectors: Any = exu.Vector3DList  # type hints as for items
     return mbs.AddObject(
         items.ObjectContactSphereTriangle(
             markerNumbers=markers,
@@ -154,7 +155,7 @@ def _marker(mbs: Any, node: Any, arm: complex) -> Any:
 
 
 def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex) -> float:
-    """Return the speed in m/s with which the point at ``arm`` of the disc slips over the master at the start."""
+    """Return the initial slip speed in m/s of the point at ``arm`` of the disc over the master."""
     master, _, master_velocity, master_spin = _initial_motion(mbs, master_node)
     disc, angle, disc_velocity, disc_spin = _initial_motion(mbs, disc_node)
     arm *= cmath.exp(1j * angle)

@@ -1,12 +1,11 @@
 """The elastic support of a disc, on the ground or on a body: a spring that may harden, a stop and a damper.
 
 At the deflection w, d = |w|, it pulls the disc back with C·d + C₃·d³ + C_s·max(0, d − gap), and damps with β·ẇ. On a
-body it turns with it: w and ẇ are those that an observer on the body sees, so that a motion of both as one rigid body
-does nothing, and the damper only takes energy. The whole reaction is on the body, the moment −d×F included, as that
-of friction is.
+body it turns with the body, and w and ẇ are relative to it. So a motion of both as one rigid body causes no force,
+and the damper only dissipates. The full reaction acts on the body, including the moment −d×F.
 
-A support that is linear and on the ground is Exudyn's own ``CartesianSpringDamper``, which takes a tenth of the time
-of a Python function. Any other is an ``ObjectGenericODE2`` without mass.
+A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which takes a tenth of the time of a Python
+function. Any other is a massless ``ObjectGenericODE2``.
 """
 
 from __future__ import annotations
@@ -48,16 +47,16 @@ Quantity = Literal["deflection", "force", "stored_energy", "power"]
 
 @dataclass(frozen=True, eq=False)
 class RadialSupport:
-    """A support that ``add_radial_support`` has added to a model.
+    """Handle of a support added by ``add_radial_support``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model.
     item : ObjectIndex
-        Of the connector.
+        Index of the connector.
     nodes : tuple of NodeIndex
-        Of the base, but on the ground, and of the disc.
+        Nodes of the base, unless it is the ground, and of the disc.
 
     """
 
@@ -70,34 +69,28 @@ class RadialSupport:
     _law: Law = field(repr=False)
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return what the damper turns into heat at the current motion, in W, as ``add_energy_balance`` takes it."""
+        """Return the heating power of the damper in W, in the form that ``add_energy_balance`` expects."""
         if (
             len(self.nodes) == 1
-        ):  # on the ground, seen at every evaluation: ẇ is the velocity of the disc's node
+        ):  # on the ground, which is evaluated often, ẇ is the velocity of the disc's node
             vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
 
     def stored_energy(self, mbs: Any) -> float:
-        """Return what springs and stop hold at the current motion, in J, as ``add_energy_balance`` takes it."""
+        """Return the energy of springs and stop in J, in the form that ``add_energy_balance`` expects."""
         return self._state(mbs)[2]
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
 
         - ``"deflection"``: w in m, two components in the axes of the base.
-        - ``"force"``: on the disc in N, three components in global axes.
-        - ``"stored_energy"``: of springs and stop, in J.
-        - ``"power"``: what the damper turns into heat, in W.
+        - ``"force"``: force on the disc in N, three components in global axes.
+        - ``"stored_energy"``: energy of springs and stop, in J.
+        - ``"power"``: heating power of the damper, in W.
 
-        ``options`` are those of Exudyn's sensors. Without any the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file.
-
-        Raises
-        ------
-        ValueError
-            If there is no such quantity.
-
+        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
+        ``mbs.GetSensorStoredData`` and writes no file. Raises ``ValueError`` for any other quantity.
         """
         quantities = get_args(Quantity)
         if quantity not in quantities:
@@ -113,7 +106,6 @@ class RadialSupport:
     def _state(
         self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
     ) -> tuple[FloatArray, FloatArray, float, float]:
-        """Return deflection, force on the disc in global axes, stored energy and power of the damper."""
         q, q_t = (
             np.hstack([mbs.GetNodeOutput(node, variable, configuration) for node in self.nodes])
             for variable in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
@@ -141,21 +133,21 @@ def add_radial_support(
 ) -> RadialSupport:
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
-    On the ground they act in the global x-y plane, on a body across its z-axis and turn with it, as an elastic shaft
-    does. They are relaxed where the disc's node is at ``offset``, and press in every radial direction alike; nothing
-    holds the disc along the axis or against tilting. ``computeMassMatrixInversePerBody`` must stay False unless the
-    support is linear and on the ground, because its nodes are shared with their bodies.
+    On the ground they act in the global x-y plane. On a body they act across its z-axis and turn with it, like an
+    elastic shaft. They are relaxed if the disc's node is at ``offset``, and equal in all radial directions. They
+    neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False
+    unless the support is linear and on the ground, because its nodes are shared with their bodies.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Not yet assembled, with the nodes.
+        The model, not yet assembled, with the nodes.
     base_node : NodeIndex or ObjectIndex or None
-        None for the ground; an ``ObjectIndex`` is that of a body with such a node. Else a ``Node1D``, which turns
-        about the z-axis through the global origin, a ``NodeRigidBody2D``, or one of a rigid body in space:
-        ``NodeRigidBodyRotVecLG``, ``NodeRigidBodyRxyz`` or, for implicit solvers, ``NodeRigidBodyEP``.
+        None for the ground; an ``ObjectIndex`` for a body with one of the following nodes: a ``Node1D``, which turns
+        about the z-axis through the global origin, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
+        ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``.
     disc_node : NodeIndex or ObjectIndex
-        One of those, but not a ``Node1D``.
+        One of those, except a ``Node1D``.
     stiffness : float
         C in N/m, >= 0.
     damping : float
@@ -163,16 +155,17 @@ def add_radial_support(
     hardening : float
         C₃ in N/m³, >= 0.
     stop_gap : float
-        Play in m before the stop, >= 0.
+        Clearance of the stop in m, >= 0.
     stop_stiffness : float
         C_s in N/m, >= 0; 0 for no stop.
     offset : two floats
-        In m; in the axes of the base and from its node, which is the origin for a ``Node1D`` and the ground.
+        Relaxed position in m, in the axes of the base and from its node, which is the origin for a ``Node1D`` and the
+        ground.
 
     Raises
     ------
     ValueError
-        If a number is out of its range or a node is of a kind that can't be used.
+        If a number is out of range or a node is of an unsupported kind.
 
     """
     law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
@@ -203,16 +196,16 @@ def _checked_law(
 
 
 def _checked_nodes(mbs: Any, base_node: Any, disc_node: Any) -> tuple[Kinds, int]:
-    """Return the kinds of base and disc, and how many of the base's first coordinates the model has not.
+    """Return the kinds of base and disc, and how many first coordinates of the base the model does not contain.
 
-    The ground and a rotor count as planar bodies, of which three or two coordinates stay zero.
+    The ground and a rotor count as planar bodies with three or two coordinates fixed at zero.
     """
     disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, *SPATIAL))
     if base_node is None:
         return (PLANAR, disc), ON_GROUND
     base = checked_kind("base_node", mbs, base_node)
     if int(base_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is the base_node too: a support takes two bodies")
+        raise ValueError(f"disc_node {int(disc_node)} is also the base_node: a support needs two bodies")
     return ((PLANAR, disc), ON_ROTOR) if base == ROTOR else ((base, disc), 0)
 
 
@@ -225,7 +218,6 @@ def _checked_offset(offset: Sequence[float]) -> Offset:
 
 
 def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law) -> Any:
-    """Add Exudyn's own springs and dampers from the ground to ``node``; return their ``ObjectIndex``."""
     stiffness, *_, damping = law
     ground = mbs.AddObject(items.ObjectGround(referencePosition=[*offset, 0.0]))
     return mbs.AddObject(

@@ -1,7 +1,7 @@
 """Dry friction between two bodies on a ring or at points of it: one connector for pins, discs and drivetrains.
 
-It puts the full reaction on the master, as ``connector`` says. ``friction_laws`` has the law, and the handle that
-``add_ring_friction`` returns is in ``friction_sensors``.
+It applies the full reaction to the master, see ``connector``. The law is in ``friction_laws``, the handle returned by
+``add_ring_friction`` in ``friction_sensors``.
 """
 
 from __future__ import annotations
@@ -68,83 +68,83 @@ def add_ring_friction(
     thermal_node: ThermalNode | None = None,
     held: int | None = None,
 ) -> RingFriction:
-    """Add friction between a disc and a master disc to ``mbs``; return a handle with its number and its sensors.
+    """Add friction between a disc and a master disc to ``mbs``; return a handle with the connector and its sensors.
 
     The contact is a circle of ``contact_radius`` about the origin of the disc's node, or ``contact_points`` points on
-    it that turn with the disc: point i at the angle φ + 2πi/n. The points share the normal load N alike. Or it is the
-    annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure`` over its radius. The law is that of
-    ``friction_laws``: Coulomb friction wherever the slip reaches ε, viscous below.
+    it that turn with the disc: point i at the angle φ + 2πi/n, each with an equal share of the normal load N. Or it
+    is the annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure``. The law is that of
+    ``friction_laws``: Coulomb friction above the slip speed ε, viscous below.
 
-    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, or
-    one of a rigid body in space: ``NodeRigidBodyRotVecLG``, ``NodeRigidBodyRxyz`` or, for implicit solvers,
-    ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. The ground is a master that rests, whose axis is
-    the z-axis through the global origin: a brake, or friction of a bearing. The plane of contact goes through the
-    disc's node across the z-axis of the master's body; a small tilt of the disc against it leaves the ring as it is.
-    The load presses nothing together: it counts for friction only. ``computeMassMatrixInversePerBody`` must stay
-    False, because the nodes are shared with their bodies; Exudyn says so.
+    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
+    ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``, the default of
+    Exudyn's ``CreateRigidBody``. The ground is a master at rest whose axis is the z-axis through the global origin,
+    for example for a brake or bearing friction. The plane of contact passes through the disc's node across the z-axis
+    of the master's body; a small tilt of the disc is neglected. The load acts only through friction and presses
+    nothing together. ``computeMassMatrixInversePerBody`` must stay False, because the nodes are shared with their
+    bodies; otherwise Exudyn raises an error.
 
     Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
 
     - ``time`` in s,
     - ``radius`` in m, the distance of the disc's node from the master's axis,
     - ``slip_speed`` in m/s, the mean slip speed P of the contact,
-    - ``relative_spin`` in rad/s, S = φ̇ − ω, positive where the disc is faster,
+    - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster,
 
-    as ``lambda time: ...`` or ``lambda radius, slip_speed: ...``. They may read sensors of ``mbs``, as a controller
-    does, but of this contact only those of its slip and its heat. The Jacobian holds their derivatives by all but
-    the time, not what comes by way of sensors.
+    for example ``lambda time: ...`` or ``lambda radius, slip_speed: ...``. They may read sensors of ``mbs``, as a
+    controller does, but of this contact only the sensors of slip and heat. The Jacobian contains their derivatives by
+    all arguments except the time, and none through sensors.
 
-    Without ``regularisation`` the contact locks: a constraint holds both spins together until the load exceeds the
-    static friction. That needs ``solve_dynamic`` with an implicit solver, and bodies that turn about one axis: rotors
-    (``Node1D``), or other bodies that joints hold on it. It needs no choice of ε, does not creep, and takes steps as
-    large as the motion allows. The switching times are exact to the accuracy of the solver's steps. A contact that
-    reverses twice within one step is not seen.
+    Without ``regularisation`` the contact sticks exactly: a constraint holds both spins together until the load
+    exceeds the static friction. This requires ``solve_dynamic`` with an implicit solver and bodies that turn about
+    one axis: rotors (``Node1D``), or other bodies that joints hold on it. The contact does not creep, and the steps
+    can be as large as the motion allows. Switching times have the accuracy of the solver's steps. A contact that
+    reverses twice within one step is not detected.
 
-    A static solver keeps the velocities with which the nodes start, so that it finds the equilibrium of a disc on a
-    master that turns.
+    A static solver keeps the initial velocities of the nodes, so it finds the equilibrium of a disc on a turning
+    master.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Not yet assembled, with both nodes.
+        The model, not yet assembled, with both nodes.
     master_node : NodeIndex or ObjectIndex or None
-        Of the one body, or None for the ground. An ``ObjectIndex`` is that of a body with such a node. An index of a
-        node in another model is that of the node that has it here.
+        Node or body of the master; None for the ground. The index of a node in another model counts as an index in
+        this one.
     disc_node : NodeIndex or ObjectIndex
-        Of the other body.
+        Node or body of the disc.
     contact_radius : float
-        R in m, >= 0; the contact is a pin if it is 0.
+        R in m, >= 0; 0 for a pin.
     inner_radius, outer_radius : float
         In place of ``contact_radius``: 0 <= ``inner_radius`` < ``outer_radius``, in m.
     friction_coefficient : float, table or callable
-        μ >= 0, or a function that returns it, as Stribeck's curve of the slip speed is one, or rows of a slip speed
-        in m/s and its μ, the first one at 0, linear between the rows and beyond the last one, but not below 0.
+        μ >= 0; a function that returns it, such as a Stribeck curve of the slip speed; or rows of slip speed in m/s
+        and μ, the first at 0, linear between the rows and beyond the last one, but not below 0.
     normal_load : float or callable
-        N in N, >= 0, or a function that returns it: the force along the axis. All ``plates`` carry it.
+        Axial force N in N, >= 0, or a function that returns it. All ``plates`` carry it.
     regularisation : float, optional
-        ε in m/s, > 0. Without it the contact sticks exactly, see below.
+        ε in m/s, > 0. If None, the contact sticks exactly.
     contact_points : int or None
         n >= 1, or None for the whole circle or annulus.
     static_ratio : float
         Static over sliding friction, >= 1. Friction holds up to ``static_ratio``·μN and falls to μN between the slip
-        speeds ε and 2ε: what that changes is of first order in ε.
+        speeds ε and 2ε; the effect of this width is of first order in ε.
     plates : int
-        Pairs of faces in contact, >= 1, one behind the other: friction is that of one times their number.
+        Number of pairs of faces in series, >= 1, a factor of friction.
     pressure : {"uniform", "wear"} or callable
-        Of an annulus: alike everywhere; ∝ 1/r, as it comes to be where linings wear evenly; or a smooth function of
-        the radius in m that returns it >= 0 in any unit, because the load says how large it is.
+        Pressure of an annulus: uniform; ∝ 1/r, as in evenly worn linings; or a smooth function of the radius in m
+        that returns it >= 0 in any unit, since the load determines its size.
     thermal_node : ThermalNode, optional
-        What friction heats, of ``add_thermal_node``. The coefficient may then be a function of ``temperature`` too,
-        which goes by way of Python.
+        Heat capacity from ``add_thermal_node`` that friction heats. The coefficient may then also be a function of
+        ``temperature``, which is evaluated in Python.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
 
     Raises
     ------
     ValueError
-        If a number is out of its range, a function takes other arguments, or a node is none of ``mbs`` or of a kind
-        that can't be used. Where a function returns such a number in a run, Exudyn ends it with an ``ExudynError``
-        that tells it with its time and arguments.
+        If a number is out of range, a function takes other arguments, or a node is not in ``mbs`` or of an
+        unsupported kind. If a function returns an invalid number in a run, Exudyn raises an ``ExudynError`` with its
+        time and arguments.
 
     """
     contact = _checked_geometry(
@@ -153,7 +153,7 @@ def add_ring_friction(
     coefficient = friction_coefficient
     if thermal_node is not None:
         if not isinstance(thermal_node, ThermalNode):
-            raise ValueError(f"thermal_node = {thermal_node!r}: it must be what add_thermal_node returned")
+            raise ValueError(f"thermal_node = {thermal_node!r}: it must be a result of add_thermal_node")
         coefficient = thermal_node.with_temperature(coefficient)
     factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
     nodes, kinds = checked_pair(mbs, master_node, disc_node)
@@ -202,9 +202,9 @@ def _add_lock(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> Any:
 def checked_pair(
     mbs: Any, master_node: Any, disc_node: Any, masters: Sequence[int] = ALL, discs: Sequence[int] = ALL
 ) -> tuple[tuple[Any, ...], Kinds]:
-    """Return the nodes, of which the ground is none, and the kinds of both.
+    """Return the nodes, without the ground, and the kinds of both.
 
-    Raises ``ValueError`` if they are none of those allowed, or one and the same.
+    Raises ``ValueError`` if a node is not allowed, or both are the same.
     """
     disc = node_of("disc_node", mbs, disc_node)
     disc_kind = checked_kind("disc_node", mbs, disc, discs)
@@ -213,12 +213,12 @@ def checked_pair(
         return (disc,), (GROUND, disc_kind)
     master_kind = checked_kind("master_node", mbs, master, masters)
     if int(master) == int(disc):
-        raise ValueError(f"disc_node {int(disc)} is the master_node too: friction takes two bodies")
+        raise ValueError(f"disc_node {int(disc)} is also the master_node: friction needs two bodies")
     return (master, disc), (master_kind, disc_kind)
 
 
 def _check_spins(mbs: Any, nodes: Sequence[Any], kinds: Kinds) -> None:
-    """Raise ``ValueError`` if a body starts with a spin across the axis of the contact, which would not resist it."""
+    """Raise ``ValueError`` if a body starts with a spin across the contact's axis, which friction does not resist."""
     z = axis = np.array([0.0, 0.0, 1.0])
     for name, node, kind in zip(
         ("master_node", "disc_node")[-len(nodes) :], nodes, kinds[-len(nodes) :], strict=True
@@ -232,7 +232,7 @@ def _check_spins(mbs: Any, nodes: Sequence[Any], kinds: Kinds) -> None:
             axis = np.array(axes[2]) if name == "master_node" else axis
         if np.linalg.norm(np.cross(axis, spin)) > abs(axis @ spin):
             raise ValueError(
-                f"{name} {int(node)} spins about {spin.round(6).tolist()} at the start: it must do so about the axis "
+                f"{name} {int(node)} initially spins about {spin.round(6).tolist()}: it must spin about the axis "
                 f"of the contact, {axis.round(6).tolist()}, which is the z-axis of the master's body or of the ground"
             )
 
@@ -246,19 +246,19 @@ def _checked_geometry(
     held: int | None,
     pressure: Pressure,
 ) -> Contact:
-    """Return the contact, with 1 N in place of μN; raise ``ValueError`` if there is none like it."""
+    """Return the contact, with 1 N in place of μN; raise ``ValueError`` if it is invalid."""
     regularisation = EXACT if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         inner = radius
         if pressure != "uniform":
             raise ValueError(
-                f"pressure = {pressure!r}: it must be left out but for an annulus, with inner_radius and outer_radius"
+                f"pressure = {pressure!r}: it needs an annulus, with inner_radius and outer_radius"
             )
     else:
         inner, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
         points, epsilon = density_of(pressure, inner, radius), checked_regularisation(regularisation)
-    if held is not None and held not in range(1, 1 + points):  # none of a whole circle
+    if held is not None and held not in range(1, 1 + points):  # a whole circle has none
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
@@ -268,7 +268,7 @@ def _checked_geometry(
 def checked_contact(
     regularisation: float, contact_radius: float | None, contact_points: int | None
 ) -> tuple[float, int, float]:
-    """Return R, number of points and ε; raise ``ValueError`` if one is out of its range."""
+    """Return R, number of points and ε; raise ``ValueError`` if one is out of range."""
     radius = finite_number("contact_radius", contact_radius)
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
@@ -279,7 +279,7 @@ def checked_contact(
             f"contact_points = {contact_points}: it must be a whole number >= 1, or None for the continuous ring"
         )
     epsilon = checked_regularisation(regularisation)
-    if radius == 0.0:  # a pin, of however many points
+    if radius == 0.0:  # a pin, whatever the number of points
         return radius, 1, epsilon
     return radius, int(contact_points or CONTINUOUS), epsilon
 
@@ -290,10 +290,9 @@ def _checked_annulus(
     contact_radius: float | None,
     contact_points: int | None,
 ) -> tuple[float, float]:
-    """Return both radii in m; raise ``ValueError`` if there is no such annulus."""
     for name, value in (("contact_radius", contact_radius), ("contact_points", contact_points)):
         if value is not None:
-            raise ValueError(f"{name} = {value}: it must be left out for an annulus with its two radii")
+            raise ValueError(f"{name} = {value}: it cannot be combined with inner_radius and outer_radius")
     inner, outer = finite_number("inner_radius", inner_radius), finite_number("outer_radius", outer_radius)
     if inner < 0.0:
         raise ValueError(f"inner_radius = {inner:g} m: it must be >= 0")

@@ -1,7 +1,7 @@
-"""The temperature of what friction heats: a heat capacity with a conductance to its surroundings.
+"""Temperature of a part that friction heats: a heat capacity with a conductance to its surroundings.
 
-C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. What has gone to the surroundings is a
-coordinate besides, so that C·(T − T_start) + loss = heat is a linear invariant, which solvers keep to rounding.
+C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. The heat lost to the surroundings is a second
+coordinate, so C·(T − T_start) + loss = heat is a linear invariant, which solvers keep to rounding.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ ARGUMENT = "temperature"
 
 @dataclass(frozen=True, eq=False)
 class ThermalNode:
-    """A heat capacity that ``add_thermal_node`` has added to a model, to be given to ``add_ring_friction``.
+    """Handle of a heat capacity added by ``add_thermal_node``, for ``add_ring_friction``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model.
     node : NodeIndex
-        Of two coordinates of first order: T and the heat in J that has gone to the surroundings.
+        Node with two first-order coordinates: T, and the heat in J lost to the surroundings.
     heat_capacity, conductance, surroundings : float
-        C in J/K, G in W/K and T₀, in whatever unit the temperature is.
+        C in J/K, G in W/K and T₀, in the unit of the temperature.
 
     """
 
@@ -48,21 +48,21 @@ class ThermalNode:
     _sources: list[Callable[[Any, float], float]] = field(repr=False)
 
     def temperature(self, mbs: Any) -> float:
-        """Return T at the current motion of the assembled model."""
+        """Return the current T of the assembled model."""
         return float(mbs.systemData.GetODE1Coordinates()[self._place])
 
     def stored_energy(self, mbs: Any) -> float:
-        """Return C·(T − T₀) in J, as ``add_energy_balance`` takes it."""
+        """Return C·(T − T₀) in J, in the form that ``add_energy_balance`` expects."""
         return self.heat_capacity * (self.temperature(mbs) - self.surroundings)
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return what goes to the surroundings in W, as ``add_energy_balance`` takes it."""
+        """Return the power lost to the surroundings in W, in the form that ``add_energy_balance`` expects."""
         return self.conductance * (self.temperature(mbs) - self.surroundings)
 
     def add_sensor(self, **options: Any) -> Any:
-        """Add a sensor of T and of the heat in J that has gone to the surroundings; return its ``SensorIndex``.
+        """Add a sensor of T and of the heat in J lost to the surroundings; return its ``SensorIndex``.
 
-        ``options`` are those of Exudyn's sensors. Without any the sensor stores its values for
+        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
         ``mbs.GetSensorStoredData`` and writes no file.
         """
         variable = exu.OutputVariableType.Coordinates
@@ -71,16 +71,16 @@ class ThermalNode:
         )
 
     def heated_by(self, power: Callable[[Any, float], float]) -> None:
-        """Heat it by a power in W too, a function of ``mbs`` and the time in s, as ``RingFriction.power`` is one."""
+        """Add a heating power in W, a function of ``mbs`` and the time in s, such as ``RingFriction.power``."""
         self._sources.append(power)
 
     def with_temperature(self, coefficient: Coefficient) -> Coefficient:
-        """Return a coefficient of friction with the ``temperature`` filled in, if it is a function that takes it."""
+        """Return a friction coefficient with the ``temperature`` inserted, if it is a function that takes it."""
         if not callable(coefficient):
             return coefficient
         try:
             signature = inspect.signature(coefficient)
-        except (TypeError, ValueError):  # whoever looks at its other arguments tells it
+        except (TypeError, ValueError):  # a later check of its arguments reports it
             return coefficient
         if ARGUMENT not in signature.parameters:
             return coefficient
@@ -98,7 +98,7 @@ class ThermalNode:
         )
         return at_temperature
 
-    @cached_property  # nodes that are added later come behind
+    @cached_property  # later nodes are added behind it
     def _place(self) -> int:
         return int(self.mbs.systemData.GetNodeLTGODE1(self.node)[0])
 
@@ -111,23 +111,23 @@ def add_thermal_node(
     surroundings: float = 20.0,
     start: float | None = None,
 ) -> ThermalNode:
-    """Add a temperature to ``mbs``; return a handle, which ``add_ring_friction`` takes as its ``thermal_node``.
+    """Add a temperature to ``mbs``; return a handle, the ``thermal_node`` of ``add_ring_friction``.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Not yet assembled.
+        The model, not yet assembled.
     heat_capacity : float
         C in J/K, > 0.
     conductance : float
         G in W/K, >= 0; 0 for no loss.
     surroundings, start : float
-        T₀ and the temperature to begin with, T₀ if None, in one unit, °C or K.
+        T₀ and the initial temperature (default T₀), both in °C or both in K.
 
     Raises
     ------
     ValueError
-        If a number is out of its range.
+        If a number is out of range.
 
     """
     capacity = finite_number("heat_capacity", heat_capacity)

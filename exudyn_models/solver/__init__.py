@@ -1,1 +1,1 @@
-"""Runs of an Exudyn model: one call of a solver and what it is checked for, step limits, linearisation."""
+"""Runs of an Exudyn model: solver calls with checks, step limits, and linearisation."""

@@ -1,4 +1,4 @@
-"""Runs that end where a load jumps and go on from there, as if they were one."""
+"""Runs that are interrupted where a load jumps and then continue."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import numpy as np
 from reference_model.systems import finite_number
 
 GAP = 1e-13
-"""Of the span of a run, left out on either side of a break, so that no step sees both of its sides."""
+"""Share of the span of a run omitted on either side of a break, so that no step sees both sides."""
 
 
 def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
-    """Return the breaks in s; raise ``ValueError`` if they don't grow, or are not within the run."""
+    """Return the breaks in s; raise ``ValueError`` unless they increase and lie within the run."""
     start, end = options.startTime, options.endTime
     result = [finite_number(f"breaks[{i}]", value) for i, value in enumerate(breaks)]
     for i, (before, value) in enumerate(zip([start, *result], result, strict=False)):
@@ -32,11 +32,12 @@ def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
 def parts_of_run(
     mbs: Any, settings: Any, breaks: Sequence[float], update_initial_values: bool
 ) -> Generator[bool, None, None]:
-    """Let the ``settings`` be those of one part of the run after the other; yield how each has to leave the model.
+    """Set the ``settings`` for one part of the run after the other.
 
-    That is whether its end are the next initial values. Steps are as long as those of the whole run, or shorter.
-    Files and sensors hold all parts. When the last has ended, all settings are as they were, and the initial values
-    are those of before unless ``update_initial_values``.
+    Yield whether its end becomes the next initial state.
+
+    Steps are at most as long as those of the whole run. Files and sensors record all parts. After the last part all
+    settings are restored, and the initial values too unless ``update_initial_values``.
     """
     options, outputs = settings.timeIntegration, settings.solution
     start, end, steps = options.startTime, options.endTime, options.numberOfSteps

@@ -1,8 +1,8 @@
-"""Jumps of a load inside of an implicit run, seen by the powers of its energy balance.
+"""Detection of load jumps in an implicit run, by the powers of its energy balance.
 
-Coulomb friction itself lets no power jump: where a contact comes to stick or leaves it, slip is zero. So a power that
-jumps between two steps, while it hardly changes in the steps before and after, tells of a load that does, or of what
-the steps don't resolve; either way the step across it is wrong by a share of the jump.
+Coulomb friction itself causes no jump of a power, because slip is zero where a contact begins or ends stick. So a
+power that jumps between two steps, but hardly changes in the steps before and after, indicates a load that jumps, or
+something that the steps do not resolve. Either way the error of that step is a share of the jump.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from reference_model.systems import FloatArray
 _NAMES = "names_of_powers"
 
 NEIGHBOURS = 2
-"""Steps before and after a jump that it is compared with."""
+"""Number of steps before and after a jump that it is compared with."""
 
 STEEPER = 5.0
-"""A jump exceeds their changes, and their slopes, by this: twice is usual where a curve bends."""
+"""Smallest ratio of a jump to the neighbouring changes, and of their slopes; a curve reaches about 2."""
 
 LEAST = 0.02
-"""Of the largest power of the run: less is not told."""
+"""Smallest jump that is reported, as a share of the largest power of the run."""
 
 
 def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
-    """Have jumps looked for in all that ``rates``, a user function of first order, returns: powers in ``unit`` W."""
+    """Register the results of ``rates``, a first-order user function, as powers in ``unit`` W to be checked."""
     setattr(rates, _NAMES, tuple((name, unit) for name in names))
 
 
 TOGETHER = 4096
-"""Steps that are looked at together, which costs next to nothing."""
+"""Number of steps that are checked together, which costs almost nothing."""
 
 
 class JumpCheck:
-    """Looks at the powers of an assembled model after every step of an implicit run, and warns at its end.
+    """Checks the powers of an assembled model in an implicit run, and warns at its end.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Assembled.
+        The assembled model.
 
     """
 
@@ -54,7 +54,7 @@ class JumpCheck:
         self._jumps: list[tuple[float, float, int, float]] = []
 
     def look(self, t: float, rates: FloatArray) -> None:
-        """Take note of all ``rates`` of the model after a step, or at the start, at the time t (s)."""
+        """Record all ``rates`` of the model at the start or after a step, at the time t (s)."""
         if not self._names:
             return
         self._times.append(t)
@@ -63,7 +63,7 @@ class JumpCheck:
             self._find()
 
     def _find(self) -> None:
-        """Look for jumps in the steps noted, all but the last ones, which the next look begins with."""
+        """Search the recorded steps for jumps, except the last ones, which start the next search."""
         times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
         del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
         self._largest = np.maximum(self._largest, np.abs(powers).max(axis=0))
@@ -86,7 +86,7 @@ class JumpCheck:
             )
 
     def warn(self) -> None:
-        """Warn of the largest jump that has been seen, if there is any."""
+        """Warn about the largest jump found, if any."""
         if self._times:
             self._find()
         jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest[jump[2]]]
@@ -98,14 +98,14 @@ class JumpCheck:
             f"the power {self._names[power]!r} jumps by {size:.3g} W between t = {start:.9g} s and {end:.9g} s"
             + (f", and powers do so in {times} steps of this run" if times > 1 else "")
             + f": the energy across that step may be wrong by {size * (end - start) / 2.0:.2g} J. If a load jumps "
-            "there, give its time to solve_dynamic, as breaks=[...]; if none does, take shorter steps",
+            "there, pass its time to solve_dynamic, as breaks=[...]; otherwise use shorter steps",
             RuntimeWarning,
             stacklevel=4,
         )
 
 
 def _powers(mbs: Any) -> tuple[list[str], FloatArray, list[int]]:
-    """Return names and units (W) of the powers that are watched, and where they are among the rates."""
+    """Return names and units (W) of the registered powers, and their indices among the rates."""
     found: list[tuple[str, float]] = []
     places: list[int] = []
     objects = mbs.systemData.NumberOfObjects() if mbs.systemData.ODE1Size() else 0

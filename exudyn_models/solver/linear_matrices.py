@@ -1,4 +1,4 @@
-"""Mass, stiffness and damping of an assembled model, by Exudyn's own derivatives."""
+"""Mass, stiffness and damping matrices of an assembled model, by Exudyn's derivatives."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from reference_model.systems import FloatArray
 
 
 def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
-    """Return A of d(x, ẋ)/dt = A·(x, ẋ), small motions about the initial values of an assembled model.
+    """Return A of d(x, ẋ)/dt = A·(x, ẋ), for small motions about the initial values of an assembled model.
 
-    x are its coordinates of second order, or ``own`` of them. Where loads or a friction's normal load are functions
-    of the user's that read the motion by themselves, they are taken as they are at that state.
+    x are its second-order coordinates, or those in ``own``. User functions for loads that read the motion themselves
+    are evaluated at that state only.
     """
     mass, stiffness, damping = (part[own, own] for part in matrices_of_model(mbs))
     lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
@@ -26,9 +26,9 @@ def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
 def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return M, K and D of small motions M·ẍ + D·ẋ + K·x = 0 about the initial values at the time t in s.
 
-    Of an assembled model and all of its coordinates of second order. Its sensors do not notice.
+    They cover all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
     """
-    solver: Any = exu.MainSolverStatic()  # its Jacobian holds no terms of a time integration
+    solver: Any = exu.MainSolverStatic()  # its Jacobian contains no terms of time integration
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
     settings.staticSolver.loadStepStart = t
@@ -52,7 +52,7 @@ def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray,
 
 
 def singular_mass(mbs: Any) -> str:
-    """Return in words which coordinates of an assembled model have no mass, an empty string if all have."""
+    """Return a message about coordinates of an assembled model without mass, or ""."""
     solver: Any = exu.MainSolverStatic()
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
@@ -63,7 +63,9 @@ def singular_mass(mbs: Any) -> str:
         mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
         solver.FinalizeSolver(mbs, settings)
     for node in range(mbs.systemData.NumberOfNodes()):
-        if mbs.GetNode(node)["nodeType"] == "RigidBodyEP":  # a constraint holds the norm, in place of inertia
+        if (
+            mbs.GetNode(node)["nodeType"] == "RigidBodyEP"
+        ):  # a constraint, in place of inertia, fixes the norm
             first = mbs.GetNodeODE2Index(node) + 3
             rotation = mass[first : first + 4, first : first + 4]
             rotation += rotation.any() * np.eye(4)
@@ -75,7 +77,7 @@ def singular_mass(mbs: Any) -> str:
 
 
 def _nodes_of(mbs: Any, coordinates: Any) -> list[tuple[int, int]]:
-    """Return the node of each of a model's coordinates of second order, and which of its own it is."""
+    """Return node and local index of each of a model's second-order coordinates."""
     starts = [
         (mbs.GetNodeODE2Index(node), node)
         for node in range(mbs.systemData.NumberOfNodes())

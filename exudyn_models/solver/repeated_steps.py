@@ -1,9 +1,9 @@
-"""States that Exudyn's implicit solvers do not restore before they repeat a step, restored here.
+"""Restoration of states that Exudyn's implicit solvers leave changed when they repeat a step.
 
-- Modified Newton that contracts badly starts a step over. The rates of all coordinates of first order, such as heat
-  and works, stay those of the iterate that diverged (``examples/11_exudyn_first_order_rates.py``).
+- If modified Newton converges badly the solver restarts the step. The rates of all first-order coordinates, such as
+  heat and work, keep the values of the diverged iterate (``examples/11_exudyn_first_order_rates.py``).
 - A rejected step is repeated with a smaller size. Generalised-α keeps the algorithmic accelerations of the rejected
-  one, which changes all velocities.
+  step, which changes all velocities.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import exudyn as exu
 
 WITHOUT_RESTART = {
     "modifiedNewtonContractivity": 1e300,
-    "maxModifiedNewtonIterations": 1,  # then a new Jacobian for each iteration, as full Newton has it
+    "maxModifiedNewtonIterations": 1,  # then a new Jacobian in each iteration, as in full Newton
     "maxModifiedNewtonRestartIterations": 1_000_000,
     "modifiedNewtonJacUpdatePerStep": False,
 }
@@ -25,7 +25,7 @@ WITHOUT_RESTART = {
 
 @contextmanager
 def newton_without_restart(mbs: Any, newton: Any) -> Iterator[None]:
-    """Let modified Newton renew its Jacobian in place of a restart if the model has coordinates of first order."""
+    """Make modified Newton renew its Jacobian instead of restarting, if the model has first-order coordinates."""
     values = WITHOUT_RESTART if mbs.systemData.ODE1Size() else {}
     before = {name: getattr(newton, name) for name in values}
     try:
@@ -39,7 +39,7 @@ def newton_without_restart(mbs: Any, newton: Any) -> Iterator[None]:
 
 @contextmanager
 def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[None]:
-    """Have Exudyn call what ``wrap`` makes of the model's own function, or of one that does nothing.
+    """Make Exudyn call ``wrap(own)``, where ``own`` is the model's user function or one that does nothing.
 
     ``place`` is "PreStep", "PostNewton" or "PostStep".
     """
@@ -56,10 +56,10 @@ def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[
 
 @contextmanager
 def restored_accelerations(mbs: Any) -> Iterator[None]:
-    """Let generalised-α repeat a rejected step from the algorithmic accelerations at its start.
+    """Make generalised-α repeat a rejected step from the algorithmic accelerations at its start.
 
-    Exudyn restores them when a function after Newton's method reports a discontinuity, so this one reports one, once
-    for each repeated step.
+    Exudyn restores them if the user function after Newton's method reports a discontinuity. So this one reports one,
+    once per repeated step.
     """
     last_start, spoilt = math.nan, False
 

@@ -1,4 +1,4 @@
-"""``mbs.SolveDynamic`` for models of one's own, checked for what Exudyn itself lets pass."""
+"""``mbs.SolveDynamic`` for any model, with checks for problems that Exudyn does not report."""
 
 from __future__ import annotations
 
@@ -32,59 +32,54 @@ def solve_dynamic(
     *,
     breaks: Sequence[float] = (),
 ) -> list[ModeChange]:
-    """Run ``mbs.SolveDynamic`` with the same arguments, and raise what it does not tell.
+    """Run ``mbs.SolveDynamic`` with the same arguments, and raise errors that it does not report.
 
-    A step across a jump of a load is wrong by the jump times the part of the step that lies before it, of any order
-    the solver may be, and by more under an implicit one. With ``breaks`` the run ends at these times, from before,
-    and goes on from there.
-
-    Exudyn's explicit solvers ignore algebraic constraints, or lose their order where they eliminate them, and they go
-    on with a state that is not finite and report success. A look at every step, which costs about 1.5 μs, ends the
-    run there; the model's own function after a step is called besides.
-
-    A step beyond what is stable where contacts stick gives a run that looks like any other: before a run with a fixed
-    step a ``RuntimeWarning`` tells of it, see ``largest_stable_step``. It sees the contacts of ``add_ring_friction``,
-    whether they will stick or not, and all dampers at the initial values. Loads and coefficients that are functions
-    are looked at at the start and at a hundred times of the run, where the warning may come too: they are never asked
-    about a time or a motion that is not the run's.
-
-    An implicit run starts with the rates that heat and works have, which Exudyn takes to be zero. Steps that Exudyn
-    repeats begin with all of the state from their start, see ``repeated_steps``; for that modified Newton renews its
-    Jacobian where it would start over, whatever ``newton`` says about that. Steps that skip a peak of friction are
-    repeated with a smaller size; if steps are fixed, a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
-    Where a power of ``add_energy_balance`` or of a sensor of heat jumps a ``RuntimeWarning`` tells so at the end of
-    the run, see ``jumps``.
-
-    Friction contacts without a regularisation switch between sliding and stick at the times at which Coulomb's law
-    does. Sensors have an additional row at each of these times, see ``switching``.
+    - *Load jumps.* A step across a load jump has an error of the jump times the part of the step before it, and a
+      larger one with an implicit solver. With ``breaks`` the run stops just before these times and continues just
+      after. A ``RuntimeWarning`` at the end reports a jump of a power of ``add_energy_balance`` or of a heat sensor,
+      see ``jumps``.
+    - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and
+      report success with a state that is not finite. A check after every step, which costs about 1.5 μs, ends the run
+      in that case; the model's own function after a step is still called.
+    - *Fixed explicit steps.* If the step exceeds the stability limit of sticking contacts, a ``RuntimeWarning``
+      reports it, because the run looks normal; see ``largest_stable_step``. The check includes the contacts of
+      ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Functions for
+      loads and coefficients are evaluated at the start and at a hundred times of the run, with the motion of the run.
+    - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero.
+      Repeated steps start with the complete state from their beginning, see ``repeated_steps``; for this, modified
+      Newton renews its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of
+      friction are repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see
+      ``steep_laws``.
+    - *Exact stick.* Friction contacts without a regularisation lock and release at the times of Coulomb's law, see
+      ``switching``. Sensors have an additional row at each of these times.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model.
     simulationSettings : exudyn SimulationSettings
-        Of the run.
+        Settings of the run.
     solverType : exudyn DynamicSolverType, optional
-        In place of that of the settings.
+        Solver, if not that of the settings.
     updateInitialValues : bool
-        Let the next run go on from where this one ends.
+        Whether the next run continues from the end of this one.
     breaks : sequence of float
-        In s, in growing order and within the run: where a load, a coefficient or any other function jumps.
+        Increasing times in s within the run when a load, a coefficient or another function jumps.
 
     Returns
     -------
     list of ModeChange
-        Changes of the modes of all contacts without a regularisation, in the order of their times.
+        Mode changes of all contacts with exact stick, in order of time.
 
     Raises
     ------
     ValueError
-        If the solver is explicit and the model has algebraic constraints, or ``breaks`` are none.
+        If the solver is explicit and the model has algebraic constraints, or ``breaks`` are invalid.
     SimulationError
-        If a step does not converge, a matrix is singular, a state is not finite, or a solver that chooses its steps
-        would need too many.
+        If a step does not converge, a matrix is singular, a state is not finite, or DOPRI5
+        would need too many steps.
     exudyn.ExudynError
-        What else Exudyn finds; an error in a function of a friction contact arrives as its ``__cause__``.
+        Any other error of Exudyn; an error in a function of a friction contact is its ``__cause__``.
 
     """
     solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
@@ -152,12 +147,12 @@ def _solve(
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
         raise_interrupt(error)
-        if isinstance(error.__cause__, Warning):  # of the step, for someone to whom warnings are errors
+        if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
             raise error.__cause__ from None
         if isinstance(error, (exu.SolverError, exu.InternalError)):
             if massless := _singular(mbs, reached == start):
                 raise SimulationError(
-                    f"Exudyn's {solver.name} failed 0 s after the start: {massless}; give the body some"
+                    f"Exudyn's {solver.name} failed 0 s after the start: {massless}; add mass or inertia"
                 ) from error
             what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
             raise SimulationError(advice(solver.name, reached - start, what)) from error
@@ -170,22 +165,20 @@ def _solve(
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
-    """Return in words that the mass matrix is singular, if a run has failed at its start for that."""
+    """Return a message about a singular mass matrix, if a run has failed at its start for that reason, else ""."""
     if not at_start:
         return ""
     try:
         return singular_mass(mbs)
-    except exu.ExudynError:  # the run's own error is the one to tell
+    except exu.ExudynError:  # the run's own error is the one to report
         return ""
 
 
 def _check_constraints(mbs: Any, solver: Any) -> None:
-    """Raise ``ValueError`` if ``solver`` is explicit and an assembled model has algebraic constraints."""
     constraints = mbs.systemData.AEsize()
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(
             f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; take GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs, any "
-            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG, and contacts without regularisation, "
-            "which lock by one, by contacts with it"
+            "model; use GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs, any "
+            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG, and give contacts a regularisation"
         )

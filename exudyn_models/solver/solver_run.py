@@ -1,4 +1,4 @@
-"""One call of an Exudyn solver: quiet, without files, and checked for what Exudyn itself lets pass."""
+"""A single call of an Exudyn solver: quiet, without files, and checked for problems that Exudyn does not report."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Steps:
     Parameters
     ----------
     times : array of shape (n,)
-        In s.
+        Times in s.
     states : array of shape (n, 2d)
         The d coordinates of the system (m, rad) and their d velocities (m/s, rad/s).
     accelerations : array of shape (n, d)
-        In m/s², rad/s².
+        Accelerations in m/s², rad/s².
     evaluations : int
-        Evaluations of the equations of motion.
+        Number of evaluations of the equations of motion.
 
     """
 
@@ -45,7 +45,7 @@ class Steps:
     evaluations: int
 
     def only(self, chosen: NDArray[Any]) -> Steps:
-        """Return those of the steps that an array of indices or of yes and no has ``chosen``."""
+        """Return the steps ``chosen`` by an array of indices or booleans."""
         return replace(
             self,
             times=self.times[chosen],
@@ -55,28 +55,29 @@ class Steps:
 
 
 NOT_FINITE = "the state is not finite any more"
-"""Where Exudyn itself would go on and report success."""
+"""Message for a state that is not finite; Exudyn would continue and report success."""
 
 FIRST_STEP = 1e-6
-"""Of DOPRI5, in units of time of the model; it finds the size of the others by itself.
+"""First step of DOPRI5, in the model's unit of time; later steps are automatic.
 
-Runs with Exudyn's built-in contact fail if they start with the largest step. A factor of a thousand changes nothing.
+Runs with Exudyn's built-in contact fail if they start with the largest step. A factor of a thousand makes no
+difference.
 """
 
 
 @dataclass
 class StepCount(trajectory.StepCount):
-    """Counts the steps of a motion from 0 to ``end``, of whose units of time each is ``seconds`` s."""
+    """Counts the steps of a motion from 0 to ``end``, in units of time of ``seconds`` s."""
 
     seconds: float = 1.0
 
     def expect(self, start: float, steps: float) -> None:
-        """Raise ``SimulationError`` if ``steps`` from the time ``start`` on are too many to begin with."""
+        """Raise ``SimulationError`` if the expected ``steps`` from the time ``start`` on are too many."""
         if steps > trajectory.MOST_AHEAD:
             raise SimulationError(self._sentence(f"more than {trajectory.MOST_AHEAD:,} steps ahead", start))
 
     def count(self, t: float) -> str:
-        """Count one more step, to the time ``t``; return a sentence if there are, or will be, too many."""
+        """Count one more step, which ends at ``t``; return a message if there are or will be too many, else ""."""
         too_many = super().count(t)
         return self._sentence(too_many, t) if too_many else ""
 
@@ -110,33 +111,33 @@ def solve(
     Parameters
     ----------
     model : Model
-        Assembled.
+        The assembled model.
     start, end : float
-        In s, start <= end.
+        Times in s, start <= end.
     integrator : str
         One of ``EXPLICIT`` or ``FIXED_STEP``.
     step : float
-        In s: the step, for DOPRI5 the largest one.
+        Step in s, for DOPRI5 the largest one.
     tolerance : float
-        Of DOPRI5's local error, absolute; for the implicit solvers the residual force in N.
+        Absolute local error of DOPRI5; for the implicit solvers the residual force in N.
     watch : callable, optional
-        Looks at every step.
+        Called after every step.
     first_step : float
-        Of DOPRI5, in s.
+        First step of DOPRI5, in s.
     quasi_static : bool
-        Whether generalised-α goes through a motion without inertia: the forces are in balance at the end of each
-        step, and accelerations are those of the velocities, because the balance has them only to its own residual.
+        Whether generalised-α follows a motion without inertia. Forces then balance at the end of each step, and
+        accelerations are derivatives of the velocities, because the balance determines them only to its residual.
     balanced : bool
-        Whether such a motion starts in balance too, so that its forces give the first acceleration; else that is 0.
+        Whether such a motion also starts in balance, so that its forces give the first acceleration; otherwise it is
+        0.
     count : StepCount, optional
-        Of the whole motion, of which this is a part. If the model is not one in SI units, it tells how long a second
-        is.
+        Step count of the whole motion, which also gives the unit of time of a model that is not in SI units.
 
     Raises
     ------
     SimulationError
-        If a state is not finite, the Newton iteration fails, the step falls below what time resolves, or there are
-        too many steps.
+        If a state is not finite, Newton's method fails, the step falls below the resolution of time, or there are too
+        many steps.
 
     """
     if start == end:
@@ -164,9 +165,9 @@ def _no_steps(model: Model, time: float) -> Steps:
 
 
 def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
-    """Return the solver after its run, and the acceleration at the start that an explicit one does not record.
+    """Return the solver after its run, and the initial acceleration, which explicit solvers do not record.
 
-    Raises ``SimulationError`` for what went wrong.
+    Raises ``SimulationError`` if the run fails.
     """
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
@@ -189,25 +190,25 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
         raise SimulationError(look.too_many)
     if look.failure or not success:
         time = solver.it.currentTime * look.count.seconds
-        raise SimulationError(advice(integrator, time, look.failure or "the solver gave up"))
+        raise SimulationError(advice(integrator, time, look.failure or "the solver failed"))
     return solver, first_acceleration
 
 
 class _Look:
-    """Looks at the state after every step of a run, and ends it where Exudyn would not or where ``watch`` does."""
+    """Checks the state after every step of a run, and ends it where it fails or ``watch`` returns False."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
         data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._start, self._end, self._watch, self.count = start, end, watch, count
         self._previous = start
-        #: In s: a step below the resolution of time leaves it where it is.
+        #: Smallest step in s; a smaller one would not change the time.
         self.smallest_step = 8.0 * float(np.spacing(max(abs(start), abs(end))))
         self.failure = self.too_many = ""
         self.stopped = False
 
     def __call__(self, mbs: Any, t: float) -> bool:
-        own, watch = self._own, self._watch  # every step comes here: each call counts
+        own, watch = self._own, self._watch  # every call counts, because this runs after every step
         state = self._positions().tolist()[own] + self._velocities().tolist()[own]
         if not math.isfinite(sum(state)):
             self.failure = NOT_FINITE
@@ -223,9 +224,9 @@ class _Look:
 def _recorded(
     model: Model, end: float | None, quasi_static: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the times of all steps, shape (n,), and states (n, 2d) and accelerations (n, d) there.
+    """Return the times of all steps, shape (n,), states (n, 2d) and accelerations (n, d).
 
-    What fixed steps add up to may differ in the last digits from the ``end`` (s) of a run that went so far.
+    The sum of fixed steps may differ in the last digits from the ``end`` (s) of a completed run.
     """
     stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
@@ -238,7 +239,6 @@ def _recorded(
 
 
 def _evaluations(solver: Any, explicit: bool) -> int:
-    """Return how often a solver has evaluated the equations of motion."""
     if not explicit:
         found = solver.it.discontinuousIterationsCount
         # Each failed iteration leads to one repetition, see restored_accelerations.
@@ -258,7 +258,6 @@ def _settings(
     quasi_static: bool = False,
     balanced: bool = False,
 ) -> Any:
-    """Return Exudyn's settings for the arguments of :func:`solve`."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # at every step
@@ -268,8 +267,8 @@ def _settings(
     options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
     options.solverType = getattr(exu.DynamicSolverType, integrator)
     if integrator in EXPLICIT:
-        # Exudyn 1.13 weighs the error with absolute + relative·y for y of either sign: with both tolerances alike
-        # the step would collapse wherever a coordinate passes −1.
+        # Exudyn 1.13 scales the error with absolute + relative·y for y of either sign: with equal tolerances the step
+        # would collapse wherever a coordinate passes −1.
         options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.initialStepSize = min(first_step, end - start) if integrator == "DOPRI5" else 0.0
     else:
@@ -284,9 +283,9 @@ def _settings(
 
 
 def _initial_acceleration(model: Model, start: float) -> FloatArray:
-    """Return the accelerations at the start in m/s², rad/s², shape (d,).
+    """Return the initial accelerations in m/s², rad/s², shape (d,).
 
-    Explicit solvers of Exudyn report zero there; the implicit ones compute it.
+    Exudyn's explicit solvers report zero there; the implicit ones compute them.
     """
     span = 1e-9 * max(1.0, abs(start))
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
@@ -297,7 +296,7 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
 
 
 def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
-    """Call ``function`` after every step, besides what the model itself calls there; False ends the run."""
+    """Call ``function`` after every step, in addition to the model's own function; False ends the run."""
     return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 
@@ -309,7 +308,7 @@ def raise_interrupt(error: exu.ExudynError) -> None:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep Exudyn from printing, and from warnings that Python functions allocate memory."""
+    """Suppress Exudyn's output, and its warnings that Python functions allocate memory."""
     before = exu.config.printToConsole, exu.config.suppressWarnings
     exu.config.printToConsole, exu.config.suppressWarnings = False, True
     try:
@@ -319,8 +318,8 @@ def quiet() -> Iterator[None]:
 
 
 def advice(integrator: str, time: float, what: str) -> str:
-    """Return a sentence on a run that failed at ``time`` (s after its start)."""
+    """Return a message about a run that failed at ``time`` (s after its start)."""
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
-        "take a smaller step, a larger tolerance or a larger regularisation, or the other solver"
+        "use a smaller step, a larger tolerance or a larger regularisation, or the other solver"
     )

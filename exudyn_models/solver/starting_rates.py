@@ -1,8 +1,8 @@
-"""The rates of coordinates of first order with which an implicit solver starts.
+"""Initial rates of first-order coordinates for implicit solvers.
 
-Exudyn's implicit solvers find the first accelerations from the forces, but start all rates of first order, those of
-heat and works, with what the initial values hold: zero, or at a break the rate from before it. By the trapezoidal
-rule of their first step that is an error of half the step times what is missing.
+Exudyn's implicit solvers compute the initial accelerations from the forces. But they start all first-order rates,
+such as those of heat and work, with the stored initial values: zero, or at a break the rate before it. By the
+trapezoidal rule of the first step the error is half the step times the missing rate.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from reference_model.systems import FloatArray
 
 @contextmanager
 def starting_rates(mbs: Any, t: float) -> Iterator[None]:
-    """Let an assembled model begin an implicit run at the time t (s) with the rates of first order that it has."""
+    """Start an implicit run of an assembled model at the time t (s) with the correct first-order rates."""
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     if data.ODE1Size() == 0:
         yield
         return
     before = np.array(data.GetODE1Coordinates_t(initial))
     rates = _rates(mbs, t)
-    if np.all(np.isfinite(rates)):  # else the run will tell
+    if np.all(np.isfinite(rates)):  # otherwise the run will report it
         data.SetODE1Coordinates_t(rates, initial)
     try:
         yield

@@ -1,7 +1,7 @@
-"""Implicit steps that skip a peak of friction, as that of ``static_ratio`` or of Stribeck's curve.
+"""Detection of implicit steps that skip a peak of friction, such as that of ``static_ratio`` or a Stribeck curve.
 
-Where friction falls within the slip change of a step, the equations of the step have several solutions: a contact
-that holds, and one that has passed its peak and runs away. Newton's method finds either.
+If friction falls within the slip change of a step, the equations of the step have several solutions: a contact that
+holds, and one that has passed its peak and runs away. Newton's method may find either.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ from exudyn_models.solver.step_limit import contacts_of
 RESOLVED = 0.05
 """Slip change of a step, over ε, that is small enough: tests hold 99 % of static friction with it.
 
-The trapezoidal rule swings by half of it about the place at which a contact comes to hold."""
+The trapezoidal rule oscillates by half of it about the state of a contact that starts to hold.
+"""
 
 LEAST_FALL = 1e-3
-"""Fall of friction from its peak, over the peak, that counts."""
+"""Smallest relative fall of friction from its peak that counts."""
 
 
 def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
-    """Repeat the steps of an assembled model that skip a peak with a smaller size, or warn if steps are fixed."""
+    """Repeat the steps of an assembled model that skip a peak with a smaller size; warn if steps are fixed."""
     data, places = mbs.systemData, mbs.systemData.GetObjectLTGODE2
     contacts = [
         (np.array(places(item)), contact)
@@ -52,8 +53,8 @@ def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
         if not warned:
             warned = True
             warnings.warn(
-                f"the step of {step:.3g} s to t = {t:.6g} s skips a peak of friction, so that a contact that should "
-                f"hold may run away: take adaptiveStep = True or steps of {share * step:.2g} s",
+                f"the step of {step:.3g} s to t = {t:.6g} s skips a peak of friction, so a contact that should "
+                f"hold may run away: use adaptiveStep = True or steps of {share * step:.2g} s",
                 RuntimeWarning,
                 stacklevel=4,
             )

@@ -1,8 +1,8 @@
-"""The largest step with which an explicit solver is stable while contacts stick.
+"""The largest stable step of explicit solvers while contacts stick.
 
-Contacts that stick are dampers between their bodies, see ``stick_dampers``. They add up with those of the rest of the
-model, and the fastest decay is the largest eigenvalue λ of M⁻¹·D: the step must stay below Z/λ, with Z the
-``INTERVALS`` of the solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
+Sticking contacts are dampers between their bodies, see ``stick_dampers``. They add to the dampers of the model, and
+the fastest decay is the largest eigenvalue λ of M⁻¹·D. The step must stay below Z/λ, with Z the ``INTERVALS`` of the
+solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ INTERVALS = {
     "RK33": 2.5127453,
     "RK44": 2.7852935,
     "RK67": 2.8656205,
-    "VelocityVerlet": 2.0,  # as Exudyn has it, with velocities that lag behind in dampers
+    "VelocityVerlet": 2.0,  # as implemented in Exudyn, with velocities that lag behind in dampers
 }
-"""Z of the solvers with a fixed step: ẋ = −λx decays while λ·step < Z. All others choose their step themselves."""
+"""Z of the solvers with a fixed step: ẋ = −λx decays while λ·step < Z. All others choose their steps."""
 
 
 @dataclass(frozen=True, eq=False)
 class ModelInStick:
-    """A model as it would be if all of its contacts stuck, linear about its initial values.
+    """A model with all contacts in stick, linearised about its initial values.
 
     Parameters
     ----------
     mass, damping : array of shape (n, n)
-        Of its n coordinates of second order; ``damping`` is that of all that is no contact.
+        Matrices of its n second-order coordinates; ``damping`` excludes contacts.
     contacts : tuple
-        Which coordinates each contact has, and its dampers.
+        Coordinates and dampers of each contact.
 
     """
 
@@ -51,9 +51,9 @@ class ModelInStick:
 
     @classmethod
     def of(cls, mbs: Any, t: float) -> ModelInStick | None:
-        """Return that of an assembled model at the time t (s), None if it has no contact.
+        """Return the linearisation of an assembled model at the time t (s); None if it has no contact.
 
-        Raises what functions of the model raise.
+        Raises any error of the model's functions.
         """
         found = contacts_of(mbs)
         if not found:
@@ -65,17 +65,17 @@ class ModelInStick:
         for item, dampers, jacobian in found:
             places = np.array(data.GetObjectLTGODE2(item))
             now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
-            damping[np.ix_(places, places)] -= now  # that of the slip with which the model starts
+            damping[np.ix_(places, places)] -= now  # the damping of its initial slip
             contacts.append((places, dampers))
         return cls(mass, damping, tuple(contacts))
 
     @property
     def varies(self) -> bool:
-        """Whether a load or coefficient is a function."""
+        """True if a load or coefficient is a function."""
         return any(dampers.vary for _, dampers in self.contacts)
 
     def decay(self, t: float, coordinates: FloatArray) -> float:
-        """Return λ in 1/s of the fastest decay at the time t (s) and the model's ``coordinates``, shape (n,)."""
+        """Return the fastest decay rate λ in 1/s at the time t (s) and the model's ``coordinates``, shape (n,)."""
         own = [
             (np.ix_(places, places), dampers.at(t, coordinates[places])) for places, dampers in self.contacts
         ]
@@ -91,18 +91,18 @@ class ModelInStick:
 
 
 def largest_stable_step(mbs: Any, solver_type: Any) -> float:
-    """Return the largest step in s with which an explicit solver is stable while all contacts of a model stick.
+    """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
-    It is that of its initial values, with loads and coefficients that are functions as they are at the time 0, and
-    infinite without contacts. A disc that creeps about a place on its own circle of contact or near to it chatters
-    from a quarter of it on, at half of it by less than 7 % of its creep.
+    It refers to the initial values, with functions for loads and coefficients evaluated at time 0, and is infinite
+    without contacts. A disc that creeps about a point on or near its own circle of contact chatters from a quarter of
+    this step on; at half of it by less than 7 % of its creep.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Is assembled if it is not.
+        The model, which is assembled if necessary.
     solver_type : exudyn DynamicSolverType
-        One with a fixed step: ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67``,
+        Solver with a fixed step: ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67``,
         ``VelocityVerlet``.
 
     Raises
@@ -132,47 +132,47 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
 
 
 LOOKS = 100
-"""Times of a run at which loads and coefficients that are functions are looked at, besides its start."""
+"""Number of checks of functions for loads and coefficients in a run, after its start."""
 
 
 class StepCheck:
-    """Warns of a fixed step that is too large for stick, once.
+    """Warns once about a fixed step that is too large for stick.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
-        Assembled.
+        The assembled model.
     solver : str
-        The name of its type.
+        Name of the solver type.
     options : exudyn TimeIntegrationSettings
-        Of the run.
+        Settings of the run.
 
     """
 
     def __init__(self, mbs: Any, solver: str, options: Any) -> None:
         self._solver, self._span = solver, options.endTime - options.startTime
         self._step = self._span / options.numberOfSteps
-        #: In s: when to call ``warn`` again.
+        #: Time in s of the next call of ``warn``.
         self.next_time = math.inf
         self._model = _in_stick(mbs, options.startTime) if solver in INTERVALS else None
 
     def warn(self, t: float, coordinates: FloatArray) -> None:
-        """Warn if the step is too large for friction as it is at the time t (s) and the model's ``coordinates``."""
+        """Warn if the step is too large for friction at the time t (s) and the model's ``coordinates``."""
         if self._model is None:
             return
         self.next_time = t + self._span / LOOKS if self._model.varies else math.inf
         try:
             decay = self._model.decay(t, coordinates)
-        except Exception:  # a body without mass, an error in a load: the run will tell, and at which time
+        except Exception:  # a massless body or an error in a load: the run will report it, with its time
             return
         limit = INTERVALS[self._solver] / decay if decay > 0.0 else math.inf
         if self._step <= limit:
             return
         self.next_time = math.inf
         warnings.warn(
-            f"{self._solver} is not stable with steps of {self._step:.3g} s where the contacts of this model stick, "
-            f"with their friction at t = {t:.6g} s, but below {limit:.3g} s: take numberOfSteps >= "
-            f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5, which finds its step by itself, or "
+            f"{self._solver} is unstable with steps of {self._step:.3g} s while the contacts of this model stick, "
+            f"with their friction at t = {t:.6g} s, and stable below {limit:.3g} s: use numberOfSteps >= "
+            f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5 with automatic steps, or "
             "an implicit solver",
             RuntimeWarning,
             stacklevel=4,
@@ -180,17 +180,17 @@ class StepCheck:
 
 
 def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
-    """Return the model in stick, None if that can't be found."""
+    """Return the model in stick, or None if this fails."""
     try:
         return ModelInStick.of(mbs, t)
-    except Exception as error:  # an error in a function of the model: the run will tell, and at which time
+    except Exception as error:  # an error in a function of the model: the run will report it, with its time
         if isinstance(error, exu.ExudynError):
             raise_interrupt(error)
         return None
 
 
 def contacts_of(mbs: Any) -> list[tuple[int, StickDampers, Any]]:
-    """Return number, dampers and Jacobian of all contacts of a model."""
+    """Return index, dampers and Jacobian of all contacts of a model."""
     found = []
     for item in range(mbs.systemData.NumberOfObjects()):
         entry = mbs.GetObject(item)

@@ -43,11 +43,12 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
     """Let contacts have modes, at first those of load and slip at the start t (s) of a run."""
     try:
         for contact in contacts:
+            contact.stick.running = True
             contact.enter_first(mbs, t)
         yield
     finally:
         for contact in contacts:
-            contact.stick.mode = None
+            contact.stick.running = False
 
 
 def run_switching(

@@ -1,4 +1,4 @@
-"""Laws of friction: a pin, points on a ring, a whole ring or an annulus, and the limit of what a disc can hold."""
+"""Friction laws of a pin, of points on a ring, of a ring and of an annulus, and the limit surface of a disc."""
 
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import (

@@ -1,4 +1,4 @@
-"""Friction of an annulus, such as a clutch facing: the rings that it consists of, each with its share of the load."""
+"""Friction of an annulus, such as a clutch facing, as a sum of rings that each carry a share of the load."""
 
 from __future__ import annotations
 
@@ -14,45 +14,45 @@ from reference_model.contact.elliptic import mean_curvatures, mean_directions
 from reference_model.systems import finite_number
 
 CLUSTERING = 3
-"""q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.
+"""Exponent q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.
 
-With dr = …·t^(q−1)·dt it turns x·ln x into t^(2q−1)·ln t, and Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
+With dr ∝ t^(q−1)·dt it turns x·ln x into t^(2q−1)·ln t, and Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
 """
 
 ORDER = 4 * CLUSTERING
-"""Of the convergence of force and moment in ``rings``, if r₀ lies within the annulus or near to it."""
+"""Order of convergence of force and moment in ``rings``, if r₀ lies in the annulus or near it."""
 
 SLOPE_ORDER = 2 * CLUSTERING
-"""Of the convergence of their slopes there, which have ln x in place of x·ln x."""
+"""Order of convergence of their slopes in that case, which contain ln x in place of x·ln x."""
 
 
 @dataclass(frozen=True)
 class Annulus(IsotropicContact):
-    """Contact between two circles, under a pressure that depends on the radius only.
+    """Contact between two circles, under a pressure that depends only on the radius.
 
-    Its mean slip speed is that of :class:`reference_model.contact.contact_law.Ring`, averaged over the load; so are
-    force and moment, which Gauss's rule computes from n rings. They have a kink (r − r₀)·ln|r − r₀| over the radius
-    at r₀ = U/|S|, where a point of the ring is at rest: the rule is split there, or begins at the end next to it,
-    and its rings lie the closer the nearer they are to r₀. Then the error falls like n^(−12), and faster than any
-    power of n if r₀ is well outside of the annulus; for 16 rings it is some 1e-12. The slopes are the averages of
-    those of a ring, which are infinite like ln|r − r₀|: their error falls like n^(−6), and is some 1e-7.
+    The force and the moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by
+    Gauss's rule with n rings. As functions of the radius they have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a
+    point is at rest. The rule is split at r₀, or at the end of the annulus next to it, and its rings are clustered
+    there. The error falls like n^(−12), or faster than any power of n if r₀ is well outside the annulus; with 16
+    rings it is about 1e-12. The slopes of a ring are infinite like ln|r − r₀|, so the error of their average falls
+    like n^(−6) and is about 1e-7.
 
     Parameters
     ----------
     inner_radius : float
-        In m, >= 0; 0 for a full disc.
+        Inner radius in m, >= 0; 0 for a full disc.
     outer_radius : float
-        In m, > ``inner_radius``.
+        Outer radius in m, > ``inner_radius``.
     rings : int
         n >= 1, on either side of r₀.
     pressure : callable, optional
-        The pressure at a radius in m, in any unit, smooth between the two radii: ``lambda r: 1 / r`` for a facing
-        that has worn in. None for a uniform one.
+        Function of the radius in m that returns the pressure in any unit, smooth between the two radii, for example
+        ``lambda r: 1 / r`` for a worn-in facing. None for a uniform pressure.
 
     Raises
     ------
     ValueError
-        If a radius or ``rings`` is out of its range, or the pressure no function, negative, not finite, or zero
+        If a radius or ``rings`` is out of range, or if the pressure is not callable, negative, not finite, or zero
         everywhere.
 
     """
@@ -63,7 +63,6 @@ class Annulus(IsotropicContact):
     pressure: Callable[[float], float] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no annulus, and a pressure that is none."""
         inner = finite_number("inner_radius", self.inner_radius)
         outer = finite_number("outer_radius", self.outer_radius)
         object.__setattr__(self, "inner_radius", inner)
@@ -80,7 +79,7 @@ class Annulus(IsotropicContact):
         self._loads(inner)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """As :meth:`IsotropicContact.shares`."""
+        """Like :meth:`IsotropicContact.shares`."""
         resistance = moment = 0.0
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             along_slip, along_rim = mean_directions(slip_speed, radius * abs(relative_spin))
@@ -89,7 +88,7 @@ class Annulus(IsotropicContact):
         return Shares(resistance, math.copysign(moment, relative_spin))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """As :meth:`IsotropicContact.slopes`; there are some for every slip but that of a disc at rest."""
+        """Like :meth:`IsotropicContact.slopes`; defined for every slip except that of a disc at rest."""
         by_slip = mixed = by_spin = 0.0
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             rim = radius * abs(relative_spin)
@@ -103,7 +102,7 @@ class Annulus(IsotropicContact):
         return Slopes(by_slip, mixed, mixed, by_spin)
 
     def _resting_radius(self, slip_speed: float, relative_spin: float) -> float:
-        """Return r₀ = U/|S|, or the radius of the annulus next to it; raise ``ValueError`` at rest."""
+        """Return r₀ = U/|S|, clipped to the annulus; raise ``ValueError`` at rest."""
         spin = abs(relative_spin)
         if slip_speed == 0.0 and spin == 0.0:
             raise ValueError("slip = 0 m/s and relative spin = 0 rad/s: the disc is at rest")
@@ -116,7 +115,7 @@ class Annulus(IsotropicContact):
         loads = list(self._rings(centre))
         total = math.fsum(load for _, load in loads)
         if total == 0.0:
-            raise ValueError("pressure = 0 everywhere: it must be > 0 somewhere")
+            raise ValueError("pressure = 0 everywhere: it must be positive for some radius")
         return [(radius, load / total) for radius, load in loads]
 
     def _rings(self, centre: float) -> Iterator[tuple[float, float]]:

@@ -1,6 +1,6 @@
-"""Friction of many states at once, for implicit methods, whose nodes are solved for together.
+"""Vectorised friction laws, for implicit methods that solve for all nodes of a step together.
 
-The laws are those of :mod:`reference_model.contact.contact_law`, with arrays for numbers.
+The laws are those of :mod:`reference_model.contact.contact_law`, for arrays.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ ComplexArray = NDArray[np.complex128]
 
 
 class ContactAtOnce(Protocol):
-    """A law of friction for many states."""
+    """A vectorised friction law."""
 
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Do as :meth:`Contact.force_and_moment` for arrays of shape (k,)."""
+        """Like :meth:`Contact.force_and_moment`, for arrays of shape (k,)."""
         ...
 
 
 @dataclass(frozen=True)
 class PointsAtOnce:
-    """:class:`PointsOnRing` for many states.
+    """Vectorised :class:`PointsOnRing`.
 
     Parameters
     ----------
     law : PointsOnRing
-        For one state.
+        Law for a single state.
 
     """
 
@@ -43,24 +43,24 @@ class PointsAtOnce:
 
     @property
     def points(self) -> int:
-        """Their number."""
+        """Number of points."""
         return self.law.points
 
     def arm(self, point: int, angle: FloatArray) -> ComplexArray:
-        """Do as :meth:`PointsOnRing.arm`."""
+        """Like :meth:`PointsOnRing.arm`."""
         return np.asarray(self.law.arm(point, 0.0) * np.exp(1j * angle))
 
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Do as :meth:`PointsOnRing.force_and_moment`."""
+        """Like :meth:`PointsOnRing.force_and_moment`."""
         arms = self._arms(angle)
         return _friction(arms, slip - 1j * relative_spin * arms)
 
     def friction_of_others(
         self, point: int, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Do as :meth:`PointsOnRing.friction_of_others`."""
+        """Like :meth:`PointsOnRing.friction_of_others`."""
         arms = self._arms(angle)
         velocities = slip - 1j * relative_spin * (arms - arms[point])
         velocities[point] = 0.0
@@ -79,12 +79,12 @@ def _friction(arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArra
 
 @dataclass(frozen=True)
 class RingAtOnce:
-    """:class:`Ring` for many states.
+    """Vectorised :class:`Ring`.
 
     Parameters
     ----------
     law : Ring
-        For one state.
+        Law for a single state.
 
     """
 
@@ -93,7 +93,7 @@ class RingAtOnce:
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Do as :meth:`Ring.force_and_moment`."""
+        """Like :meth:`Ring.force_and_moment`."""
         speed, rim = np.asarray(abs(slip), dtype=np.float64), self.law.radius * relative_spin
         along_slip, along_rim = mean_directions_at(speed, abs(rim))
         return -along_slip * slip / (speed + NONE), self.law.radius * along_rim * np.sign(rim)
@@ -101,12 +101,12 @@ class RingAtOnce:
 
 @dataclass(frozen=True)
 class OneByOne:
-    """Any law for many states, asked for one after the other.
+    """Any law, evaluated for one state after the other.
 
     Parameters
     ----------
     law : Contact
-        For one state.
+        Law for a single state.
 
     """
 
@@ -115,14 +115,14 @@ class OneByOne:
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Do as :meth:`Contact.force_and_moment`."""
+        """Like :meth:`Contact.force_and_moment`."""
         states = zip(slip.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
         forces, moments = zip(*(self.law.force_and_moment(*state) for state in states), strict=True)
         return np.array(forces), np.array(moments)
 
 
 def at_once(contact: Contact) -> ContactAtOnce:
-    """Return the law for many states."""
+    """Return the vectorised law."""
     if isinstance(contact, PointsOnRing):
         return PointsAtOnce(contact)
     return RingAtOnce(contact) if isinstance(contact, Ring) else OneByOne(contact)

@@ -1,13 +1,13 @@
-"""Coulomb friction between two discs: of a pin, of a ring, of points on a ring, and of the expansion (22).
+"""Coulomb friction between two discs: of a pin, a ring, points on a ring, and the expansion (22).
 
-All laws answer the same question: which force and moment act on the disc while its centre slips with u over the
-master disc and the master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the
-centre slips with u − i·S·r·exp(iα) (21). Plane vectors are complex numbers, and forces are shares of μN: a force
-in N per N, a moment in m.
+Each law returns the force and the moment on the disc while its centre slips with u over the master disc and the
+master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u −
+i·S·r·exp(iα) (21). Plane vectors are complex numbers. Forces and moments are per newton of μN: a force in N per N, a
+moment in m.
 
-Friction has no inner time, so that all laws depend on the ratio of u and S only (degree 0). The laws of circles
-are *isotropic* besides: the force is opposite to u, and neither its size nor the moment depends on the direction of
-u or on the angle φ.
+Coulomb friction is independent of rate, so all laws depend only on the ratio of u and S (degree 0). Laws of circles
+are also *isotropic*: the force is opposite to u, and neither its size nor the moment depends on the direction of u or
+on the angle φ.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Added to a speed, it changes none but that of rest, which then has no direction."""
+"""Value added to speeds before division, so that a point at rest gets zero friction."""
 
 
 class Contact(Protocol):
-    """A law of friction between two discs."""
+    """A friction law between two discs."""
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         """Return force (N per N of μN) and moment (m) on the disc.
@@ -58,7 +58,7 @@ class Contact(Protocol):
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
         """Return the derivatives of (F_x, F_y, M) by (u_x, u_y, S, φ), shape (3, 4).
 
-        Raises ``ValueError`` where a point of the contact is at rest, because there friction has no derivative.
+        Raises ``ValueError`` if a point of the contact is at rest, where friction is not differentiable.
         """
         ...
 
@@ -80,11 +80,11 @@ class Slopes(NamedTuple):
 
 
 class IsotropicContact(ABC):
-    """A law that looks the same from all directions: −F(U, S)·u/U and M(U, S), with U = |u|."""
+    """An isotropic law: force −F(U, S)·u/U and moment M(U, S), with U = |u|."""
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """Radii r in m of circles whose point at rest, at U = r|S|, makes slopes infinite: steps must end there."""
+        """Radii r in m of infinite slopes at U = r|S|, where a point rests: steps must end there."""
         return ()
 
     @abstractmethod
@@ -93,13 +93,13 @@ class IsotropicContact(ABC):
 
     @abstractmethod
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Return the derivatives of F and M, at U = 0 those from the side U > 0.
+        """Return the derivatives of F and M; at U = 0, those from the side U > 0.
 
-        Raises ``ValueError`` where the law has no derivative.
+        Raises ``ValueError`` where the law is not differentiable.
         """
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """As :meth:`Contact.force_and_moment`; at rest, where friction is set-valued, zero."""
+        """Like :meth:`Contact.force_and_moment`; zero at rest, where friction is set-valued."""
         speed = abs(slip)
         if speed == 0.0 and relative_spin == 0.0:
             return 0j, 0.0
@@ -107,10 +107,10 @@ class IsotropicContact(ABC):
         return (-resistance * (slip / speed) if speed > 0.0 else 0j), moment
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """As :meth:`Contact.jacobian`.
+        """Like :meth:`Contact.jacobian`.
 
-        Slip across its direction turns the force, so that it acts like a damper F/U; along it the slope counts. At
-        U = 0 the two are the same.
+        Slip across its direction turns the force, which acts like a damper F/U; along its direction the slope counts.
+        At U = 0 the two are the same.
         """
         speed = abs(slip)
         slopes = self.slopes(speed, relative_spin)
@@ -136,11 +136,11 @@ class Pin(IsotropicContact):
     """Contact in one point, the centre (1): full friction against slip, no moment."""
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """As :meth:`IsotropicContact.shares`."""
+        """Like :meth:`IsotropicContact.shares`."""
         return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """As :meth:`IsotropicContact.slopes`: none but at rest, where there is no derivative."""
+        """Like :meth:`IsotropicContact.slopes`: zero while the pin slips."""
         if slip_speed == 0.0:
             raise ValueError("slip = 0 m/s: the pin is at rest, where friction has no derivative")
         return Slopes(0.0, 0.0, 0.0, 0.0)
@@ -151,7 +151,6 @@ class _OnCircle:
     radius: float
 
     def __post_init__(self) -> None:
-        """Refuse a circle of no size."""
         radius = finite_number("radius", self.radius)
         if radius <= 0.0:
             raise ValueError(f"radius = {radius:g} m: it must be > 0")
@@ -162,7 +161,7 @@ class _OnCircle:
 class Ring(_OnCircle, IsotropicContact):
     """Contact on the whole circle of radius R (20), in closed form.
 
-    With the mean slip speed P(U, W) on the circle, W = R·|S|, it is F = ∂P/∂U and M = R·∂P/∂W·sign(S): see
+    With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S); see
     :mod:`reference_model.contact.elliptic`. Both are accurate to rounding for all ratios of U and W.
 
     Parameters
@@ -174,17 +173,17 @@ class Ring(_OnCircle, IsotropicContact):
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """As :attr:`IsotropicContact.resting_radii`."""
+        """Like :attr:`IsotropicContact.resting_radii`."""
         return (self.radius,)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """As :meth:`IsotropicContact.shares`."""
+        """Like :meth:`IsotropicContact.shares`."""
         rim = self.radius * relative_spin
         along_slip, along_rim = mean_directions(slip_speed, abs(rim))
         return Shares(along_slip, math.copysign(self.radius * along_rim, rim))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """As :meth:`IsotropicContact.slopes`; there are none where U = W."""
+        """Like :meth:`IsotropicContact.slopes`; undefined at U = W."""
         rim = abs(self.radius * relative_spin)
         if slip_speed == rim:
             raise ValueError(
@@ -200,10 +199,10 @@ class Ring(_OnCircle, IsotropicContact):
 class ThreeTermRing(_OnCircle, IsotropicContact):
     """The paper's approximation (23) of the ring: three terms of the expansion (22) of ν̄/|ν_r|.
 
-    With U = ν̄·cos α and R·S = ν̄·sin α it is F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and
-    M = R·sin α·(1 − ½cos²α + ¾cos²α·sin²α). Like the ring's they have a potential, ν̄·P(α) with
-    P = 1 − ¼cos²α·sin²α: the mean slip speed up to the same order. It is convex, so that the approximation never
-    puts in power. Off by up to 0.10 near U = 0.77·R|S| (force) and at its reciprocal (moment).
+    With U = ν̄·cos α and R·S = ν̄·sin α, F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and M = R·sin α·(1 − ½cos²α +
+    ¾cos²α·sin²α). As for the ring they have a potential, ν̄·P(α) with P = 1 − ¼cos²α·sin²α, the mean slip speed to
+    the same order. It is convex, so the approximation never feeds in power. The largest error is 0.10, near U =
+    0.77·R|S| for the force and at the reciprocal ratio for the moment.
 
     Parameters
     ----------
@@ -213,20 +212,19 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """As :meth:`IsotropicContact.shares`."""
+        """Like :meth:`IsotropicContact.shares`."""
         _, c, s = self._polar(slip_speed, relative_spin)
         both = 0.75 * (c * s) ** 2
         return Shares(c * (1.0 - 0.5 * s**2 + both), self.radius * s * (1.0 - 0.5 * c**2 + both))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """As :meth:`IsotropicContact.slopes`."""
+        """Like :meth:`IsotropicContact.slopes`."""
         speed, c, s = self._polar(slip_speed, relative_spin)
-        curvature = (0.5 + 3.75 * (c * s) ** 2) / speed  # P + d²P/dα² over ν̄
+        curvature = (0.5 + 3.75 * (c * s) ** 2) / speed  # (P + d²P/dα²)/ν̄
         mixed = -self.radius * c * s * curvature
         return Slopes(s**2 * curvature, mixed, mixed, (self.radius * c) ** 2 * curvature)
 
     def _polar(self, slip_speed: float, relative_spin: float) -> tuple[float, float, float]:
-        """Return ν̄ of (22), cos α and sin α."""
         rim = self.radius * relative_spin
         speed = math.hypot(slip_speed, rim)
         if speed == 0.0:
@@ -236,9 +234,9 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
 
 @dataclass(frozen=True)
 class PointsOnRing(_OnCircle):
-    """Contact in n points on a circle, each with 1/n of the load: the paper's own discretisation with n = 6.
+    """Contact in n points on a circle, each with 1/n of the load: the paper's discretisation, with n = 6.
 
-    Point i is at φ + 2πi/n, so that the law keeps the angle.
+    Point i lies at φ + 2πi/n, so the law depends on the angle.
 
     Parameters
     ----------
@@ -252,13 +250,12 @@ class PointsOnRing(_OnCircle):
     points: int
 
     def __post_init__(self) -> None:
-        """Refuse a circle of no size and what is no number of points."""
         super().__post_init__()
         require_whole("points", self.points, least=3, most=MOST_POINTS)
 
     @cached_property
     def _around(self) -> tuple[complex, ...]:
-        """The points on the unit circle at φ = 0."""
+        """Points on the unit circle at φ = 0."""
         return tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
 
     def arm(self, point: int, angle: float) -> complex:
@@ -266,12 +263,12 @@ class PointsOnRing(_OnCircle):
         return self.radius * cmath.exp(1j * angle) * self._around[point]
 
     def arms(self, angle: float) -> list[complex]:
-        """Return the positions of the points relative to the centre, in m."""
+        """Return the positions of all points relative to the centre, in m."""
         turn = self.radius * cmath.exp(1j * angle)
         return [turn * point for point in self._around]
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """As :meth:`Contact.force_and_moment`; a point at rest, where friction is set-valued, gives nothing."""
+        """Like :meth:`Contact.force_and_moment`; a point at rest has set-valued friction and contributes nothing."""
         force, moment = 0j, 0.0
         for arm in self.arms(angle):
             velocity = slip - 1j * relative_spin * arm
@@ -285,7 +282,7 @@ class PointsOnRing(_OnCircle):
     def friction_of_others(
         self, point: int, slip: complex, relative_spin: float, angle: float
     ) -> tuple[complex, float]:
-        """Return force and moment as :meth:`force_and_moment`, of all points but one, which slips with ``slip``."""
+        """Return force and moment of all points but ``point``, which slips with ``slip``."""
         force, moment = 0j, 0.0
         arms = self.arms(angle)
         own = arms[point]
@@ -300,7 +297,7 @@ class PointsOnRing(_OnCircle):
         return force / self.points, moment / self.points
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """As :meth:`Contact.jacobian`."""
+        """Like :meth:`Contact.jacobian`."""
         result = np.zeros((3, 4))
         for arm in self.arms(angle):
             velocity = slip - 1j * relative_spin * arm
@@ -311,7 +308,8 @@ class PointsOnRing(_OnCircle):
                 )
             direction = velocity / speed
             across = 1j * direction
-            # Slip of the point by u_x, u_y, S, φ; friction changes with its part across the direction only.
+            # Derivatives of the point's slip by u_x, u_y, S, φ. Friction changes only with the component across its
+            # direction.
             by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
             turning = -((by_unknowns * across.conjugate()).real / speed)
             friction = turning * across
@@ -323,14 +321,14 @@ class PointsOnRing(_OnCircle):
 
 
 def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | PointsOnRing:
-    """Return ``contact``, or the law of friction that the parameters of ``system`` stand for without it.
+    """Return ``contact``, or if it is None the friction law given by the parameters of ``system``.
 
-    Raises ``ValueError`` for a law that the system can't have.
+    Raises ``ValueError`` if the system cannot have this law.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
         if contact is not None:
-            raise ValueError(f"contact = {contact}: a pin touches in one point, only a disc takes other laws")
+            raise ValueError(f"contact = {contact}: a pin has point contact; pass contact only with a disc")
         return Pin()
     if contact is None:
         if system.contact_points is None:
@@ -344,20 +342,20 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
 
 
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
-    """Return ``contact`` or the law of ``system``; raise ``ValueError`` if that is of points, naming ``what``."""
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` if it is a law of points."""
     require_system(system, DiscOnDisc)
     law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):
         given = f"contact_points = {system.contact_points}" if contact is None else f"contact = {contact}"
         raise ValueError(
-            f"{given}: {what} can't be had for a disc on single points, whose friction depends on its angle; take "
-            "the continuous ring, contact_points = None"
+            f"{given}: {what} cannot be computed for single points, whose friction depends on the angle; "
+            "use the continuous ring, contact_points = None"
         )
     return law
 
 
 def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
-    """Raise ``ValueError`` naming ``value`` unless it is an integer from ``least`` to ``most``."""
+    """Raise ``ValueError`` with the name and value unless ``value`` is an integer from ``least`` to ``most``."""
     whole = isinstance(value, Integral) and not isinstance(value, bool)
     if not (whole and least <= value <= most):
         allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"

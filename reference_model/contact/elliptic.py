@@ -1,14 +1,13 @@
-"""The mean slip speed on a circle, differentiated once and twice, by complete elliptic integrals.
+"""First and second derivatives of the mean slip speed on a circle, by complete elliptic integrals.
 
-On a circle whose centre slips with U and whose rim turns with W = R·|S| relative to the disc below, the mean slip
+On a circle whose centre slips with U and whose rim turns with W = R·|S| relative to the master disc, the mean slip
 speed is P(U, W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and friction is the derivative of P. P is symmetric in U and W
-and of degree 1. For k = W/U <= 1 and m = k² Landen's transformation turns P into (2/π)·U·[2E(m) − (1 − m)·K(m)], so
-that::
+and of degree 1. For k = W/U <= 1 and m = k² Landen's transformation turns P into (2/π)·U·[2E(m) − (1 − m)·K(m)], so::
 
     ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
 
-with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). Where U = W one point of the circle is at rest and
-the second derivatives are infinite, like a logarithm.
+with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). At U = W one point of the circle is at rest and the
+second derivatives are infinite, like a logarithm.
 """
 
 from __future__ import annotations
@@ -24,11 +23,11 @@ from reference_model.systems import FloatArray
 SMALL = 0.05
 """Parameter m below which B and D come from their series, because the differences would lose digits.
 
-Just above, two integrals of 1.57 with an error of 2e-16 each leave 0.04: some 1e-14 of it.
+Just above it, two integrals of 1.57 with an error of 2e-16 each leave 0.04, so the relative error is about 1e-14.
 """
 
 TERMS = 13
-"""Of the series: the first one left out is below SMALL^13 = 1e-17."""
+"""Number of terms of the series: the first omitted term is below SMALL^13 = 1e-17."""
 
 
 def mean_directions(slip: float, rim: float) -> tuple[float, float]:
@@ -41,18 +40,18 @@ def mean_directions(slip: float, rim: float) -> tuple[float, float]:
     if m < SMALL:
         by_smaller = 0.5 * ratio * _series(_B_SERIES, m)
     else:
-        complement = 1.0 - m  # times a logarithm of itself, so that its rounding does not count
+        complement = 1.0 - m  # multiplied by its own logarithm, so its rounding does not matter
         rest = complement * float(ellipkm1(complement)) if complement > 0.0 else 0.0
         by_smaller = 2.0 / math.pi * (integral - rest) / ratio
     return (by_larger, by_smaller) if faster else (by_smaller, by_larger)
 
 
 def mean_directions_at(slips: FloatArray, rims: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """As :func:`mean_directions`, for arrays of shape (k,); at rest 1 and 0."""
+    """Like :func:`mean_directions`, for arrays of shape (k,); returns 1 and 0 at rest."""
     ratio = np.minimum(slips, rims) / np.maximum(np.maximum(slips, rims), 1e-300)
     m = ratio * ratio
     by_larger = 2.0 / math.pi * ellipe(m)
-    complement = np.maximum(1.0 - m, 1e-300)  # at 0 it would be zero times infinity
+    complement = np.maximum(1.0 - m, 1e-300)  # avoids zero times infinity
     large = 2.0 / math.pi * (ellipe(m) - complement * ellipkm1(complement)) / np.maximum(ratio, 1e-300)
     by_smaller = np.where(m < SMALL, 0.5 * ratio * np.polyval(_B_SERIES, m), large)
     faster = slips >= rims
@@ -67,9 +66,9 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     if m < SMALL:
         integral = math.pi / 4.0 * _series(_D_SERIES, m)
     else:
-        complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m, all of whose digits count here
+        complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m to full precision
         integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
-    # By the smaller argument; since the first derivatives are of degree 0 the others follow.
+    # Derivatives by the smaller argument; the others follow because first derivatives have degree 0.
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)
@@ -83,7 +82,6 @@ def _series(coefficients: Sequence[float], m: float) -> float:
 
 
 def _hypergeometric(a: float, b: float) -> tuple[float, ...]:
-    """Return the coefficients of F(a, b; 2; m), the highest power first."""
     coefficients = [1.0]
     for n in range(TERMS - 1):
         coefficients.append(coefficients[-1] * (a + n) * (b + n) / ((n + 2) * (n + 1)))

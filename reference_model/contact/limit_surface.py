@@ -1,11 +1,11 @@
-"""What the friction of points on a ring can hold: the limit surface of a disc that rests as a whole.
+"""The limit surface of a disc on points: the force and moment that friction can hold while all points rest.
 
-With the slip of a point v_j = u + i·w·a_j, w = φ̇ − ω, friction holds a force F and a moment M (both as shares, along
-the slip that they drive) if they put less power into any slip than friction takes: F·u + M·w <= P(u, w), the
-mean of |v_j|. As P is of degree one, that is M <= h(F) and −M <= h(−F) with h(F) = min over u of P(u, 1) − F·u; as P
-is not less than |u|, h is not negative for |F| <= 1, and only the one with the sign of M counts. To find u is a
-problem of Fermat and Weber with a pull F: convex, and the solution may be a vertex, u = −i·a_j. Then the disc begins
-to turn about point j, which goes on resting: the limit surface has a flat face there.
+A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN, along the
+slip that they drive) if for every slip their power is at most the power that friction dissipates: F·u + M·w <= P(u,
+w), the mean of |v_j|. P is of degree one, so this is M <= h(F) and −M <= h(−F) with h(F) = min over u of P(u, 1) −
+F·u. P is at least |u|, so h is not negative for |F| <= 1 and only the sign of M counts. Finding u is a Fermat-Weber
+problem with a pull F. It is convex, and the solution may be a vertex, u = −i·a_j: then the disc begins to turn about
+point j, which stays at rest, and the limit surface has a flat face.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ ComplexArray = NDArray[np.complex128]
 MOST_ITERATIONS = 200
 
 ROUNDING = 4e-16
-"""Of a mean of unit vectors."""
+"""Rounding error of a mean of unit vectors."""
 
 
 class Limit(NamedTuple):
-    """Squares of the greatest moments beside some forces, and the slips u for w = 1 that go with them.
+    """Squares of the largest moments that can be held together with given forces, and the slips u for w = 1 there.
 
-    The squares are continued where the force alone is too large, by (1 − |F|)·R², as which they start on the other
-    side: so they fall through zero there with a slope that is finite.
+    Where the force alone is too large the squares continue as (1 − |F|)·R², which is also their leading term for |F|
+    < 1. So they pass through zero with a finite slope.
     """
 
     squares: FloatArray
@@ -40,27 +40,27 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PointsLimit:
-    """The limit surface of points with the arms ``arms`` (n,), in the frame of the disc."""
+    """The limit surface of points with the arms ``arms``, shape (n,), in the frame of the disc."""
 
     arms: ComplexArray
 
     def margins(self, forces: ComplexArray, moment: float) -> FloatArray:
-        """Return h² − M² over R² for ``forces`` (t,); negative where friction gives way."""
+        """Return (h² − M²)/R² for ``forces`` (t,); negative where friction cannot hold them."""
         squares = self.greatest(math.copysign(1.0, moment) * forces).squares
         return np.asarray((squares - moment**2) / abs(self.arms[0]) ** 2)
 
     def direction(self, force: complex, moment: float) -> tuple[complex, float]:
-        """Return slip (u, w) normal to the limit surface near to ``force`` and ``moment``."""
+        """Return the slip (u, w) normal to the limit surface near ``force`` and ``moment``."""
         sense = math.copysign(1.0, moment)
         return sense * complex(self.greatest(np.array([sense * force])).slips[0]), sense
 
     def greatest(self, forces: ComplexArray) -> Limit:
-        """Return what can be held beside ``forces`` (shape (t,))."""
+        """Return the limit for ``forces`` (t,)."""
         radius, vertices = abs(self.arms[0]), -1j * self.arms
         n = len(vertices)
         apart = vertices[:, np.newaxis] - vertices
         distance = abs(apart) + np.eye(n)
-        # A point is the pivot if it can give what friction of the others leaves over.
+        # A point is the pivot if it can supply the force that friction of the other points leaves over.
         left = forces[:, np.newaxis] - (apart / distance).sum(axis=1) / n
         at_vertex = abs(left) <= 1.0 / n
         pivots = at_vertex.any(axis=1)
@@ -75,23 +75,22 @@ class PointsLimit:
 
 
 FLAT = 1e-9
-"""Share of turning in the slip of a disc whose force alone is too large: next to none."""
+"""Share of rotation in the slip of a disc whose force alone is too large: almost none."""
 
 
 def _objective(vertices: ComplexArray, forces: ComplexArray, u: ComplexArray) -> FloatArray:
-    """Return the mean distance from the vertices less F·u."""
     result: FloatArray = abs(u[:, np.newaxis] - vertices).mean(axis=1) - (forces.conj() * u).real
     return result
 
 
 def _fermat_weber(vertices: ComplexArray, forces: ComplexArray) -> ComplexArray:
-    """Minimise the mean distance less F·u where the minimum is at no vertex.
+    """Minimise the mean distance minus F·u where the minimum is not at a vertex.
 
-    By Newton's method, and where that does not go down by Weiszfeld's, which always does.
+    Uses Newton's method, and a step of Weiszfeld's method, which always descends, where Newton's does not.
     """
     u: ComplexArray = (
         abs(vertices[0]) * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
-    )  # right where |u| is large
+    )  # exact in the limit of large |u|
     value = _objective(vertices, forces, u)
     for _ in range(MOST_ITERATIONS):
         d = u[:, np.newaxis] - vertices

@@ -1,18 +1,18 @@
-"""Many trajectories at once, compiled: where they end; and a single one, phase by phase.
+"""Compiled simulation: end states of many trajectories, or one trajectory phase by phase.
 
-- ``simulate``: :func:`simulate_ensemble`, the door; ``end_states``: what it returns;
-- ``core``: how trajectories share a processor (``lanes``), the forces (``laws``, ``contact_shares``), the step
-  (``runge_kutta``) and that of stiff motions (``implicit``), the motion inside of a step (``dense_output``), when a
-  series of distances has converged (``convergence``), what numba is told (``jit``);
-- ``pin``: its equations, rest and release (``slip``), its lanes, how its end state is told (``end_states`` with
-  ``trapping`` and ``stability``), what is rare and done lane by lane (``events`` with ``memory`` and ``stride``), and
-  ``kernel`` with ``driver``, which put them together;
-- ``disc``: the same, with ``breakaway`` for slip from rest;
+- ``simulate``: :func:`simulate_ensemble`, the entry point; ``end_states``: its results;
+- ``core``: lanes of trajectories in a vector register (``lanes``), forces (``laws``, ``contact_shares``), explicit
+  (``runge_kutta``) and implicit steps (``implicit``), dense output, convergence of distances (``convergence``), and
+  the decorators for numba (``jit``);
+- ``pin``: rest and release (``slip``), lanes, end states (``end_states`` with ``trapping`` and ``stability``), rare
+  events in scalar code (``events`` with ``memory`` and ``stride``), and ``kernel`` with ``driver``, which combine
+  them;
+- ``disc``: the same modules, with ``breakaway`` for slip from rest;
 - ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``, from the ``checkpoints`` of
   kernels.
 
-The plain :func:`reference_model.simulate` judges it: but for handing over to here when asked to, nothing there takes
-anything from here.
+The plain :func:`reference_model.simulate` is the yardstick: it uses nothing of this package, except to call it on
+request.
 """
 
 from reference_model.ensemble.end_states import EndState, Ensemble

@@ -1,7 +1,7 @@
-"""Checkpoints of a trajectory on its way, from which :mod:`recording` finds the motion.
+"""Checkpoints of a trajectory; :mod:`recording` computes the motion from them.
 
-A kernel that is given room for them takes one wherever slip begins or ends, and one at the start of each step in
-which a time lies that is asked for: from there that time is no more than a step away.
+A kernel with room for checkpoints takes one where slip begins or ends, and one at the start of each step that
+contains a requested time. So each requested time is at most one step after a checkpoint.
 """
 
 from __future__ import annotations
@@ -15,24 +15,24 @@ from numpy.typing import NDArray
 from reference_model.systems import FloatArray
 
 NONE, ON_THE_WAY, SLIPS, STICKS = 0.0, 1.0, 2.0, 3.0
-"""Kinds: room left over; nothing begins here; slip does; stick does."""
+"""Kinds: unused room; no phase begins; slip begins; stick begins."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
-"""What is kept of the pace of a trajectory, so that one from a checkpoint takes the steps that it would have taken.
+"""Indices of the pace of a trajectory, which makes a continuation take the same steps as the original.
 
-The unit of length in m and one over that of time in 1/s, > 0; the step, how many of the last were short, and how long
-an implicit one may be, as lanes have them.
+They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
+and the length of an implicit step, all as in lanes.
 """
 
 Checkpoints = NDArray[Any]
 """Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace``, zeros where a phase begins.
 
-And the times ``asked`` for: they increase, and do not belong to the record in which they stand.
+They also store the increasing times ``asked`` for, which are independent of the other fields of their record.
 """
 
 
 def room_for(n: int, state_size: int, asked: FloatArray | tuple[()] = ()) -> Checkpoints:
-    """Return room for ``n`` checkpoints, none of them taken; ``asked``, (up to n,), are the times asked for, in s."""
+    """Return room for ``n`` checkpoints, none of them taken; ``asked``, up to (n,), are the requested times in s."""
     room = np.zeros(n, dtype=_layout(state_size))
     room["asked"] = np.inf
     room["asked"][: len(asked)] = asked

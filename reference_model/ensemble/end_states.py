@@ -1,4 +1,4 @@
-"""What an ensemble comes to."""
+"""Results of an ensemble."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from reference_model.systems import FloatArray
 
 
 class EndState(IntEnum):
-    """The motion that a trajectory ends in.
+    """The long-term motion of a trajectory.
 
-    It is the motion that a trajectory tends to. ``SELF_CENTRED``: an equilibrium that slips (section 2). ``STUCK``:
-    turning with the master disc for ever, also where ever shorter slips lead there like one over the time.
-    ``WHIRL``: on a circle about the axis or, with an offset, on a closed orbit without stick. ``MODULATED``: a whirl
-    whose radius swings slowly (section 4; discs only). ``STICK_SLIP``: it sticks and slips again and again.
-    ``UNDECIDED``: none for certain.
+    ``SELF_CENTRED``: a sliding equilibrium (section 2). ``STUCK``: permanent stick, also if ever shorter slips lead
+    there like one over time. ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick.
+    ``MODULATED``: a whirl whose radius oscillates slowly (section 4; discs only). ``STICK_SLIP``: sticking and
+    slipping again and again. ``UNDECIDED``: not certain.
     """
 
     UNDECIDED = 0
@@ -31,30 +30,30 @@ class EndState(IntEnum):
 
 
 UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (int(end) for end in EndState)
-"""As compiled code takes them."""
+"""The end states as integers, for compiled code."""
 
 HANDED_OVER = 255
-"""In place of an end state: compiled code does not follow the motion any further, see :mod:`.disc.driver`."""
+"""Marker in place of an end state: compiled code stops following the motion, see :mod:`.disc.driver`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """The ends of n trajectories.
+    """End states of n trajectories.
 
     Parameters
     ----------
     end : array of shape (n,)
-        :class:`EndState`.
+        End state, as :class:`EndState`.
     time : array of shape (n,)
-        In s: when that was certain, or the duration; less where a trajectory was given up, undecided.
+        Time in s at which it was certain, or the duration; less for a trajectory that was given up, undecided.
     states : array of shape (n, 4) or (n, 6)
-        At that time.
+        State at that time.
     least_radius, largest_radius : array of shape (n,)
-        Of the end state, in m; NaN where it is undecided.
+        Range of the radius in the end state, in m; NaN if undecided.
     slip_power : array of shape (n,)
-        Mean power of friction in W in the end state; NaN where it is undecided.
+        Mean power of friction in the end state, in W; NaN if undecided.
     steps : array of shape (n,)
-        Steps of the integrator, rejected ones included, and legs of stick.
+        Number of steps of the integrator, including rejected ones, and of stick phases.
 
     """
 
@@ -67,15 +66,15 @@ class Ensemble:
     steps: NDArray[np.int64]
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only: a result does not change."""
         for array in vars(self).values():
             array.flags.writeable = False
 
 
 class Results(NamedTuple):
-    """Where compiled code puts results: arrays (n,), states (n, 4 or 6), measures (n, 3).
+    """Output arrays of compiled code: ends, times and steps (n,), states (n, 4 or 6), measures (n, 3).
 
-    The measures are the least and the largest radius in m and the mean slip speed in m/s: power per friction force.
+    The measures are the smallest and the largest radius in m and the mean slip speed in m/s, which is power per
+    friction force.
     """
 
     ends: NDArray[np.uint8]
@@ -85,13 +84,13 @@ class Results(NamedTuple):
     steps: NDArray[np.int64]
 
     def ensemble(self, friction_force: float | FloatArray) -> Ensemble:
-        """Return them as Python has them; ``friction_force`` in N, shape () or (n,)."""
+        """Return the results as an :class:`Ensemble`; ``friction_force`` in N has the shape () or (n,)."""
         least, largest, slip = self.measures.T
         return Ensemble(self.ends, self.times, self.states, least, largest, slip * friction_force, self.steps)
 
     @classmethod
     def empty(cls, n: int, state_size: int) -> Results:
-        """Return room for ``n`` trajectories."""
+        """Return arrays for ``n`` trajectories."""
         return cls(
             np.zeros(n, dtype=np.uint8),
             np.zeros(n),

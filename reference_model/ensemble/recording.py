@@ -1,9 +1,9 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at some time is that of a short trajectory of its own, from the last checkpoint before it, that of the step
-in which it lies: it goes on with the pace of the whole, so that it takes no more than that step, cut short. Those of
-all times run side by side in lanes, and end where they should as every trajectory does. So the motion does not depend
-on the times that are asked for, and its error is the same at all of them.
+The state at a requested time is the end of a short trajectory from the last checkpoint before it, which is the start
+of the step that contains the time. This trajectory continues with the pace of the whole, so it takes only that step,
+cut short. The trajectories for all times run side by side in lanes. So the motion does not depend on the requested
+times, and its error is the same at all of them.
 """
 
 from __future__ import annotations
@@ -27,35 +27,37 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
 Runs = Callable[[FloatArray, FloatArray, FloatArray, Checkpoints], Results]
-"""Takes starts (n, 4 or 6), paces (n, 5) as of checkpoints, durations in s (n,) and room for checkpoints of a single
-one; runs them all."""
+"""Takes starts (n, 4 or 6), paces (n, 5), durations in s (n,) and room for checkpoints of one trajectory.
+
+Runs them.
+"""
 
 ROOM_TO_SPARE = 64
-"""Checkpoints that there is room for at first besides those of all times: where phases begin."""
+"""Initial room for checkpoints where phases begin, in addition to those for all times."""
 
 ROUNDED = 1e-12
-"""Share of a duration, or of the unit of time if that is longer, that is rounding of times."""
+"""Rounding error of times, as a share of the duration or of the unit of time, whichever is longer."""
 
 STAGES = 12
-"""Evaluations of the equations of motion in a step."""
+"""Number of evaluations of the equations of motion per step."""
 
 
 @dataclass
 class Recording:
-    """A motion under way from t = 0 on.
+    """A motion from t = 0 on that is being recorded.
 
     Parameters
     ----------
     times : array of shape (n,)
-        Those that are asked for, in s, not negative.
+        Requested times in s, >= 0.
     states : array of shape (n, 4) or (n, 6)
-        At these times, as far as the motion has come.
+        States at these times, as far as computed.
     duration, unit : float
-        Of the motion, and of time, in s.
+        Duration and unit of time in s.
     phases : list of (kind, start, state)
-        So far.
+        Phases so far.
     steps, evaluations : int
-        So far, as in ``Solution``, with rejected steps and legs of stick.
+        Counts so far, as in ``Solution``, including rejected steps and stick phases.
 
     """
 
@@ -69,15 +71,14 @@ class Recording:
 
     @property
     def _rounding(self) -> float:
-        """Of times, in s."""
         return ROUNDED * max(self.duration, self.unit)
 
     def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
-        """Take up the motion from ``state`` at ``since`` as far as ``one`` goes; return what that comes to.
+        """Follow the motion from ``state`` at ``since`` as far as ``one`` goes; return its result.
 
-        ``many`` goes from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
+        ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
         """
-        # A copy, which may be written to: the kernel is compiled for such arrays, and not once more for others.
+        # The kernel is compiled for writable arrays only.
         start, left = state.copy()[np.newaxis], np.array([self.duration - since])
         asked = self.times[self.times >= since] - since
         room = len(asked) + ROOM_TO_SPARE
@@ -87,7 +88,7 @@ class Recording:
             taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
                 break
-            room *= 2  # once more from the start: the motion does not depend on the room
+            room *= 2  # again from the start: the motion does not depend on the room
         until = since + float(end.times[0])
         if end.ends[0] != HANDED_OVER:
             self._require_end(end, left, since)
@@ -102,7 +103,7 @@ class Recording:
         return end
 
     def take(self, motion: Trajectory) -> None:
-        """Take over a part of the motion as the plain reference has it, at all times of this in its span."""
+        """Insert a part of the motion computed by the plain reference, at all requested times in its span."""
         asked = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
         self.states[asked] = motion.states[np.searchsorted(motion.times, self.times[asked])]
         for phase in motion.phases:
@@ -111,7 +112,6 @@ class Recording:
         self.evaluations += motion.solution.evaluations
 
     def _sample(self, many: Runs, checkpoints: Checkpoints, until: float) -> None:
-        """Find the states at the times from the first checkpoint up to ``until``."""
         asked = (self.times >= checkpoints["time"][0]) & (self.times <= until)
         if not np.any(asked):
             return
@@ -127,14 +127,14 @@ class Recording:
         short = results.times < durations - self._rounding
         if np.any(short):
             raise SimulationError(
-                f"the compiled run gave up {since + float(np.min(results.times[short])):g} s after its start: too "
-                "many steps, or the state is not finite; leave out compiled=True, or take a larger tolerance"
+                f"the compiled run failed {since + float(np.min(results.times[short])):g} s after its start: too "
+                "many steps, or a state that is not finite; omit compiled=True or use a larger tolerance"
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
-        """Begin a phase of this kind, unless it is under way; one that lasts for no more than rounding is none.
+        """Begin a phase of this kind, unless it is the current one; drop a phase that lasts no longer than rounding.
 
-        The reference begins with such a slip where it takes over a disc that already turns about a point.
+        The reference begins with such a slip phase if it continues a disc that already pivots about a point.
         """
         if self.phases and t - self.phases[-1][1] <= self._rounding:
             t = self.phases.pop()[1]

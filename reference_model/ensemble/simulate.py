@@ -21,10 +21,10 @@ from reference_model.systems import (
 )
 
 NOT_TAKEN = ("hardening", "stop_gap", "stop_stiffness")
-"""Parameters of a support that is not linear."""
+"""Parameters of a nonlinear support."""
 
 MOST_POINTS = 24
-"""The sum over points is written out, which takes long to compile for more."""
+"""Largest number of contact points: their sum is unrolled, which takes long to compile for more."""
 
 
 def simulate_ensemble(
@@ -37,34 +37,34 @@ def simulate_ensemble(
     early_end: bool = True,
     threads: int | None = None,
 ) -> Ensemble:
-    """Return what many trajectories end in, under exact Coulomb friction: compiled, in all lanes of all processors.
+    """Return the end states of many trajectories under exact Coulomb friction, computed by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. What a trajectory comes to does not depend, bit by bit,
-    on the others or on the number of threads.
+    The physics is that of :func:`reference_model.simulate`. The result of a trajectory does not depend, bit by bit,
+    on the other trajectories or on the number of threads.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters that all have in common, with a linear support.
+        Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
-        One for each, or for all, as ``reference_model.simulate`` takes it.
+        Initial states as in ``reference_model.simulate``, one per trajectory or one for all.
     duration : float
-        In s, > 0.
+        Duration in s, > 0.
     tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2, as ``reference_model.simulate`` takes it: steps have a tenth
-        of it, of pins and of discs alike (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9
-        and 11 after 100 s half are off by less than 4e-9, 99 of 100 by less than 1e-8, and one, of Fig. 9, by 2e-7.
+        Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. The tolerance of steps is
+        a tenth of it (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s
+        half have errors below 4e-9, 99 % below 1e-8, and one, of Fig. 9, has 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
-        Those that differ from trajectory to trajectory.
+        Parameters that differ between trajectories.
     early_end : bool
-        Whether a trajectory ends as soon as its end state is certain (how that is told: :mod:`.pin.end_states`).
+        Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
     threads : int, optional
-        As many as there are processors unless told otherwise.
+        Number of threads; by default one per processor.
 
     Raises
     ------
     ValueError
-        For anything that is not as above.
+        If an argument is invalid.
 
     """
     require_system(system)
@@ -78,7 +78,7 @@ def simulate_ensemble(
     tolerance = checked_tolerance(tolerance)
     threads = _checked_threads(threads)
 
-    # Each of them loads what is compiled for it.
+    # Each driver loads its own compiled code.
     if isinstance(system, PinOnDisc):
         from reference_model.ensemble.pin.driver import simulate_pins
 
@@ -89,30 +89,30 @@ def simulate_ensemble(
 
 
 def require_known(system: System) -> None:
-    """Raise ``ValueError`` for a system that compiled code does not know, naming the parameter."""
+    """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
     unknown = _what_is_unknown(system)
     if unknown:
         raise ValueError(unknown)
 
 
 def is_known(system: System) -> bool:
-    """Tell whether compiled code knows a system."""
+    """Return whether compiled code supports a system."""
     return not _what_is_unknown(system)
 
 
 def _what_is_unknown(system: System) -> str:
-    """Return a sentence on what compiled code does not know, "" if there is nothing."""
+    """Return the reason why compiled code cannot simulate ``system``, or ""."""
     for name in NOT_TAKEN:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":
             return (
-                f"{name} = {value:g}: a compiled run takes linear supports only, since release and the neighbourhood "
-                "of an equilibrium are closed forms there; take reference_model.simulate"
+                f"{name} = {value:g}: compiled runs need a linear support, because they compute release and "
+                "the surroundings of an equilibrium in closed form; set it to 0 or use reference_model.simulate"
             )
     points = getattr(system, "contact_points", None) or 0
     if points > MOST_POINTS:
         return (
-            f"contact_points = {points}: a compiled run takes up to {MOST_POINTS}; so many are close to the "
+            f"contact_points = {points}: compiled runs support up to {MOST_POINTS}; for more use the "
             "continuous ring, contact_points = None"
         )
     return ""
@@ -132,14 +132,16 @@ def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
 def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArray:
     allowed = [field.name for field in fields(system) if field.name not in (*NOT_TAKEN, "contact_points")]
     if name not in allowed:
-        raise ValueError(f"parameters: {name!r} can't differ by trajectory, only {', '.join(allowed)}")
+        raise ValueError(
+            f"parameters: {name!r} cannot differ between trajectories, only {', '.join(allowed)}"
+        )
     array = _numbers(name, values)
     if array.ndim != 1 or len(array) == 0:
         raise ValueError(
-            f"parameters: {name} has shape {array.shape}: it must be a list of one number a trajectory"
+            f"parameters: {name} has shape {array.shape}: it must be a list with one number per trajectory"
         )
     for value in (array.min(), array.max()):
-        replace(system, **{name: float(value)})  # type: ignore[arg-type]  # refuses what no system can be
+        replace(system, **{name: float(value)})  # type: ignore[arg-type]  # raises for invalid values
     return array
 
 
@@ -147,7 +149,7 @@ def _numbers(name: str, values: Any) -> FloatArray:
     try:
         array = np.array(values, dtype=float, order="C")
     except (TypeError, ValueError):
-        raise ValueError(f"{name} must hold nothing but numbers, in rows of the same length") from None
+        raise ValueError(f"{name} must contain numbers only, in rows of equal length") from None
     if not np.all(np.isfinite(array)):
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise ValueError(f"{name}[{', '.join(map(str, where))}] = {array[where]}: it must be finite")
@@ -155,7 +157,7 @@ def _numbers(name: str, values: Any) -> FloatArray:
 
 
 def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
-    """Return the number of trajectories, which all parameters have, and all starts but a single one for all."""
+    """Return the number of trajectories; all parameters must have it, and the starts unless there is one for all."""
     sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
     n = max(sizes.values())
     for name, size in sizes.items():

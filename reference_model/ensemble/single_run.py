@@ -25,19 +25,19 @@ def simulate_compiled(
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Do as :func:`reference_model.simulate`, which says more, by the kernel of ensembles."""
+    """Simulate like :func:`reference_model.simulate`, by the kernel of ensembles."""
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
     times = checked_times(times)
     tolerance = checked_tolerance(tolerance)
     if contact_of(system, contact) != contact_of(system):
         raise ValueError(
-            f"contact = {contact}: compiled runs know the law of the system's own parameters only, "
-            f"{contact_of(system)}; leave out compiled=True"
+            f"contact = {contact}: compiled runs support only the law of the system's parameters, "
+            f"{contact_of(system)}; omit compiled=True"
         )
     require_known(system)
     delays, unit = times - times[0], Units.of(system, state).time
-    # A single time asks for no motion, but for the phase that begins.
+    # For a single time only the phase that begins is needed.
     duration = float(delays[-1]) if len(times) > 1 else unit
     recording = Recording(delays, np.full((len(times), system.state_size), np.nan), duration, unit)
     if isinstance(system, PinOnDisc):

@@ -1,1 +1,1 @@
-"""The formulas of the paper, by its equation numbers."""
+"""The formulas of the paper, by equation number."""

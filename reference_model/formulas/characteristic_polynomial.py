@@ -10,7 +10,7 @@ from reference_model.systems import DiscOnDisc
 
 
 class Coefficients(NamedTuple):
-    """Of λ³, λ², λ and 1 in the characteristic equation λ⁴ + … = 0, in units of 1/s to 1/s⁴."""
+    """Coefficients of λ³, λ², λ and 1 in the characteristic equation λ⁴ + … = 0, in 1/s to 1/s⁴."""
 
     cubic: float
     square: float
@@ -19,19 +19,19 @@ class Coefficients(NamedTuple):
 
     @property
     def hurwitz(self) -> float:
-        """Hurwitz' determinant, in 1/s⁶: zero where two eigenvalues have the sum zero."""
+        """Hurwitz determinant in 1/s⁶: zero where two eigenvalues have the sum zero."""
         return self.linear * (self.square * self.cubic - self.linear) - self.cubic**2 * self.constant
 
     @property
     def squared_frequency(self) -> float:
-        """Return ν² in 1/s² of the pair ±iν where :attr:`hurwitz` is zero; if negative, a real pair ±|ν|."""
+        """ν² in 1/s² of the pair ±iν where :attr:`hurwitz` is zero; negative for a real pair ±|ν|."""
         return self.linear / self.cubic
 
 
 def characteristic_coefficients(
     disc: DiscOnDisc, slip: float, rim: float, contact: IsotropicContact | None = None
 ) -> Coefficients:
-    """Coefficients of the characteristic equation of a disc's whirl without offset; (13) for the disc.
+    """Return the coefficients of the characteristic equation of a disc's whirl without offset; (13) for the disc.
 
     With the deviations ξ of the radius, w of the speed along the circle and σ of the spin from the whirl, (19) is::
 
@@ -41,29 +41,28 @@ def characteristic_coefficients(
         g = μN·F_S/m,   h = μN·M_U/J,   c = (b + μN·M_S)/J
 
     where indices of the friction F and M are derivatives. So λ(λ + D)[(λ + e)(λ + c) − gh] + 2k[(2kλ − f)(λ + c) +
-    ghd] = 0. A pin has no g and h: then λ + c divides out, and corrected (13) is left.
+    ghd] = 0. For a pin g = h = 0: λ + c divides out and corrected (13) is left.
 
     Parameters
     ----------
     disc : DiscOnDisc
-        The parameters.
+        Parameters of the system.
     slip, rim : float
-        > 0 both, of which only the ratio matters: that of U and R|ω − φ̇|.
+        Positive numbers whose ratio is U : R|ω − φ̇|.
     contact : IsotropicContact or None
-        Law of friction; None for that of the parameters.
+        Friction law; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If the law has no derivative at that ratio, or the disc rests on single points; if the support is not
-        linear.
+        If the law has no derivative at that ratio, the disc rests on single points, or the support is not linear.
 
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")
     k, spin = disc.natural_frequency, rim / disc.contact_radius
     relative = abs(disc.disc_speed) - k
-    # The slip is so many times as fast as at the ratio itself; derivatives of friction are smaller by that.
+    # Ratio of the actual slip to ``slip``; derivatives of friction are smaller by this factor.
     size = relative * disc.friction_force * law.shares(slip, spin).resistance / (disc.damping * k * slip)
     slopes = law.slopes(slip, spin)
     per_size = disc.friction_force / size

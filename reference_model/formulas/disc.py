@@ -1,7 +1,7 @@
-"""The closed forms of section 4 of the paper, one function an equation, and what follows from the same balances.
+"""The closed forms of section 4 of the paper, one function per equation, and results of the same balances.
 
-Signs are those of :mod:`reference_model.formulas.pin`: a formula is evaluated for |ω|, with Ω/ω as it is, and what
-it says about y and the spin is mirrored where ω < 0; an offset on the other side turns x and y by half a turn.
+Signs are those of :mod:`reference_model.formulas.pin`: a formula is evaluated for |ω| with the given Ω/ω. If ω < 0, y
+and the spin are mirrored; if X0 < 0, x and y change sign.
 """
 
 from __future__ import annotations
@@ -23,24 +23,21 @@ from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
-"""The names of its parameters."""
+"""Names of a pin's parameters."""
 
 
 def pin_of(disc: DiscOnDisc, **others: float) -> PinOnDisc:
-    """Return the pin that a disc is as long as it does not spin against the master disc, but for the ``others``."""
+    """Return the pin that moves like a disc without spin relative to the master disc, with ``others`` replaced."""
     return PinOnDisc(**{name: getattr(disc, name) for name in OF_A_PIN} | others)
 
 
 def shaft_torque(disc: DiscOnDisc) -> float:
-    """Return b|ω − Ω| in N m, the moment on a disc that does not spin against the master disc."""
+    """Return b|ω − Ω| in N m, the shaft's moment on a disc that does not spin relative to the master disc."""
     return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
 
 
-# ---------------------------------------------------------------- the expansion of the slip speed
-
-
 def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
-    """ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
+    """Return ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
 
     With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. The average of three terms over the ring,
     times the slip velocity of the point, is (23).
@@ -60,24 +57,21 @@ def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
 
 
 def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float) -> float:
-    """Right side of the first line of (22) as the paper prints it, with ν̃_r/|ν_r| on the left; to show it."""
+    """Return the right side of the first line of (22) as printed, with ν̃_r/|ν_r| on the left, for comparison."""
     return 1.0 - _expanded(slip, rim_speed, place)
 
 
-# ---------------------------------------------------------------- sticking
-
-
 def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
-    """Return the pin that the centre of a stuck disc is, whose μN is what friction can hold beside the shaft.
+    """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
-    A stuck disc turns with the master disc, so that friction must give the constant moment b(ω − Ω). The force that
-    it can give besides is the largest F on the limit surface at that moment, and takes the place of μN in (7) to
-    (9): ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
+    A stuck disc turns with the master disc, so friction must supply the constant moment b(ω − Ω). The largest force F
+    on the limit surface at that moment takes the place of μN in (7) to (9):
+    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
 
     Raises
     ------
     ValueError
-        If friction can't give the moment, so that the disc never sticks; if the disc rests on single points.
+        If friction cannot supply the moment, so that the disc never sticks, or if the disc rests on single points.
 
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
@@ -85,17 +79,14 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     if centre is None:
         largest = disc.friction_force * law.shares(0.0, 1.0).moment
         raise ValueError(
-            f"friction_force = {disc.friction_force:g} N: friction holds a moment of {largest:g} N m and the disc "
-            f"sticks only if that is not less than the shaft's, {shaft_torque(disc):g} N m"
+            f"friction_force = {disc.friction_force:g} N: the disc cannot stick, because friction holds only "
+            f"{largest:g} N m of the shaft's {shaft_torque(disc):g} N m"
         )
     return replace(pin_of(disc), friction_force=centre.friction * disc.mass)
 
 
-# ---------------------------------------------------------------- the self-centred equilibrium of (23)
-
-
 class Place(NamedTuple):
-    """Where a self-centred disc rests, x and y in m, and its spin in rad/s."""
+    """Position of a self-centred disc, x and y in m, and its spin in rad/s."""
 
     x: float
     y: float
@@ -103,7 +94,7 @@ class Place(NamedTuple):
 
 
 class ReducedParameters(NamedTuple):
-    """Parameters of (25): μ₀ and b₀ in m, and δ, a number."""
+    """Parameters of (25): μ₀ and b₀ in m, and the number δ."""
 
     load: float
     shaft_damping: float
@@ -111,7 +102,7 @@ class ReducedParameters(NamedTuple):
 
 
 def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Left side minus right side of (4), in m², which holds for the self-centred disc as for the pin.
+    """Return left side minus right side of (4), in m², which holds for the self-centred disc as for the pin.
 
     ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
     """
@@ -119,7 +110,7 @@ def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatAr
 
 
 def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Place:
-    """Place and spin by (24) from A in m and the angles α and θ in rad.
+    """Return position and spin by (24) from A in m and the angles α and θ in rad.
 
     The slip speeds of centre and rim are U = |ω|A·cos α and R(ω − φ̇) = ωA·sin α.
     """
@@ -131,12 +122,12 @@ def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> P
 
 
 def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
-    """μ₀, b₀ and δ of (25).
+    """Return μ₀, b₀ and δ of (25).
 
     Raises
     ------
     ValueError
-        If there are no springs, or the master disc is at rest; if the support is not linear.
+        If stiffness or disc speed is zero, or the support is not linear.
 
     """
     require_linear_support(disc)
@@ -149,12 +140,12 @@ def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
 
 
 def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> float:
-    """Right side of the first line of (26), of which δ is the left side, at A in m and α in rad.
+    """Return the right side of the first line of (26), whose left side is δ, at A in m and α in rad.
 
     Raises
     ------
     ValueError
-        As :func:`reduced_parameters`, and without shaft damping.
+        As :func:`reduced_parameters`, and if the shaft damping is zero.
 
     """
     _require_not_zero(disc, "shaft_damping")
@@ -165,9 +156,9 @@ def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> floa
 
 
 def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
-    """A² in m² by the second line of (26), corrected, at α in rad; negative where there is no A.
+    """Return A² in m² by the second line of (26), corrected, at α in rad; negative if no A exists.
 
-    (24) put into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Raises ``ValueError`` as
+    (24) inserted into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Raises ``ValueError`` as
     :func:`reduced_parameters`.
     """
     return _squared_distance(
@@ -176,7 +167,7 @@ def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
 
 
 def squared_distance_as_printed(disc: DiscOnDisc, alpha: float) -> float:
-    """A² in m² by (26) as the paper prints it, with the bracket 1 − ½cos²α + (3/16)·sin²α; wrong, to show it.
+    """Return A² in m² by (26) as printed, with the wrong bracket 1 − ½cos²α + (3/16)·sin²α, for comparison.
 
     Raises ``ValueError`` as :func:`reduced_parameters`.
     """
@@ -184,12 +175,12 @@ def squared_distance_as_printed(disc: DiscOnDisc, alpha: float) -> float:
 
 
 def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
-    """θ of the third line of (26) in rad, at A in m and α in rad; in the sense in which the master disc turns.
+    """Return θ of the third line of (26) in rad, at A in m and α in rad, in the sense of ω.
 
     Raises
     ------
     ValueError
-        Without an offset, which leaves no direction, and where A·cos α > |X0|.
+        If the offset is zero, which leaves no direction, or if A·cos α > |X0|.
 
     """
     _require_not_zero(disc, "offset")
@@ -203,10 +194,10 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 
 
 def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, ...]:
-    """Solve (26) for all its α, by increasing |α|, and return the places by (24).
+    """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
-    The corrected (26) gives the equilibria of (23): it is :func:`reference_model.self_centred_equilibria` on the
-    contact :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
+    The corrected (26) gives the equilibria of (23). These are :func:`reference_model.self_centred_equilibria` with
+    :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
 
     Raises
     ------
@@ -219,7 +210,7 @@ def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, 
     difference = reduced_parameters(disc).speed_difference
 
     def excess(alpha: float) -> float:
-        """Return first line of (26), multiplied by cos α because A grows like its reciprocal."""
+        """Return the residual of the first line of (26), multiplied by cos α because A grows like its reciprocal."""
         distance = math.sqrt(max(squared(disc, alpha), 0.0))
         return (speed_difference_at(disc, distance, alpha) - abs(difference)) * math.cos(alpha)
 
@@ -237,11 +228,8 @@ def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, 
     return tuple(places)
 
 
-# ---------------------------------------------------------------- the whirl, by the same way as (24) to (26)
-
-
 class WhirlAtRatio(NamedTuple):
-    """A whirl without offset: the load μN in N that it takes, its radius in m, its spin in rad/s."""
+    """A whirl without offset: its load μN in N, radius in m and spin in rad/s."""
 
     load: float
     radius: float
@@ -249,30 +237,30 @@ class WhirlAtRatio(NamedTuple):
 
 
 def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = None) -> WhirlAtRatio:
-    """Whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of the slip speeds of rim and centre.
+    """Return the whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of rim and centre slip.
 
-    A circle of radius ρ at the frequency κ takes three balances. The radial one has no friction, because the
-    slip (κ − ω)ρ is along the circle: κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω
-    and for |ω| > k only, as in (11), so that U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with
-    S = ω − φ̇, R|S| = U·tan α. Together they give the load, see :func:`whirl_arm`::
+    A circle of radius ρ at the frequency κ satisfies three balances. The radial one contains no friction, because the
+    slip (κ − ω)ρ is along the circle: κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω and
+    only for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S| =
+    U·tan α. Together they give the load, see :func:`whirl_arm`::
 
         μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
 
     Parameters
     ----------
     disc : DiscOnDisc
-        The parameters; ``friction_force`` does not matter.
+        Parameters of the system; ``friction_force`` is ignored.
     alpha : float
-        In rad, 0 < α < π/2.
+        α in rad, 0 < α < π/2.
     contact : IsotropicContact or None
-        Law of friction, :class:`reference_model.contact.contact_law.ThreeTermRing` for that of (23); None for that
-        of the parameters.
+        Friction law, :class:`reference_model.contact.contact_law.ThreeTermRing` for (23); None for the law of the
+        parameters.
 
     Raises
     ------
     ValueError
-        If α is outside of its range; if stiffness, damping or shaft damping is zero, if Ω = ω or |ω| <= k; if the
-        disc rests on single points, or its support is not linear.
+        If α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <= k; if the disc rests
+        on single points or the support is not linear.
 
     """
     require_linear_support(disc)
@@ -300,15 +288,14 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 
 
 def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
-    """Return b|ω − Ω|/μN in m of the whirl as a function of slip : rim, the ratio of U and R|ω − φ̇|, both >= 0.
+    """Return b|ω − Ω|/μN in m of the whirl as a function of slip and rim >= 0, whose ratio is U : R|ω − φ̇|.
 
-    It is M + b(|ω| − k)/(βkR)·F·rim/slip; at slip = 0 the limit, which is b|ω − Ω| over the onset load.
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip. At slip = 0 it is the limit, b|ω − Ω| over the onset load.
 
     Raises
     ------
     ValueError
-        If there is no whirl at any load: without stiffness or damping, or for |ω| <= k; if the support is not
-        linear.
+        If there is no whirl at any load (zero stiffness or damping, or |ω| <= k), or if the support is not linear.
 
     """
     require_linear_support(disc)
@@ -324,11 +311,7 @@ def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, f
     return arm
 
 
-# ---------------------------------------------------------------- terms and conditions that several share
-
-
 def _expanded(slip: complex, rim_speed: float, place: float) -> float:
-    """ε of (22), R(ω − φ̇)·ν̃_xy/ν̄_r²."""
     along_rim = slip.real * math.sin(place) - slip.imag * math.cos(place)
     return rim_speed * along_rim / (abs(slip) ** 2 + rim_speed**2)
 
@@ -342,4 +325,4 @@ def _squared_distance(disc: DiscOnDisc, alpha: float, bracket: float) -> float:
 def _require_not_zero(disc: DiscOnDisc, *names: str) -> None:
     for name in names:
         if getattr(disc, name) == 0.0:
-            raise ValueError(f"{name} = 0: (24) to (26) take a value that is not zero")
+            raise ValueError(f"{name} = 0: it must not be zero in (24) to (26)")

@@ -1,19 +1,18 @@
-"""The whirl of a pin on a hardening support with an offset, by balance of one harmonic and the mean.
+"""The whirl of a pin on a hardening support with an offset, by harmonic balance of mean and first harmonic.
 
-With z = z_m + ρ·exp(iψ), ψ̇ = κ, the support deflects by q + ρ·exp(iψ), q = z_m − X0, and of the two harmonics of its
-cubic force and of friction, whose slip is (ω − κ)·ρ·exp(iψ) + ω·z_m turned by −i, remain::
+With z = z_m + ρ·exp(iψ), ψ̇ = κ, the deflection of the support is q + ρ·exp(iψ), q = z_m − X0, and the slip is (ω −
+κ)·ρ·exp(iψ) + ω·z_m turned by −i. For ω > κ > 0 the two balances are::
 
     mean             C·q + C₃·(|q|² + 2ρ²)·q = iμN·∂P/∂V·z_m/|z_m|
     first harmonic   m·κ² = C + C₃·(ρ² + 2|q|²),   βκρ = μN·∂P/∂U
 
-for ω > κ > 0, with the mean P of |U + V·exp(iψ)| over ψ, U = (ω − κ)ρ and V = ω|z_m|: that of a ring.
+with the mean P of |U + V·exp(iψ)| over ψ, U = (ω − κ)ρ and V = ω|z_m|, which is the mean slip speed of a ring.
 
-*Order of the error.* The offset excites the mean and the second harmonic, both in proportion to X0, and the balance
-leaves out the second, which friction and hardening couple to the mean. So the mean is wrong by a fraction that does
-not vanish, an error of the order X0, as that of (18), which is this balance for C₃ = 0 to first order. But ρ and κ do
-not know the sign of X0 (the orbit for −X0 is that for X0, turned by half a turn): they are even in it, and what is
-left out changes them by products of two small harmonics, an error of the order X0². For X0 = 0 the ansatz is the
-motion.
+*Order of the error.* The offset excites the mean and the second harmonic, both in proportion to X0. The balance omits
+the second harmonic, which friction and hardening couple to the mean. So the relative error of the mean does not
+vanish, and its absolute error is of order X0, like that of (18), which is this balance for C₃ = 0 to first order. ρ
+and κ do not depend on the sign of X0, because the orbit for −X0 is the orbit for X0, turned by half a turn. So the
+omitted terms change them by products of two small harmonics, of order X0². For X0 = 0 the balance is exact.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ class BalancedWhirl:
     radius : float
         ρ in m.
     frequency : float
-        κ in rad/s, negative where the pin turns clockwise.
+        κ in rad/s, negative if clockwise.
     mean : complex
         z_m in m.
 
@@ -49,26 +48,26 @@ class BalancedWhirl:
 
 
 def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
-    """Return the whirl by balance of its mean and its first harmonic.
+    """Return the whirl by harmonic balance of its mean and its first harmonic.
 
-    Errors: of radius and frequency of the order X0², of the mean of the order X0; none for X0 = 0.
+    The error of radius and frequency is of order X0², that of the mean of order X0. For X0 = 0 the result is exact.
 
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters, without a stop.
+        Parameters of the system, without a stop.
 
     Raises
     ------
     ValueError
-        If there is a stop, whose force is no polynomial; if there is no whirl without offset to start from.
+        If there is a stop, whose force is not a polynomial, or if there is no whirl without offset to start from.
     RuntimeError
-        If Newton's method finds no balance near to that: the offset is too large.
+        If Newton's method does not converge near it, because the offset is too large.
 
     """
     if pin.stop_stiffness > 0.0:
         raise ValueError(
-            f"stop_stiffness = {pin.stop_stiffness:g} N/m: the harmonic balance is for a support without a stop"
+            f"stop_stiffness = {pin.stop_stiffness:g} N/m: harmonic balance needs a support without a stop"
         )
     without_offset, frequency = whirl_radius(pin), abs(whirl_frequency(pin))
     speed, force = abs(pin.disc_speed), pin.friction_force
@@ -78,7 +77,7 @@ def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
         return radius * without_offset, turning * frequency, complex(x, y) * without_offset
 
     def residuals(unknowns: FloatArray) -> FloatArray:
-        """Return both balances, as shares of friction."""
+        """Return the residuals of both balances, as shares of friction."""
         radius, turning, mean = whirl(unknowns)
         q = mean - pin.offset
         slip, carried = abs(speed - turning) * radius, speed * abs(mean)
@@ -99,8 +98,8 @@ def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
     radius, turning, mean = whirl(found.x)
     if np.max(np.abs(residuals(found.x))) > CONVERGED or not 0.0 < turning < speed or radius <= 0.0:
         raise RuntimeError(
-            f"offset = {pin.offset:g} m: no balance of one harmonic near the whirl without offset, of the radius "
-            f"{without_offset:g} m"
+            f"offset = {pin.offset:g} m: too large for harmonic balance, which starts from the whirl of radius "
+            f"{without_offset:g} m without offset"
         )
     clockwise = pin.disc_speed < 0.0
     return BalancedWhirl(

@@ -1,4 +1,4 @@
-"""Energy and power balance of a trajectory, a check of any engine without a reference solution."""
+"""Energy and power balance of a trajectory, which checks any engine without a reference solution."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ ComplexArray = NDArray[np.complex128]
 SPLINE_DEGREE = 5
 
 CROWDED = 0.05
-"""Samples nearer than this fraction of their usual distance to the end of a phase are left out."""
+"""Samples closer to the end of a phase than this fraction of their usual distance are left out."""
 
 
 @dataclass(frozen=True, eq=False)
 class PowerBalance:
-    """Where the energy went that the drive of the disc put in; all in J since the start, shape (n,).
+    """Energy balance of a trajectory; works and heats in J since the start, shape (n,).
 
     Parameters
     ----------
     times : array
-        In s: those of the trajectory, and the bounds of its phases.
+        Times of the trajectory and bounds of its phases, in s.
     drive_work : array
-        What the drive of the (master) disc put in.
+        Work of the drive of the (master) disc.
     friction_heat, damper_heat : array
-        What friction and the dampers, that of a friction disc's shaft included, turned into heat.
+        Heat produced by friction and by the dampers, including a friction disc's shaft damper.
     shaft_work : array
-        What the shaft of a friction disc took out behind its damper; none for a pin.
+        Work that a friction disc delivers to its shaft behind the damper; zero for a pin.
     stored_energy : array
-        Kinetic energy and that of the springs, itself, not since the start.
+        Kinetic energy plus energy of the springs, as absolute values.
 
     """
 
@@ -50,7 +50,7 @@ class PowerBalance:
 
     @property
     def residual(self) -> FloatArray:
-        """Drive work less heat, work on the shaft and gain of stored energy: zero for the right motion."""
+        """Drive work minus heat, work on the shaft and gain of stored energy: zero for the exact motion."""
         gain = self.stored_energy - self.stored_energy[0]
         return np.asarray(self.drive_work - self.friction_heat - self.damper_heat - self.shaft_work - gain)
 
@@ -61,41 +61,39 @@ class PowerBalance:
 
     @property
     def turned_over(self) -> float:
-        """Energy by which to judge the residual: all heat, and the most that was stored."""
+        """Energy that measures the residual: all heat plus the largest stored energy."""
         return float(self.friction_heat[-1] + self.damper_heat[-1] + np.max(self.stored_energy))
 
 
 def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> PowerBalance:
     """Return the energy balance of ``trajectory``.
 
-    The friction heat is μN·∫P dt in slip phases, with the mean slip speed P of the contact: of a pin |w|, of a disc
-    −F·u + M·S in shares of μN. A regularised engine declares the P below which its friction is weaker. In stick
-    phases the heat is the work of force and moment that hold the body by eq. 6 on whatever creep the engine shows,
-    which is none for exact friction. The drive's work is ω times the moment impulse on the body about the axis, and
-    that is taken from its motion, not from a friction law: by its angular momentum about the axis,
-    ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its
-    deflection. So the residual vanishes only if force and motion belong together: friction against the slip and of
-    the magnitude μN, the damping β and b, the springs, energy neither made nor lost by the integrator.
+    In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u + M·S
+    (per newton of μN) for a disc; below the ε of a regularised engine friction is weaker. In stick phases the heat is
+    the work of the holding force and moment of eq. 6 on the engine's creep, zero for exact friction. The drive's work
+    is ω times the angular impulse on the body about the axis, which follows from the motion: ∫M dt = [m·r×v + J·φ̇] +
+    β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual
+    vanishes only if friction acts against the slip with the magnitude μN, the damping and the springs are right, and
+    the integrator conserves energy.
 
-    The integrals are those of a quintic spline through the samples of each phase. Their error falls with the
-    sixth power of the distance of samples where the slip of every point is well away from zero, and more slowly
-    near it and where a stop begins to act.
+    The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
+    power of the sampling interval, or more slowly if the slip of a point is near zero or a stop begins to act.
 
     Parameters
     ----------
     trajectory : Trajectory
-        At times close enough to resolve the motion.
+        Trajectory with times close enough to resolve the motion.
     contact : Contact or None
-        The law of friction of a disc if it is not that of its parameters.
+        Friction law of a disc; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If the trajectory has one time only.
+        If the trajectory has only one time.
 
     """
     if len(trajectory.times) < 2:
-        raise ValueError("the trajectory has one time only: a power balance takes at least two")
+        raise ValueError("times has one entry: a power balance needs at least two")
     body = trajectory.system
     m, beta, omega, X0 = body.mass, body.damping, body.disc_speed, body.offset
     support = Support.of(body)
@@ -118,14 +116,14 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
 
 
 def _shaft_of(body: System) -> tuple[float, float, float]:
-    """Return J in kg m², b in N m s/rad and Ω in rad/s; a pin has none of them."""
+    """Return J in kg m², b in N m s/rad and Ω in rad/s; zeros for a pin."""
     if isinstance(body, DiscOnDisc):
         return body.polar_inertia, body.shaft_damping, body.shaft_speed
     return 0.0, 0.0, 0.0
 
 
 def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times (n,), states (n, 4 or 6) and what has come up since the start (n, 6), phase after phase.
+    """Return times (n,), states (n, 4 or 6) and integrals since the start (n, 6), phase after phase.
 
     The columns are the integrals of :func:`_rates`.
     """
@@ -141,7 +139,7 @@ def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatA
 
 
 def _rates(trajectory: Trajectory, law: Contact, kind: str, state: FloatArray) -> FloatArray:
-    """Return friction's power, |v|², r×v, C·y, φ̇ − Ω and its square at the states of a phase, shape (n, 6)."""
+    """Return friction power, |v|², r×v, C·y, φ̇ − Ω and its square for the states of a phase, shape (n, 6)."""
     body = trajectory.system
     omega, X0 = body.disc_speed, body.offset
     _, b, Omega = _shaft_of(body)
@@ -166,7 +164,7 @@ def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> Float
 
 
 def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:
-    """Return place z, angle φ, velocity ż and spin φ̇, each (n,); a pin has neither angle nor spin."""
+    """Return position z, angle φ, velocity ż and spin φ̇, each (n,); angle and spin of a pin are zero."""
     places, velocities = np.split(state, 2, axis=1)
     z, v = (pair[:, 0] + 1j * pair[:, 1] for pair in (places, velocities))
     if isinstance(body, DiscOnDisc):
@@ -175,7 +173,7 @@ def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, 
 
 
 def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return the mean slip speed of the contact, by the power that its friction takes, shape (n,)."""
+    """Return the mean slip speed of the contact from the power of its friction, shape (n,)."""
     result = np.empty(len(u))
     for i, (slip, spin, phi) in enumerate(
         zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
@@ -186,7 +184,6 @@ def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: 
 
 
 def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Return kind, times and states of each phase, its bounds included."""
     spans: list[tuple[str, FloatArray, FloatArray]] = []
     ends = [phase.initial_state for phase in trajectory.phases[1:]] + [trajectory.at_end]
     for phase, end_state in zip(trajectory.phases, ends, strict=True):
@@ -200,8 +197,8 @@ def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the integrals of ``rates`` (shape (n, k)) from ``t[0]`` to each time."""
-    # Interpolation takes an odd degree and more samples than that.
+    """Return the integrals of ``rates``, shape (n, k), from ``t[0]``."""
+    # A spline needs an odd degree and more samples than that.
     degree = min(SPLINE_DEGREE, (len(t) - 2) // 2 * 2 + 1)
     antiderivative = make_interp_spline(t - t[0], rates, k=degree).antiderivative()
     result: FloatArray = antiderivative(t - t[0])

@@ -1,11 +1,10 @@
-"""The balances of a disc in steady motion, with all their solutions.
+"""All solutions of the force and moment balances of a disc in steady motion.
 
-Isotropic friction depends on the ratio of slip speed U and rim speed W = R|S| only, as in (24): at a given ratio
-its force μN·F and its moment μN·M are known, and one equation is left, whose zeros are sought over all ratios.
+Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio its
+force μN·F and its moment μN·M are known, which leaves one equation whose zeros are sought over all ratios.
 
-Two things narrow the search. The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has
-that of S. And M grows with W : U, as it does for every law of friction here, so that the ratios with
-μN·M <= b|ω − Ω| are an interval.
+Two facts narrow the search. The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the
+sign of S. And M grows with W : U for every friction law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
 """
 
 from __future__ import annotations
@@ -22,24 +21,24 @@ from reference_model.support import Support
 from reference_model.systems import DiscOnDisc
 
 OfRatio = Callable[[float, float], float]
-"""A function of slip and rim speed, both >= 0, of which only the ratio matters."""
+"""A function of slip and rim speed >= 0 that depends only on their ratio."""
 
 NO_SLIP = 1e-30
-"""Ratio of slip to rim speed that stands for none, where only the limit of their quotient is known."""
+"""Smallest ratio of slip to rim speed; the quotient then takes its limit."""
 
 ROUNDING = 8.0 * sys.float_info.epsilon
-"""Relative error of a balance that is not more than rounding."""
+"""Relative residual of a balance that rounding may cause."""
 
 
 def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
-    """Yield x + iy in m and the spin in rad/s of all equilibria in space in which the contact slides.
+    """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact.
 
-    By increasing W : U. None where every place or every spin is as good as another.
+    They come by increasing W : U. Nothing is yielded if every position or every spin is an equilibrium.
 
-    Friction acts across the radius, so that springs of the deflection d must pull by μN·F at a right angle to it:
-    ρ² + d² = X0², where d is μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and
-    tan α = W/U, the torsional balance gives U = (μN·R/b)(m − M)/tan α, and the zeros of
-    (μN·R/(b|ω|)·(m − M)·cos α)² + (d² − X0²)·sin² α are left.
+    Friction acts across the radius, so springs with the deflection d must pull by μN·F at a right angle to it: ρ² +
+    d² = X0², where d = μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and tan α = W/U, the
+    torsional balance gives U = (μN·R/b)(m − M)/tan α, which leaves the zeros of (μN·R/(b|ω|)·(m − M)·cos α)² + (d² −
+    X0²)·sin² α.
     """
     load, offset, torque = disc.friction_force, abs(disc.offset), shaft_torque(disc)
     speed, radius = abs(disc.disc_speed), disc.contact_radius
@@ -49,7 +48,7 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
             yield complex(disc.offset), disc.shaft_speed
         return
     if speed == 0.0 or support.pull(offset) == 0.0:
-        # The springs pull at nothing or there are none, and friction has no force: the centre does not slip.
+        # Without a spring force friction is zero too: the centre does not slip.
         to_shaft = torque - load * contact.shares(0.0, 1.0).moment
         if to_shaft > 0.0 and (speed > 0.0 or support.centring):
             place = complex(disc.offset) if speed == 0.0 else 0j
@@ -67,7 +66,7 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
         deflection = support.deflection(load * resistance)
         return _difference(from_shaft**2, (offset - deflection) * (offset + deflection) * rim**2)
 
-    # A disc that no moment turns against the master disc does not spin against it.
+    # If the shaft exerts no moment the disc does not spin relative to the master disc.
     ratios = (
         [(1.0, 0.0)]
         if torque == 0.0
@@ -77,7 +76,8 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
         resistance, moment = at(slip, rim)
         deflection, spare_moment = support.deflection(load * resistance), largest_moment - moment
         squared_place = (offset - deflection) * (offset + deflection)
-        # U and W are as slip and rim by both balances; the one that keeps more digits tells how large they are.
+        # U and W have the ratio slip : rim by both balances. Their size comes from the balance that keeps more
+        # digits.
         if spare_moment * offset**2 > squared_place * largest_moment:
             size = load * radius / disc.shaft_damping * spare_moment / rim
         else:
@@ -91,17 +91,16 @@ def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tupl
 def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
-    They are the ratios at which :func:`reference_model.formulas.disc.whirl_arm` is b|ω − Ω|/μN; of pure spin, at
-    the onset, there is no whirl yet. On a support that is not linear the circle, and with it the centre's slip, is
-    not in proportion to the load, and the arm is that of this load. Raises ``ValueError`` if :func:`whirl_arm` does,
-    or without damping or friction.
+    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, except pure spin, the onset. On a
+    nonlinear support the circle and the centre's slip are not proportional to the load, and the arm is that of this
+    load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)
     speed, needed = abs(disc.disc_speed), shaft_torque(disc) / disc.friction_force
 
     def circle(resistance: float) -> tuple[float, float]:
-        """Return the radius at this share of the friction, and by how much the master disc is faster there."""
+        """Return the radius at this share of friction, and the speed of the master disc relative to the centre."""
         radius = driven_radius(pin, disc.friction_force * resistance)
         return radius, (speed - circling_speed(pin, radius)) * radius
 
@@ -120,14 +119,14 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
 
 
 def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
-    """Return the infimum of the loads in N at which :func:`circles` finds any."""
+    """Return the infimum of the loads in N with whirls, see :func:`circles`."""
     arm = whirl_arm(disc, contact)
     halves = (lambda q: arm(1.0, q)), (lambda q: arm(q, 1.0))
     return shaft_torque(disc) / max(largest_between(half, 0.0, 1.0) for half in halves)
 
 
 def _difference(one: float, other: float) -> float:
-    """Return one − other, or zero where rounding alone may make it: else that would count as several solutions."""
+    """Return one − other, or zero within rounding, which would otherwise count as several solutions."""
     difference = one - other
     return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
 
@@ -138,10 +137,10 @@ def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
 
 
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
-    """Yield the ratios (slip, rim) at which ``balance`` is zero, by increasing rim : slip.
+    """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip.
 
-    Only those are sought that are ``allowed``, that is >= 0: all of them up to one ratio. The larger of slip and
-    rim is 1, which leaves the ratio all its digits; the halves meet where the friction of a ring has a kink.
+    The search covers the ratios with ``allowed`` >= 0, which extend up to one ratio. The larger of slip and rim is 1,
+    so the ratio keeps its relative accuracy. The two halves meet where the friction of a ring has a kink.
     """
     end = 1.0 if allowed(1.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(1.0, q), 0.0, 1.0)
     for q in zeros_between(lambda q: balance(1.0, q), 0.0, end):
@@ -149,5 +148,5 @@ def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterat
     if end == 1.0:
         end = 0.0 if allowed(0.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(q, 1.0), 0.0, 1.0)
         for q in reversed(zeros_between(lambda q: balance(q, 1.0), end, 1.0)):
-            if q < 1.0:  # else it is there already
+            if q < 1.0:  # q = 1 was found in the first half
                 yield q, 1.0

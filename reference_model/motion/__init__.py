@@ -1,1 +1,1 @@
-"""Exact simulation: equations of motion, slip, stick, and the way from one to the other."""
+"""Event-driven simulation: equations of motion, slip, stick, and the transitions between them."""

@@ -1,4 +1,4 @@
-"""Phases of slip and stick, one after the other: what pin and disc have in common, and what each does its way."""
+"""The sequence of slip and stick phases of a pin or a disc, and creep in closed form."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from reference_model.motion.stick import can_hold, release_delay, slip_direction
 from reference_model.systems import FloatArray
 
 CREEP = 1e-6
-"""Way, and slip speed, in their units, below which slip that decays for ever is followed in closed form."""
+"""Largest distance and slip speed, in scaled units, of creep that is followed in closed form."""
 
 ERROR = 0.01
-"""Error of the way by that, as a share of the local tolerance."""
+"""Largest error of that distance, as a share of the local tolerance."""
 
 
 @dataclass(frozen=True)
 class Creep:
-    """Slip that decays for ever, s = A·exp(−λt) + B·exp(−Λt) with λ < Λ and A > 0, in scaled units.
+    """Slip that decays forever, s = A·exp(−λt) + B·exp(−Λt) with λ < Λ and A > 0, in scaled units.
 
     Parameters
     ----------
@@ -44,10 +44,7 @@ class Creep:
 
     @classmethod
     def of(cls, slip: float, excess: float, damping: float, fall: float) -> Creep | None:
-        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s.
-
-        None if it does not decay, or ends in rest.
-        """
+        """Return the solution of s'' + b·s' + c·s = 0 with s' = e − b·s; None if it grows or ends in rest."""
         discriminant = damping**2 - 4.0 * fall
         if not (fall > 0.0 and damping > 0.0 and discriminant > 0.0):
             return None
@@ -59,32 +56,31 @@ class Creep:
 
     @property
     def way_left(self) -> float:
-        """The way to the end."""
+        """Distance that remains until slip has decayed."""
         return sum(size / rate for size, rate in (self.slow, self.fast))
 
     def slip(self, delays: FloatArray) -> FloatArray:
-        """Return the slip speed after ``delays`` (n,)."""
+        """Return the slip speed after ``delays``, shape (n,)."""
         return np.asarray(sum(size * np.exp(-rate * delays) for size, rate in (self.slow, self.fast)))
 
     def way(self, delays: FloatArray) -> FloatArray:
-        """Return the way made in ``delays`` (n,)."""
+        """Return the distance covered in ``delays``, shape (n,)."""
         return np.asarray(
             sum(size / rate * -np.expm1(-rate * delays) for size, rate in (self.slow, self.fast))
         )
 
 
 class Body(ABC):
-    """A body that slips over the master disc or sticks to it; its unknowns are scaled and relative to that disc."""
+    """A body that slips over the master disc or sticks to it, in scaled unknowns relative to that disc."""
 
     def __init__(self, run: Run, coordinates: Coordinates, centre: SlipMotion) -> None:
-        """Take up a body whose slip is written in ``coordinates`` and whose centre moves by ``centre``."""
         self.run = run
         self.coordinates = coordinates
         self.sticky = centre.friction > 0.0
         self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
     def go(self, y: list[float]) -> tuple[float, list[float]]:
-        """Run from the unknowns ``y`` at t = 0 to the end of the run; return when and where it ended."""
+        """Run from the unknowns ``y`` at t = 0; return the final time and unknowns."""
         run, t = self.run, 0.0
         run.record(t, lambda _: np.array([y]).T)
         self.begin(y)
@@ -98,7 +94,7 @@ class Body(ABC):
         self.run.enter("stick" if stuck else "slip", 0.0, y)
 
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow the motion through one description of it; return when and where that ends."""
+        """Follow the motion until its description changes; return time and unknowns."""
         if not self.sticky or self.coordinates.speed(y) > 0.0:
             creep = self.creeping(self.coordinates, y)
             return self.slip(t, y) if creep is None else self.creep(t, y, creep)
@@ -108,20 +104,20 @@ class Body(ABC):
         return self.let_go(t, y)
 
     def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow slip, fast or slow, as long as its description holds."""
+        """Follow fast or slow slip as long as its description is valid."""
         slowly = self.sticky and self.coordinates.speed(y) < self.coordinates.slow(y)
         end = (slide_slowly if slowly else slide)(self.run, self.coordinates, t, y, self.leave)
         return end.t, end.y
 
     def leave(self, y: list[float]) -> bool:
-        """Tell whether slip is to be described in another way from ``y`` on."""
+        """Return whether slip needs another description from ``y`` on."""
         return self.creeping(self.coordinates, y) is not None
 
     def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
-        """Return how slip, written in ``motion``, decays if it does so for ever and little way is left, else None.
+        """Return the creep in the coordinates ``motion`` if slip decays forever and is almost over; else None.
 
-        The excess e of the pull over friction falls by c times the way, and slip grows like e − b·s. If nothing but
-        the body turns, b and c are constant but for terms of second order in the way: s'' + b·s' + c·s = 0.
+        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. If
+        only the body turns, b and c are constant to first order in the distance, so s'' + b·s' + c·s = 0.
         """
         d, s = motion.slip, motion.speed(y)
         if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
@@ -131,7 +127,7 @@ class Body(ABC):
         directions = [b - c for b, c in zip(moving[:-d], resting[:-d], strict=True)]
 
         def next_to_rest(way: float) -> list[float]:
-            """Return the unknowns after a way along n, with next to no slip."""
+            """Return the unknowns after a distance along n, with almost no slip."""
             there = [a + way * b for a, b in zip(y[:-d], directions, strict=True)]
             return [*there, *[LEAST_SLIP * part for part in n]]
 
@@ -148,12 +144,12 @@ class Body(ABC):
         end = next_to_rest(creep.way_left)
         if motion.grip is not None and motion.grip(end) <= 0.0:
             return None
-        # Friction has to hold the body where slip ends: no more of the excess may be left.
+        # Friction must hold the body where slip ends: almost no excess may be left there.
         left = abs(growth_at(end) / excess)
         return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
 
     def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
-        """Follow slip that decays for ever to the end; it is slip all the time."""
+        """Follow creep to the end of the run; the phase remains slip."""
         run, s = self.run, float(creep.slip(np.zeros(1))[0])
 
         def sample(times: FloatArray) -> FloatArray:
@@ -164,7 +160,7 @@ class Body(ABC):
         return run.end, sample(np.array([run.end]))[:, 0].tolist()
 
     def stick(self, t: float, y: list[float], held: float) -> tuple[float, list[float]]:
-        """Turn with the master disc for ``held``, until friction lets go, or to the end."""
+        """Turn with the master disc for the time ``held`` until release, or to the end of the run."""
         self.run.enter("stick", t, y)
         release = min(t + held, self.run.end)
         self.run.record(release, lambda times: self.turned(y, times - t))
@@ -180,14 +176,14 @@ class Body(ABC):
 
     @abstractmethod
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """Return the unknowns of a stuck body after ``delays`` (n,), shape (unknowns, n)."""
+        """Return the unknowns of a stuck body after ``delays``, shape (unknowns, n)."""
 
     @abstractmethod
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """Return the unknowns after ``delays`` (n,), shape (unknowns, n).
+        """Return the unknowns of a creeping body after ``delays``, shape (unknowns, n).
 
-        Slip, its direction fixed on the master disc, is meanwhile ``slip`` times that of ``y`` and has made ``way``
-        times that of ``y`` as a way.
+        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are slip and distance as multiples of
+        the slip of ``y``.
         """
 
     @abstractmethod
@@ -199,7 +195,6 @@ class PinBody(Body):
     """The pin; its unknowns are x, y and the slip velocity."""
 
     def __init__(self, run: Run, motion: SlipMotion) -> None:
-        """Take up the pin that moves by ``motion``."""
         self.motion = motion
         omega, g = motion.disc_speed, motion.friction
 
@@ -216,18 +211,18 @@ class PinBody(Body):
         )
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """As :meth:`Body.holds_for`: by eq. 6 and 7."""
+        """Like :meth:`Body.holds_for`, by eq. 6 and 7."""
         z = complex(y[0], y[1])
         return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """As :meth:`Body.turned`."""
+        """Like :meth:`Body.turned`."""
         z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, none, none))
 
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """As :meth:`Body.crept`."""
+        """Like :meth:`Body.crept`."""
         turn = np.exp(1j * self.motion.disc_speed * delays)
         w = complex(y[2], y[3])
         z = (complex(y[0], y[1]) + way * w) * turn
@@ -235,7 +230,7 @@ class PinBody(Body):
         return np.array((z.real, z.imag, w.real, w.imag))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`Body.let_go`; on a linear support by the series, as far as it holds or until slip ends again."""
+        """Like :meth:`Body.let_go`; on a linear support by the series as long as it is accurate."""
         run = self.run
         if not self.motion.support.linear:
             pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
@@ -265,7 +260,6 @@ class DiscBody(Body):
     """The friction disc; its unknowns are x, y, φ, the slip velocity of the centre and r = κ(φ̇ − ω)."""
 
     def __init__(self, run: Run, motion: DiscMotion, surfaces: tuple[SwitchingSurface, ...] = ()) -> None:
-        """Take up the disc that moves by ``motion``, with friction that is not smooth at ``surfaces``."""
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
         surfaces += stop_surfaces(motion.centre.support)
@@ -276,14 +270,14 @@ class DiscBody(Body):
         super().__init__(run, coordinates, motion.centre)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """As :meth:`Body.turned`."""
+        """Like :meth:`Body.turned`."""
         turn = self.motion.centre.disc_speed * delays
         z = complex(y[0], y[1]) * np.exp(1j * turn)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, y[2] + turn, none, none, none))
 
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """As :meth:`Body.crept`."""
+        """Like :meth:`Body.crept`."""
         turn = self.motion.centre.disc_speed * delays
         u = complex(y[3], y[4])
         z = (complex(y[0], y[1]) + way * u) * np.exp(1j * turn)
@@ -292,7 +286,7 @@ class DiscBody(Body):
         return np.array((z.real, z.imag, angle, u.real, u.imag, slip * y[5]))
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`Body.let_go`."""
+        """Like :meth:`Body.let_go`."""
         return self.begin_slip(t, y[:3], self.coordinates, self.drift(y), self.direction(y))
 
     def begin_slip(
@@ -303,12 +297,12 @@ class DiscBody(Body):
         drift: Sequence[float],
         direction: FloatArray,
     ) -> tuple[float, list[float]]:
-        """Follow slip as it begins from rest in some coordinates; return time and unknowns of the disc."""
+        """Follow slip from rest in given coordinates; return time and standard unknowns."""
         end = begin_slip(self.run, coordinates, t, own, drift, direction, self.leaving(coordinates))
         return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
 
     def leaving(self, motion: Coordinates) -> Leave:
-        """Return what tells, of unknowns in ``motion``, whether slip is to be described in another way."""
+        """Return the predicate whether slip needs another description."""
         return self.leave
 
     def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
@@ -318,14 +312,13 @@ class DiscBody(Body):
 
     @abstractmethod
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Return the direction in which slip begins."""
+        """Return the unit vector of the incipient slip, shape (3,)."""
 
 
 class RingBody(DiscBody):
-    """A disc whose contact looks the same from all directions."""
+    """A disc with an isotropic contact."""
 
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
-        """Take up the disc that moves by ``motion``."""
         super().__init__(
             run,
             motion,
@@ -337,10 +330,10 @@ class RingBody(DiscBody):
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """As :meth:`Body.holds_for`: by eq. 6 and 7 with the friction that the moment leaves."""
+        """Like :meth:`Body.holds_for`, with the friction that the moment leaves for the force."""
         z = complex(y[0], y[1])
         return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """As :meth:`DiscBody.direction`."""
+        """Like :meth:`DiscBody.direction`."""
         return slip_direction(self.motion, self.contact, complex(y[0], y[1]))

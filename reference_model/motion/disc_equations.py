@@ -1,9 +1,9 @@
-"""Equations of motion of the friction disc on the master disc: eq. 19 to 21 for the relative velocities.
+"""Equations of motion of the friction disc: eq. 19 to 21 for the relative velocities.
 
-The centre moves like a pin, with a force that depends on the spin too. As third component of the slip serves
-r = κ(φ̇ − ω) with the radius of gyration κ = √(J/m): for (u, r), u = ż − iωz, the kinetic energy is m/2 times
-the square, so that one number says how fast the disc slips as a whole, and friction of any law that is derived
-from a mean slip speed P(u, S) is the gradient of −(μN/m)·P in these three.
+The centre moves like a pin, with a force that also depends on the spin. The third component of the slip is r = κ(φ̇ −
+ω) with the radius of gyration κ = √(J/m). In (u, r), u = ż − iωz, the relative kinetic energy is m/2 times the
+squared length, so the length measures the slip of the whole disc. Friction is the gradient of −(μN/m)·P(u, S), with
+the mean slip speed P.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ class DiscMotion:
     Parameters
     ----------
     centre : SlipMotion
-        The same for a pin in the place of the centre; its ``friction`` is g = μN/m.
+        Equations for a pin at the centre; its ``friction`` is g = μN/m.
     gyration : float
         κ = √(J/m) in m.
     shaft_rate : float
         b/J in 1/s.
     lag : float
-        κ(ω − Ω) in m/s, the speed by which the master disc is ahead of the shaft.
+        κ(ω − Ω) in m/s, the speed of the master disc relative to the shaft.
     contact : Contact
-        The law of friction.
+        Friction law.
     length : float
-        The unit of length of all others here in that of the contact.
+        Unit of length of the other parameters, in the unit of length of ``contact``.
 
     """
 
@@ -50,7 +50,7 @@ class DiscMotion:
 
     @classmethod
     def of(cls, disc: DiscOnDisc, contact: Contact) -> DiscMotion:
-        """Return the equations of motion of ``disc`` with friction by ``contact``."""
+        """Return the equations of motion of ``disc`` with the friction law ``contact``."""
         gyration = math.sqrt(disc.polar_inertia / disc.mass)
         return cls(
             SlipMotion.of(disc),
@@ -72,19 +72,19 @@ class DiscMotion:
 
     @cached_property
     def at_once(self) -> DiscMotion:
-        """The same for arrays of shape (k,) in place of numbers."""
+        """The vectorised equations, for arrays of shape (k,)."""
         return replace(self, contact=cast(Contact, at_once(self.contact)))
 
     def lead_over_rim(self, radius: float, unknowns: Sequence[float]) -> float:
-        """Return U − r|S| for a radius in the contact's unit of length: zero where a point of that circle rests."""
+        """Return U − r|S| for a radius in the contact's unit of length: zero if a point of that circle rests."""
         u = self.length * math.hypot(unknowns[3], unknowns[4])
         return u - radius * abs(unknowns[5]) / self.gyration
 
     def turning_pull(self, r: float) -> float:
-        """Return the rate of r without friction, by the shaft, in m/s²."""
+        """Return the rate of r due to the shaft, in m/s²."""
         return -self.shaft_rate * (r + self.lag)
 
     @property
     def pace(self) -> float:
-        """A rate, in 1/T, which nothing but the slip exceeds by much; scaled to a unit of time it is 1 at least."""
+        """Bound in 1/T on the rates of everything except the slip, at least 1."""
         return abs(self.centre.disc_speed) + self.shaft_rate + 1.0

@@ -1,12 +1,11 @@
-"""A disc on single points: it slips, turns about a point that rests, or sticks.
+"""A disc on single points: it slips, pivots about a point at rest, or sticks.
 
-A point that comes to rest while the disc turns about it goes on resting as long as the friction that this takes is
-not more than the point's share. That is a motion of its own, of one degree of freedom, and it is entered and left
-as a pin comes to rest and lets go: see :mod:`reference_model.motion.pivot`. Two points that rest are the whole disc.
+If a point comes to rest while the disc turns about it, it stays at rest as long as the required friction does not
+exceed the point's share. This pivot phase has one degree of freedom, and begins and ends like the stick phase of a
+pin (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 
-Nothing is smoothed and no direction is tracked through a discontinuity, so that the error is that of the
-integrator: against friction regularised at ε the motions differ by an amount that falls with ε, in proportion to it
-up to the first release and like ε^0.8 after, as with a pin.
+Nothing is smoothed, so the only error is the integrator's. Motions with friction regularised at ε differ by an amount
+proportional to ε up to the first release, and like ε^0.8 after it, as for a pin.
 """
 
 from __future__ import annotations
@@ -30,14 +29,13 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
 LOOKS = 360
-"""Times in a turn at which a stuck disc's margin is looked at; between them its minima are found."""
+"""Samples per turn of the margin of a stuck disc; minima between them are searched."""
 
 
 class PointsBody(DiscBody):
     """A disc on points on a ring."""
 
     def __init__(self, run: Run, motion: DiscMotion, contact: PointsOnRing) -> None:
-        """Take up the disc that moves by ``motion``."""
         super().__init__(run, motion)
         self.contact = contact
         self.limit = PointsLimit(np.array(contact.arms(0.0), dtype=np.complex128) / motion.length)
@@ -47,10 +45,8 @@ class PointsBody(DiscBody):
         self.pivot: int | None = None
         self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * self.points[0].leverage)
 
-    # ------------------------------------------------------------ slip, and points that come to rest
-
     def begin(self, y: list[float]) -> None:
-        """As :meth:`DiscBody.begin`."""
+        """Like :meth:`DiscBody.begin`."""
         resting = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
         if resting is not None and self._at_rest(resting, y):
             self._rest_on(resting, 0.0, y)
@@ -58,7 +54,7 @@ class PointsBody(DiscBody):
             super().begin(y)
 
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`DiscBody.advance`."""
+        """Like :meth:`DiscBody.advance`."""
         if self.pivot is not None:
             return self._turn_about(self.pivot, t, y)
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
@@ -78,7 +74,7 @@ class PointsBody(DiscBody):
         return t, y
 
     def _rest(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Let the disc come to rest as a whole: so slow that it does not matter which of its points does first."""
+        """Bring the disc to rest as a whole, so slow that the order of its points is irrelevant."""
         rates = self.coordinates.rates(y)
         speed = self.coordinates.speed(y)
         falling = -sum(a * b for a, b in zip(y[3:], rates[3:], strict=True)) / speed
@@ -87,11 +83,11 @@ class PointsBody(DiscBody):
         return t + speed / falling, come_to_rest(self.run, self.coordinates, t, speed / falling, y)
 
     def leave(self, y: list[float]) -> bool:
-        """As :meth:`DiscBody.leave`: when a single point becomes slow."""
+        """Like :meth:`DiscBody.leave`; also if a single point becomes slow."""
         return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
 
     def leaving(self, motion: Coordinates) -> Leave:
-        """As :meth:`DiscBody.leaving`: for a point that slips or rests, when the disc creeps."""
+        """Like :meth:`DiscBody.leaving`; coordinates of a single point end if the disc creeps."""
         if motion is self.coordinates:
             return self.leave
         if motion.slip == 1:
@@ -100,7 +96,7 @@ class PointsBody(DiscBody):
         return lambda own: whole(motion.standard(np.array([own]).T)[:, 0].tolist())
 
     def _slow_point(self, y: Sequence[float]) -> int | None:
-        """Return the point that slips slowly and ever more so, or rests."""
+        """Return the point that slips slowly and decelerates, or rests; None if there is none."""
         u, turning = complex(y[3], y[4]), 1j * y[5] / (self.motion.gyration * self.motion.length)
         speeds = [abs(u + turning * arm) for arm in self.contact.arms(y[2])]
         slowest = min(speeds)
@@ -113,18 +109,14 @@ class PointsBody(DiscBody):
         return i if self._at_rest(i, y) or own[4] * rates[4] + own[5] * rates[5] < 0.0 else None
 
     def _at_rest(self, i: int, y: Sequence[float]) -> bool:
-        """Tell whether point ``i`` rests, as closely as floats can say."""
         return abs(self.points[i].velocity(y)) <= 4.0 * float(np.finfo(float).eps) * math.hypot(y[3], y[4])
 
     def _own(self, i: int, y: Sequence[float]) -> list[float]:
-        """Return the unknowns of point ``i``."""
         v = self.points[i].velocity(y)
         return [*y[:3], y[5], v.real, v.imag]
 
-    # ------------------------------------------------------------ a point that rests
-
     def _rest_on(self, i: int, t: float, y: Sequence[float]) -> bool:
-        """Let point ``i`` be the pivot if its friction is enough."""
+        """Make point ``i`` the pivot if its friction suffices; return whether it does."""
         holds = self.points[i].grip([*y[:3], y[5]]) > 0.0
         if holds:
             self.pivot = i
@@ -132,7 +124,7 @@ class PointsBody(DiscBody):
         return holds
 
     def _turn_about(self, i: int, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Turn about point ``i`` until its friction is not enough, the disc rests, or to the end."""
+        """Follow the rotation about point ``i`` until its friction no longer suffices or the disc rests."""
         motion, own = self.pivoting[i], [*y[:3], y[5]]
         creep = self.creeping(motion, own)
         if creep is not None:
@@ -149,7 +141,7 @@ class PointsBody(DiscBody):
         return end.t, y
 
     def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
-        """Let point ``i`` slip from rest while the disc turns, or rest on if the disc rests before that counts."""
+        """Follow point ``i`` as it slips from rest, unless the disc stops before the slip matters."""
         own = [*y[:3], y[5]]
         point = self.points[i]
         if point.gain(own) < self._least_speed:
@@ -158,10 +150,8 @@ class PointsBody(DiscBody):
             return end.t, motion.standard(np.array([end.y]).T)[:, 0].tolist()
         return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
 
-    # ------------------------------------------------------------ the disc at rest
-
     def _share(self, y: Sequence[float], delays: FloatArray | float = 0.0) -> tuple[ComplexArray, float]:
-        """Return force and moment that friction must hold, as shares in the frame of the disc."""
+        """Return the force and moment that friction must hold, over μN/m and in the frame of the disc."""
         centre = self.motion.centre
         turns = np.exp(1j * centre.disc_speed * np.atleast_1d(delays))
         pulls = np.array([centre.pull(place, 0j) for place in (complex(y[0], y[1]) * turns).tolist()])
@@ -170,7 +160,7 @@ class PointsBody(DiscBody):
         return forces / centre.friction, moment / centre.friction
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """As :meth:`DiscBody.holds_for`: up to the first root of the margin, which is looked for through one turn."""
+        """Like :meth:`DiscBody.holds_for`: up to the first root of the margin within one turn."""
         centre = self.motion.centre
 
         def margin(delay: float) -> float:
@@ -179,15 +169,16 @@ class PointsBody(DiscBody):
         if margin(0.0) < -ROUNDING:
             return 0.0
         if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
-            return math.inf  # seen from the disc, nothing turns
+            return math.inf  # relative to the disc, nothing turns
         delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), LOOKS + 1)
         margins = self.limit.margins(*self._share(y, delays))
         if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
-            return 0.0  # at the limit already
+            return 0.0  # already at the limit
         for k in range(1, LOOKS + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
-                # At a least look the margin may dip by as much as it changes from there to the next ones.
+                # Next to a local minimum of the samples the margin may dip by as much as it changes to the next
+                # samples.
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue
@@ -203,7 +194,7 @@ class PointsBody(DiscBody):
         return math.inf
 
     def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """As :meth:`DiscBody.let_go`: the disc slips, or turns about one of its points."""
+        """Like :meth:`DiscBody.let_go`: the disc slips, or pivots about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
             return super().let_go(t, y)
@@ -213,7 +204,7 @@ class PointsBody(DiscBody):
         return self.begin_slip(t, y[:3], self.pivoting[i], self.drift(y), np.array([sense]))
 
     def _pivot_of(self, y: Sequence[float]) -> tuple[int, float] | None:
-        """Return the point about which a disc begins to turn, and in which sense; None if it slips."""
+        """Return the initial pivot and the sense of rotation; None if all points slip."""
         least = -ROUNDING * self.motion.centre.friction
         for i, point in enumerate(self.points):
             for sense in (1.0, -1.0):
@@ -223,9 +214,9 @@ class PointsBody(DiscBody):
         return None
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """As :meth:`DiscBody.direction`: normal to the limit surface, or where ½q² + g·P(q) − a·q is least.
+        """Like :meth:`DiscBody.direction`: normal to the limit surface.
 
-        The latter is where slip goes in a first moment against friction that gives way: a − g∇P(q) = q.
+        If friction is exceeded it is the minimiser of ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
         """
         forces, moment = self._share(y)
         if self.limit.margins(forces, moment)[0] > -GRAZING:

@@ -1,16 +1,15 @@
-"""Simulation of pin and disc with set-valued Coulomb friction: phases of slip and stick, one after the other.
+"""Event-driven simulation of pin and disc with set-valued Coulomb friction.
 
 - Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`). A disc has three
   components of slip: two of its centre and one of its rim.
-- An implicit method takes over where stability would limit an explicit one, because of strong damping or of slip that
-  stays small (:mod:`.slip.stiff`). Slip that decays for ever is followed to the end in closed form (:mod:`.bodies`).
-- In stick, pin and disc turn with the master disc in closed form up to the first root of eq. 7 (:mod:`.stick`).
-- The slip of a pin begins with the series of :func:`.stick.slip_from_rest`, that of a disc by collocation
+- An implicit method takes over for stiff slip (:mod:`.slip.stiff`). Slip that decays forever ends in closed form
+  (:mod:`.bodies`).
+- In stick, pin and disc turn with the master disc up to the first root of eq. 7 (:mod:`.stick`).
+- The slip of a pin begins with a series (:func:`.stick.slip_from_rest`), that of a disc by collocation
   (:mod:`.slip.breakaway`).
-- A disc on single points may also turn about one of them that rests (:mod:`.disc_on_points`).
+- A disc on single points may also pivot about a resting point (:mod:`.disc_on_points`).
 
-Inside, times and lengths are scaled to order one, so that tolerance and thresholds mean the same in any units, and
-velocities are relative to the master disc.
+Internal times and lengths are scaled to order one. Velocities are relative to the master disc.
 """
 
 from __future__ import annotations
@@ -55,9 +54,10 @@ def simulate_with(
     contact: Contact | None = None,
     slipping: float = math.inf,
 ) -> Trajectory:
-    """Do as :func:`reference_model.simulate`, with thresholds of which tests measure that they do not matter.
+    """Simulate like :func:`reference_model.simulate`, with explicit thresholds.
 
-    A phase of slip that has lasted for ``slipping`` s ends the motion: it may be shorter than ``times``.
+    Results do not depend on the thresholds; tests check that. If a slip phase has lasted ``slipping`` s the motion
+    ends, possibly before the end of ``times``.
     """
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
@@ -85,7 +85,7 @@ def simulate_with(
     states[0] = state
     if not np.all(np.isfinite(states)):
         raise SimulationError(
-            f"the states are not finite from t = {moments[np.argmin(np.isfinite(states).all(axis=1))]:g} s on: "
+            f"the states are not finite after t = {moments[np.argmin(np.isfinite(states).all(axis=1))]:g}  s: "
             "the parameters differ by too many orders of magnitude"
         )
     begun = [(kind, run.seconds(t), frame.states(y)) for kind, t, y in run.phases]
@@ -107,23 +107,23 @@ def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, un
         return PointsBody(run, motion, contact)
     if isinstance(contact, Pin):
         raise ValueError(
-            f"contact = {contact}: a disc that touches in one point never rests; take a PinOnDisc"
+            f"contact = {contact}: a disc with point contact never comes to rest; use a PinOnDisc"
         )
     return RingBody(run, motion, contact)
 
 
 @dataclass(frozen=True)
 class _Frame:
-    """Between states in SI units and unknowns, scaled and relative to the master disc that turns.
+    """Conversion between states in SI units and scaled unknowns relative to the turning master disc.
 
     Parameters
     ----------
     disc_speed : float
-        In rad/s.
+        ω in rad/s.
     lengths : array of shape (2,) or (3,)
-        Units of the places: m for x and y, rad for the angle of a disc, which is not scaled.
+        Units of the positions: m for x and y, rad for the angle of a disc, which is not scaled.
     speeds : array of shape (2,) or (3,)
-        Units of the relative velocities; that of r = κ(φ̇ − ω) in rad/s, for φ̇ − ω.
+        Units of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
 
     """
 
@@ -141,7 +141,7 @@ class _Frame:
         return cls(system.disc_speed, np.array(lengths), np.array(speeds))
 
     def unknowns(self, state: FloatArray) -> list[float]:
-        """Return the unknowns; what turns with the master disc as closely as floats can say, rests."""
+        """Return the unknowns; a body that moves with the master disc to rounding error is treated as sticking."""
         place, velocity = np.split(state, 2)
         carried = self._carried(place)
         relative = velocity - carried
@@ -153,13 +153,12 @@ class _Frame:
         return [*(place / self.lengths).tolist(), *(relative / self.speeds).tolist()]
 
     def states(self, unknowns: FloatArray) -> FloatArray:
-        """Return states for ``unknowns`` of the same shape, (4 or 6,) or (n, 4 or 6)."""
+        """Return the states, (4 or 6,) or (n, 4 or 6), for ``unknowns`` of the same shape."""
         place, relative = np.split(unknowns, 2, axis=-1)
         place = place * self.lengths
         return np.concatenate((place, relative * self.speeds + self._carried(place)), axis=-1)
 
     def _carried(self, place: FloatArray) -> FloatArray:
-        """Return the velocities of what turns with the master disc."""
         result = np.full_like(place, self.disc_speed)
         result[..., 0] = -self.disc_speed * place[..., 1]
         result[..., 1] = self.disc_speed * place[..., 0]

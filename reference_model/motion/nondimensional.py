@@ -1,4 +1,4 @@
-"""Units of length and time in which a motion is of order one, so that thresholds mean the same in any units."""
+"""Units of length and time that make a motion of order one."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ class Units:
 
     @property
     def speed(self) -> float:
-        """In m/s."""
+        """Unit of speed in m/s."""
         return self.length / self.time
 
     @classmethod
     def of(cls, system: System, state: FloatArray) -> Units:
-        """Return those of the motion of ``system`` from ``state``.
+        """Return the units for the motion of ``system`` from ``state``.
 
-        Time goes by the fastest of springs and master disc; without them by the dampers; and without these by the
-        time in which friction takes the slip away. Length goes by the motion of the centre: a fast spin must not
-        hide it. Hardening and stop make time faster where the motion may reach them, and length smaller as much,
-        which leaves the unit of speed.
+        Time is scaled by the faster of springs and master disc; without them by the dampers, and without dampers by
+        the decay of slip. Length is scaled by the motion of the centre, because a fast spin must not hide it.
+        Hardening and a stop shorten both units by the same factor if the motion may reach them, which leaves the unit
+        of speed unchanged.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
@@ -46,17 +46,17 @@ class Units:
         support = Support.of(system).scaled(1.0 / system.mass)
         hard = 0.0
         if not support.linear:
-            # As far as springs let it go by its speed or by friction.
+            # The largest deflection that the speed or friction can cause.
             reach = max(place, support.circle(speed**2), support.deflection(friction))
             hard = math.sqrt(support.tangent(reach)) if reach < math.inf else 0.0
-        if rate == 0.0:  # free on a resting disc
+        if rate == 0.0:  # free on a disc at rest
             rate = hard or (friction / slip if friction > 0.0 < slip else 1.0)
         length = max(place, speed / rate, friction / rate**2)
         faster = max(hard / rate, 1.0)
         return cls((length if length > 0.0 else 1.0) / faster, 1.0 / (faster * rate))
 
     def springs(self, system: System) -> float:
-        """Return the rate of linear springs in these units; 1 if there are none, or others, which made the unit."""
+        """Return the natural frequency of linear springs in these units; 1 without springs or with nonlinear ones."""
         if system.stiffness == 0.0 or not Support.of(system).linear:
             return 1.0
         return system.natural_frequency * self.time

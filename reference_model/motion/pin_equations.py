@@ -1,7 +1,7 @@
 """Equations of motion of the pin on the rotating disc: eq. 1, and eq. 10 as a second formulation.
 
-The plane is written with complex numbers, z = x + iy. A point fixed on the disc moves with iωz, so the slip
-velocity is w = ż − iωz, and the right-hand side of eq. 1 is −μN·w/|w|.
+The plane is complex, z = x + iy. A point fixed on the disc moves with iωz, so the slip velocity is w = ż − iωz, and
+the right-hand side of eq. 1 is −μN·w/|w|.
 """
 
 from __future__ import annotations
@@ -20,18 +20,16 @@ from reference_model.systems import FloatArray, PinOnDisc, System
 
 @dataclass(frozen=True)
 class SlipMotion:
-    """Eq. 1 written for the slip velocity: ẇ = a(z, w) − g·w/|w|, ż = w + iωz.
-
-    The constants of a pin, divided by its mass, so that an evaluation costs no look-ups.
+    """Eq. 1 for the slip velocity: ẇ = a(z, w) − g·w/|w|, ż = w + iωz.
 
     Parameters
     ----------
     damping : float
         β/m in 1/s.
     support : Support
-        The springs: k² = C/m in 1/s², and X0 in m.
+        The support divided by the mass, with k² = C/m in 1/s² and X0 in m.
     friction : float
-        g = μN/m in m/s², the greatest acceleration that friction gives.
+        g = μN/m in m/s², the largest acceleration that friction can cause.
     disc_speed : float
         ω in rad/s.
 
@@ -55,14 +53,13 @@ class SlipMotion:
     def pull(self, z: complex, w: complex) -> complex:
         """Return a(z, w), the relative acceleration without friction, in m/s².
 
-        The acceleration of support and damper, less that of the point of the disc below, d(iωz)/dt = iωż.
+        This is the acceleration by support and damper minus d(iωz)/dt = iωż.
         """
         carried, drag = self._factors
         return self.support.force(z) - drag * (w + carried * z)
 
-    @cached_property  # every evaluation asks for them
+    @cached_property  # needed by every evaluation
     def _factors(self) -> tuple[complex, complex]:
-        """Return iω and β/m + iω, in 1/s."""
         return 1j * self.disc_speed, self.damping + 1j * self.disc_speed
 
 
@@ -71,26 +68,25 @@ def simulate_polar_form(
 ) -> FloatArray:
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
-    An independent formulation, used only to check the main one. It neither sticks nor passes the centre,
-    where its coordinates are singular.
+    This independent formulation checks the main one. It cannot stick, and it is singular at the centre.
 
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters.
+        Parameters of the system.
     initial_state : array of shape (4,)
         x, y, vx, vy at ``times[0]``, away from the centre.
     times : array of shape (n,)
-        In s.
+        Times in s.
     tolerance : float
-        Relative, of the integrator; the default is the tightest that SciPy accepts.
+        Relative tolerance of the integrator, at least SciPy's smallest.
 
     Raises
     ------
     ValueError
         If the support is not linear.
     RuntimeError
-        If the integrator gives up.
+        If the integrator fails.
 
     """
     require_linear_support(pin)
@@ -115,7 +111,6 @@ def simulate_polar_form(
 
 
 def _polar_rates(pin: PinOnDisc) -> Callable[[float, FloatArray], tuple[float, float, float, float]]:
-    """Return the rates of ρ, ψ and of their rates by eq. 10."""
     m, stiffness, beta = pin.mass, pin.stiffness, pin.damping
 
     def eq10(_: float, state: FloatArray) -> tuple[float, float, float, float]:

@@ -1,9 +1,9 @@
-"""A disc on single points of which one slips slowly or rests on the master disc, while the disc turns about it.
+"""A disc on single points that turns about one of them, which slips slowly or rests.
 
-Coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point, from which all others
-follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a of the points. So v keeps its digits down to zero. The point
-accelerates by B + Gλ, where λ is its own friction over the mass, B all else and G = 1 + (i·a_i)⊗(i·a_i)/κ² what a
-force at it does there. Slip has λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, as long as that is not more than g/n.
+The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. All other points follow:
+v_j = v + i(r/κ)(a_j − a_i) with the arms a. So v keeps its relative accuracy down to zero. The point accelerates by B
++ Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
+slip λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, as long as this is at most g/n.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from reference_model.motion.stepper import Thresholds
 from reference_model.systems import FloatArray
 
 CLOSE = 0.25
-"""Slip of a point is slow only if it is below this fraction of the speed by which the next points pass it."""
+"""Largest slip speed of a slow point, as a fraction of the relative speed of its neighbours."""
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class OnePoint:
     Parameters
     ----------
     motion : DiscMotion
-        The disc.
+        Equations of motion of the disc.
     contact : PointsOnRing
-        Its contact.
+        Friction law.
     point : int
-        Which of the points.
+        Index of the point.
 
     """
 
@@ -47,22 +47,22 @@ class OnePoint:
 
     @property
     def at_once(self) -> OnePoint:
-        """The same for arrays of shape (k,) in place of numbers."""
+        """The vectorised equations, for arrays of shape (k,)."""
         motion = self.motion.at_once
         return OnePoint(motion, cast(PointsOnRing, motion.contact), self.point)
 
     @property
     def most(self) -> float:
-        """The greatest friction of the point over the mass, g/n."""
+        """Largest friction of the point over the mass, g/n."""
         return self.motion.centre.friction / self.contact.points
 
     def arm(self, angle: float) -> complex:
-        """Return the arm of the point."""
+        """Return the arm of the point at the disc's ``angle``."""
         return self.contact.arm(self.point, angle) / self.motion.length
 
     @property
     def leverage(self) -> float:
-        """The arm over the radius of gyration, but at least one: the errors of r matter so much."""
+        """Ratio of the arm to the radius of gyration, at least one; it amplifies errors of r."""
         return max(1.0, abs(self.arm(0.0)) / self.motion.gyration)
 
     def velocity(self, unknowns: Sequence[float]) -> complex:
@@ -71,7 +71,7 @@ class OnePoint:
         return complex(ux, uy) + 1j * r / self.motion.gyration * self.arm(angle)
 
     def slipping_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, r, v_x, v_y; where the point rests, without its own friction."""
+        """Return the rates of x, y, φ, r, v_x, v_y; if the point rests, without its own friction."""
         v = unknowns[4] + 1j * unknowns[5]
         carried, spin_up, arm, free = self._without_friction(unknowns, v)
         friction = -self.most * (v / (abs(v) + NONE))
@@ -91,9 +91,9 @@ class OnePoint:
         return self._holding(arm, free)
 
     def leaving(self, unknowns: Sequence[float]) -> FloatArray:
-        """Return the direction in which the point begins to slip, a unit vector e with B − (g/n)·G·e = c·e, c >= 0.
+        """Return the direction of the incipient slip, a unit vector e with B − (g/n)·G·e = c·e, c >= 0.
 
-        Its parts along the arm and across it are B_∥/(c + g/n) and B_⊥/(c + (g/n)·(1 + |a|²/κ²)).
+        Its components along and across the arm are B_∥/(c + g/n) and B_⊥/(c + (g/n)·(1 + |a|²/κ²)).
         """
         _, _, arm, free = self._without_friction(unknowns, 0j)
         along = free * arm.conjugate() / abs(arm)
@@ -109,14 +109,14 @@ class OnePoint:
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
-        """Return by how much the friction that the point could give exceeds what it gives, as a share."""
+        """Return the relative margin of the point's friction over the friction required to hold it."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
-        """Return what slip speed of the disc comes of friction that the point lacks until the disc rests.
+        """Return the slip speed that the point would gain until the disc rests, for lack of friction.
 
-        inf if the disc does not come to rest. What is lacking is that now or at rest, whichever is more; in between
-        it differs from these in second order of the time.
+        Returns inf if the disc does not come to rest. The missing friction is the larger of its values now and at
+        rest, with an error of second order in time.
         """
         r = unknowns[3]
         falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
@@ -129,7 +129,7 @@ class OnePoint:
         return lacking * self.most * left * math.hypot(1.0, leverage)
 
     def slipping(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates of slip of the point."""
+        """Return the coordinates for slip of the point."""
         slow = thresholds.slow_slip * self.most
         arms = self.contact.arms(0.0)
         passing = CLOSE * abs(arms[1] - arms[0]) / self.motion.length / self.motion.gyration
@@ -151,7 +151,7 @@ class OnePoint:
         )
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates of the disc that turns about the point: its only slip is r."""
+        """Return the coordinates of the disc that turns about the resting point, with the slip r."""
         slow = thresholds.slow_slip * self.motion.centre.friction
         surfaces = stop_surfaces(self.motion.centre.support)
         return Coordinates(
@@ -172,7 +172,7 @@ class OnePoint:
         return self.motion.pace
 
     def _standard(self, unknowns: FloatArray) -> FloatArray:
-        """Return the standard unknowns of the disc for these, shape (4 or 6, n)."""
+        """Return the standard unknowns of the disc, shape (6, n), for these, shape (4 or 6, n)."""
         x, y, angle, r = unknowns[:4]
         v = unknowns[4] + 1j * unknowns[5] if len(unknowns) == 6 else 0.0
         u = v - 1j * r / self.motion.gyration * self.arm(0.0) * np.exp(1j * angle)
@@ -185,7 +185,7 @@ class OnePoint:
     def _without_friction(
         self, unknowns: Sequence[float], v: complex
     ) -> tuple[tuple[float, float, float], float, complex, complex]:
-        """Return rates of x, y, φ, that of r, the arm and B, all without the friction of this point."""
+        """Return the rates of x, y, φ, the rate of r, the arm and B, all without the friction of this point."""
         x, y, angle, r = unknowns[:4]
         motion, kappa = self.motion, self.motion.gyration
         omega, g = motion.centre.disc_speed, motion.centre.friction

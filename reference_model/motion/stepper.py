@@ -1,4 +1,4 @@
-"""A simulation under way: its thresholds, what it has recorded, and the steps of its integrators."""
+"""The state of a running simulation: thresholds, records, and the steps of its integrators."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
 
 STABLE = 3.0
-"""Length of DOP853's step, times the largest rate of decay, from which stability may limit it: that is so at 6."""
+"""Step times largest decay rate where stability begins to limit DOP853; the limit is 6."""
 
 STIFF, APART = 0.25, 5.0
-"""The same from which a step may be stiff that accuracy limits, and that over the change of slip from which it is."""
+"""Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Change of slip and time, as shares of themselves and of T, below which a step is short."""
+"""Change of slip (relative) plus time (in T) of the longest short step."""
 
 PATIENCE = 15
-"""Stiff explicit steps before an implicit method is tried; twice as many each time that it does not pay."""
+"""Number of stiff explicit steps before an implicit method is tried; doubled each time that it does not pay."""
 
 SLOW_SPRINGS = 0.1
-"""Rate of the springs in 1/T below which steps err by less: places by errors of velocity over that rate."""
+"""Natural frequency in 1/T below which steps are more accurate: position errors are velocity errors over it."""
 
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""
 
 AS_GOOD = 20.0
-"""Error of the interpolant, in local tolerances, up to which it is within the tolerance that was asked for."""
+"""Largest error of the interpolant, in local tolerances, within the requested tolerance."""
 
 INTERPOLANT_ORDER = 7
 
 MOST_PARTS = 8
-"""Shorter steps to begin with in place of one; stability allows no more, unless slip ends within the step."""
+"""Largest number of shorter steps in place of one; stability requires no more."""
 
 SPOILT = 1.5
-"""Stiffness of a step from which what decays fast may spoil the interpolant, whatever its last term is."""
+"""Stiffness of a step above which fast decay may spoil the interpolant, whatever its last term."""
 
 
 class StepError(SimulationError):
@@ -56,25 +56,25 @@ class StepError(SimulationError):
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Where one description of the motion hands over to the next; results must not depend on it.
+    """Thresholds between descriptions of the motion; results must not depend on them.
 
     Parameters
     ----------
     slow_slip : float
-        Slip that falls below this multiple of g·T is described in slip-polar coordinates (T: unit of time).
+        Upper limit of slow slip, in g·T (T: unit of time), which is described in slip-polar coordinates.
     stretching : float
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time : float
-        Error, in units of T, up to which the closed form for the time of coming to rest is taken.
+        Largest error, in units of T, of the closed form for the time of coming to rest.
     reversal_slip : float
-        Slip speed, in units of length per T, below which slip that friction can't hold counts as turned.
+        Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
     common_rest : float
-        Slip speed, in units of length per T, below which all points of a disc come to rest together, and that a point
-        at rest must be able to gain before that in order to slip.
+        Slip speed, in units of length per T, below which all points of a disc come to rest together. A point at rest
+        slips only if it can gain this speed before the disc rests.
     series : float
-        Size of the last terms of the series by which slip starts.
+        Size of the last terms of the initial series of slip.
     safety : float
-        The integrator's tolerance as a fraction of the one asked for.
+        The integrator's tolerance as a fraction of the requested one.
 
     """
 
@@ -89,24 +89,24 @@ class Thresholds:
 
 @dataclass
 class Run:
-    """A simulation from t = 0 on; times and unknowns are scaled, ``seconds`` gives the time in s.
+    """A simulation from t = 0 on, in scaled times and unknowns.
 
     Parameters
     ----------
     times : array of shape (n,)
-        Those that were asked for, the first of them 0.
+        Requested times, the first of them 0.
     unknowns : int
         Number of unknowns of the body, half of them its relative velocities.
     seconds : callable
-        Turns a time into one in s.
+        Converts a scaled time to s.
     thresholds : Thresholds
-        Where the descriptions hand over.
+        Thresholds between descriptions of the motion.
     tolerance : float
-        The one that was asked for.
+        Requested tolerance.
     springs : float
-        Their rate in 1/T.
+        Natural frequency in 1/T.
     slipping : float
-        How long a phase of slip may last: the run ends with it.
+        Longest duration of a slip phase: the run ends when it is reached.
 
     """
 
@@ -121,7 +121,7 @@ class Run:
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
     evaluations: int = 0
     patience: int = PATIENCE
-    recorded: int = 0  # of the times
+    recorded: int = 0  # number of times
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
@@ -136,25 +136,25 @@ class Run:
         return self._count.steps
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
-        """Begin a phase of this kind, unless it is under way."""
+        """Begin a phase of this kind, unless it is the current kind."""
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
             self.end = min(t + (self.slipping if kind == "slip" else math.inf), float(self.times[-1]))
 
     def step(self, solver: Explicit | Radau, since: float) -> None:
-        """Take one step, or raise ``StepError`` with the time up to which all was well."""
+        """Take one step; raise ``StepError`` with the time reached if it fails."""
         evaluations = solver.nfev
         message = solver.step()
         self.evaluations += solver.nfev - evaluations
         self.count_step(since)
         if solver.status == "failed" or not all(map(math.isfinite, solver.y.tolist())):
             raise StepError(
-                f"the integrator gave up after t = {self.seconds(since):g} s: "
+                f"the integrator failed after t = {self.seconds(since):g} s: "
                 f"{message or 'the state is not finite'}; try a larger tolerance than {self.tolerance:g}"
             )
 
     def count_step(self, since: float) -> None:
-        """Count one step more, from ``since``; raise ``SimulationError`` if there are, or will be, too many."""
+        """Count one more step, from ``since``; raise ``SimulationError`` if there are or will be too many."""
         if too_many := self._count.count(since):
             raise SimulationError(
                 f"{too_many} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is "
@@ -162,7 +162,7 @@ class Run:
             )
 
     def pending(self, t: float) -> bool:
-        """Tell whether a time that was asked for lies before or at ``t``."""
+        """Return whether a requested time before or at ``t`` is not yet recorded."""
         return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
     def record(self, until: float, sample: Sampler) -> None:
@@ -174,15 +174,15 @@ class Run:
 
 
 class SwitchingSurface(NamedTuple):
-    """Where the rates are continuous but not smooth.
+    """A surface of continuous but not smooth rates.
 
     Parameters
     ----------
     value : callable
-        Takes the unknowns and changes sign there.
+        Takes the unknowns and changes sign on the surface.
     trend : callable or None
-        Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. If there is
-        one, a step that crosses the surface and comes back is noticed too.
+        Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. It detects
+        steps that cross the surface and come back.
 
     """
 
@@ -190,34 +190,32 @@ class SwitchingSurface(NamedTuple):
     trend: Callable[[list[float], list[float]], float] | None = None
 
     def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> SwitchingSurface:
-        """Return the surface for unknowns that ``unknowns`` turns into these; x and y are the first of both."""
+        """Return the surface for other unknowns, which ``unknowns`` converts to these; x and y come first in both."""
         return SwitchingSurface(lambda other: self.value(unknowns(other)), self.trend)
 
 
 class Stepper:
-    """Steps of a Runge–Kutta method, landing on surfaces where the rates are continuous but not smooth.
+    """Steps of a Runge-Kutta method that end on surfaces where the rates are not smooth.
 
-    SciPy's explicit one of eighth order, or collocation, which is implicit.
-
-    An error estimate tells little of a step across such a surface, but it can be trusted on either side. So a step
-    that has crossed one is taken back and made to end there.
+    The method is SciPy's explicit one of eighth order, or implicit collocation. Across such a surface an error
+    estimate is unreliable, so a step that has crossed one is repeated up to the surface.
 
     Parameters
     ----------
     run : Run
         The simulation, which counts steps and evaluations.
     rates : callable
-        The right side: for an explicit method at one place, for an implicit one at many.
+        Right-hand side: for one state if explicit, vectorised if implicit.
     y : sequence
-        Where to begin.
+        Initial unknowns.
     span : (float, float)
-        When to begin and to end.
+        Initial and final time.
     tolerated : callable
-        Takes the unknowns and returns the errors that a step may have.
+        Takes the unknowns and returns the allowed errors of a step.
     surfaces : sequence of SwitchingSurface
         The surfaces.
     implicit : (Scales, float) or None
-        For an implicit method, the scales of the unknowns and the first step to try.
+        For the implicit method, the scales of the unknowns and the first step to try.
 
     """
 
@@ -237,38 +235,39 @@ class Stepper:
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._stiff_steps = 0  # less others
+        self._stiff_steps = 0  # stiff steps minus other steps
         self._tolerated = tolerated
         self._end = span[1]
-        self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond
+        self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond it
         self._usual_step = math.inf
         self._since = 0.0  # time before the last step
         self._start(span[0], np.array(y), self._end, first_step)
 
     @property
     def t(self) -> float:
-        """The time, or what stands for it, that is reached."""
+        """Current time or stretched time."""
         return float(self._solver.t)
 
     @property
     def y(self) -> FloatArray:
-        """The unknowns there."""
+        """Current unknowns."""
         return np.asarray(self._solver.y)
 
     @property
     def rates(self) -> FloatArray:
-        """Their rates there."""
+        """Current rates."""
         return np.asarray(self._solver.f)
 
     @property
     def settled(self) -> bool:
-        """Whether the implicit method has found the length of its steps."""
+        """True if the implicit method has found its step size."""
         return isinstance(self._solver, Radau) and self._solver.settled
 
     def stiff_for_long(self, change: float) -> bool:
-        """Tell whether the explicit method has taken many stiff steps, with relative ``change`` of slip in the last.
+        """Return whether the explicit method has taken many stiff steps.
 
-        Stability limits such steps, or accuracy because of what decays much faster than slip changes.
+        ``change`` is the relative change of slip in the last step. Stiff steps are limited by stability, or by
+        accuracy because something decays much faster than slip changes.
         """
         stiffness = self.stiffness
         stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change) or change < SHORT
@@ -277,11 +276,11 @@ class Stepper:
 
     @property
     def stiffness(self) -> float:
-        """The length of the last step times the largest rate of decay."""
+        """Length of the last step times the largest decay rate."""
         return self._solver.stiffness
 
     def dense_output(self) -> DenseOutput | OdeSolution:
-        """Return the interpolant of the last step, as accurate as its end."""
+        """Return the interpolant of the last step, as accurate as the end of the step."""
         if self._dense is None:
             solver = self._solver
             self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)
@@ -301,7 +300,7 @@ class Stepper:
         return self._finer(solver, parts)
 
     def _defect(self, dense: DenseOutput, tolerated: FloatArray) -> float:
-        """Return what the interpolant would miss in half a step by its defect in the middle, in tolerances."""
+        """Return the error of the interpolant over half a step, in tolerances, by its defect in the middle."""
         first, last = dense.t_old, dense.t
         middle, little = 0.5 * (first + last), 1e-3 * (last - first)
         slope = (dense(middle + little) - dense(middle - little)) / (2.0 * little)
@@ -310,7 +309,7 @@ class Stepper:
         return float(0.5 * (last - first) * np.max(abs(lacks) / tolerated))
 
     def _finer(self, done: Explicit, parts: int) -> OdeSolution:
-        """Return the motion in the last step from as many shorter ones, each with an interpolant as accurate."""
+        """Return the motion in the last step by ``parts`` shorter steps, each with an accurate interpolant."""
         first, last = done.t_old, done.t
         solver = self._explicit(first, done.y_old, last, (last - first) / parts, (last - first) / parts)
         times, pieces = [first], []
@@ -321,7 +320,7 @@ class Stepper:
         return OdeSolution(times, pieces)
 
     def step(self, since: float) -> None:
-        """Take one step; ``since`` is the time to tell if that fails."""
+        """Take one step; ``since`` is the time for the message if it fails."""
         if self._solver.status == "finished" and self.t < self._end:
             self._start(self.t, self.y, self._end, self._usual_step)
         self._dense, self._since = None, since
@@ -347,13 +346,13 @@ class Stepper:
     def _crossing(
         self, surface: SwitchingSurface, side: float | None, t: float, y: list[float], rates: list[float]
     ) -> tuple[float, float] | None:
-        """Return where in the last step, from ``t`` on, a surface was crossed, and the sign of its value beyond.
+        """Return where the last step, from ``t`` on, crossed a surface, and the sign of its value beyond; or None.
 
-        ``side`` is the sign at ``t`` if the step began on the surface, where the value is nothing but rounding.
+        ``side`` is the sign at ``t`` if the step began on the surface, where the value is only rounding error.
         """
         on_surface = side is not None
         if on_surface and surface.trend is None:
-            return None  # one step on, it is on one side again
+            return None  # after one step it is on one side again
         if side is None:
             side = math.copysign(1.0, surface.value(y))
         crossed = side * surface.value(self.y.tolist()) < 0.0
@@ -369,7 +368,7 @@ class Stepper:
 
         first, last = t, self.t
         if not crossed or on_surface:
-            sign = -1.0 if crossed else 1.0  # off the surface and back, or towards it and back
+            sign = -1.0 if crossed else 1.0  # away from the surface and back, or towards it and back
             span = {"bounds": (t, self.t), "method": "bounded", "options": {"xatol": 1e-9 * (last - first)}}
             extreme = float(minimize_scalar(lambda tau: sign * inside(tau), **span).x)
             first, last = (extreme, last) if crossed else (first, extreme)

@@ -1,11 +1,10 @@
-"""Stick phases (eq. 6 to 9): what friction must hold, when it lets go, and how slip starts.
+"""Stick phases (eq. 6 to 9): the required friction, the time of release, and the start of slip.
 
-Stuck means w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and the friction that holds it balances
-the pull a(z, 0). All functions of the pin take the equations of motion and complex positions.
+In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). All functions
+of the pin take the equations of motion and complex positions.
 
-A friction disc sticks only as a whole. Its shaft asks for a moment that does not change meanwhile, and beside that
-moment a contact that looks the same from all directions can hold a force up to its limit surface: so its centre is
-a stuck pin with less friction.
+A friction disc sticks only as a whole. Friction then holds the constant moment of its shaft, and at the same time a
+force up to the limit surface. So the centre is a stuck pin with reduced friction.
 """
 
 from __future__ import annotations
@@ -24,34 +23,34 @@ from reference_model.motion.pin_equations import SlipMotion
 from reference_model.systems import FloatArray
 
 GRAZING = 1e-8
-"""Relative excess of the holding force that is passed over.
+"""Relative excess of the pull over friction that does not count as a release.
 
-An excess δ at the peak of the holding force lasts for √(8δ)/ω and moves the pin by some g·δ²/ω², far less
-than rounding of the position.
+An excess δ at the peak of the pull lasts for √(8δ)/ω and moves the pin by about g·δ²/ω², far less than the rounding
+of the position.
 """
 
 NARROW = 1e-5
-"""Angle in rad down to which the first release is looked for.
+"""Smallest angle in rad that the search for the first release resolves.
 
-A pull that exceeds friction for less moves the pin by some NARROW³ of its way: it is passed over.
+Over a smaller angle of release the pin would move by about NARROW³ of its path.
 """
 
 ROUNDING = 1e-12
-"""Angle in rad within which a pin counts as being at the limit of what friction can hold."""
+"""Angle in rad within which a pin counts as being at the friction limit."""
 
 
 def can_hold(motion: SlipMotion, z: complex) -> bool:
-    """Tell whether friction can hold a pin at rest on the disc at ``z`` (eq. 6)."""
+    """Return whether friction can hold a pin at rest on the disc at ``z`` (eq. 6)."""
     return abs(motion.pull(z, 0.0)) <= motion.friction
 
 
 def release_delay(motion: SlipMotion, z: complex) -> float:
-    """Return how long a pin held at ``z`` stays stuck, in s; inf if friction never lets go.
+    """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
-    Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning
-    pull q of the position: a single harmonic, whose first upward crossing has a closed form. It is derived here
-    from the equations of motion: ``pin_formulas.release_time``, which is eq. 7 as printed, is there to judge it.
-    On a support that is not linear the pull of the position depends on the angle too, see :func:`_first_release`.
+    Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
+    of the position: a single harmonic, whose first upward crossing has a closed form. It is derived from the
+    equations of motion, so that tests can compare it with ``pin_formulas.release_time``, eq. 7 as printed. On a
+    nonlinear support see :func:`_first_release`.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -60,29 +59,30 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     p, q, g = abs(constant), abs(turning), motion.friction
     if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
         return math.inf
-    # The angle between the two pulls, counted as it grows; friction holds outside of ± limit. The half-angle
-    # form of the law of cosines keeps its digits where an arccos would lose them.
+    # The angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle
+    # form of the law of cosines is accurate where an arccos would lose digits.
     angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
     limit = 2.0 * math.atan2(
         math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
     )
     turn = (-limit - angle) % (2.0 * math.pi)
     if 2.0 * math.pi - turn < ROUNDING:
-        turn = 0.0  # at the limit already
+        turn = 0.0  # already at the limit
     return turn / abs(motion.disc_speed)
 
 
 def _first_release(motion: SlipMotion, z: complex) -> float:
-    """Do as :func:`release_delay` by search for the first root over a turn of the disc.
+    """Return the delay of :func:`release_delay` by a search for the first root over one turn of the disc.
 
-    Seen from the disc the pin rests and the offset turns, by X0·h in length while the disc turns by h. So what
-    friction has left over the pull changes by Λh at most, with Λ = |X0| times the tangent stiffness at the largest
-    deflection on the way, or, seen from rest, |z|·(that + |ω² − iωβ/m|); and the deflection is not more than the mean
-    of those at both ends + min(|X0|, |z|)·h/2. That says how low the margin can fall between two angles. Where this
-    is below zero the way is halved, the first half first, down to where there is room for one root only.
+    Relative to the disc the pin rests and the offset moves by X0·h while the disc turns by h. So the margin of
+    friction over the pull changes by at most Λh. Here Λ is |X0| times the tangent stiffness at the largest deflection
+    on the way or, relative to the ground, |z| times the sum of that stiffness and |ω² − iωβ/m|. The deflection is at
+    most the mean of its values at both ends plus min(|X0|, |z|)·h/2. This bounds the margin from below between two
+    angles. Where the bound is negative the interval is halved, the first half first, until it can contain one root
+    only.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
-        return math.inf  # the pull only turns
+        return math.inf  # the pull turns but keeps its size
     g, radius, offset = motion.friction, abs(z), abs(motion.support.offset)
     sense = math.copysign(1.0, motion.disc_speed)
     carried = abs(complex(motion.damping, motion.disc_speed) * motion.disc_speed)
@@ -96,7 +96,7 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
     def deflection(turn: float) -> float:
         return abs(at(turn) - motion.support.offset)
 
-    held = firmly = 0.0  # firmly: with something to spare, not just up to grazing
+    held = firmly = 0.0  # last angle with a positive margin, not just within GRAZING
     waiting = [2.0 * math.pi]
     while waiting:
         firmly = held if spare(held) > 0.0 else firmly
@@ -121,10 +121,10 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 
 
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
-    """Return the stuck pin that the centre of a stuck disc is; None if friction can't hold the moment of the shaft.
+    """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface beside that moment. Force and moment of the surface are those of
-    slip with all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    Its friction is the force on the limit surface at that moment. The points of the limit surface are the force and
+    moment at all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
@@ -142,17 +142,17 @@ def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | 
 
 
 def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) -> NDArray[np.float64]:
-    """Return the unit vector (u_x, u_y, r) along which slip begins from rest at ``z`` where friction gives way.
+    """Return the unit vector (u_x, u_y, r) of the slip that begins from rest at ``z`` when friction is exceeded.
 
-    With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n is where that is
-    largest: there a − g∇P is along n. At a release, where it is zero, n is normal to the limit surface. The centre
-    begins to slip along its pull, so that one angle is left.
+    With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n maximises this rate:
+    there a − g∇P is along n. At a release, where the rate is zero, n is normal to the limit surface. The centre
+    begins to slip along its pull, which leaves one unknown angle.
     """
     pull, turning = motion.centre.pull(z, 0j), motion.turning_pull(0.0)
     strength, g = abs(pull), motion.centre.friction
 
     def growth(beta: float) -> tuple[float, float]:
-        """Return the parts of a − g∇P along n, by which slip grows, and across it, by which n turns."""
+        """Return the components of a − g∇P along n (growth of slip) and across it (rotation of n)."""
         c, s = math.cos(beta), math.sin(beta)
         shares = contact.shares(motion.length * c, -s / motion.gyration)
         force = strength - g * shares.resistance
@@ -170,17 +170,17 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
 
 @dataclass(frozen=True)
 class SlipStart:
-    """Slip that grows from rest, as a power series in the time since it began.
+    """Slip that grows from rest, as a power series in time.
 
     Parameters
     ----------
     positions, slip : complex arrays of shape (terms,)
         Coefficients of z and of w.
     duration : float
-        Time up to which the series holds, in s.
+        Range of accuracy in s.
     rest : float
-        Time at which the series ends in rest again, in s; inf if it does not. It counts if it lies within
-        ``duration``: after a release at which the pull exceeds friction only just and only for a while.
+        Time in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull
+        exceeds friction only slightly and briefly.
 
     """
 
@@ -190,24 +190,21 @@ class SlipStart:
     rest: float
 
     def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Return z and w at ``delays`` (shape (n,)) after the start, each of shape (n,)."""
+        """Return z and w at ``delays``, shape (n,), after the start, each of shape (n,)."""
         powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
         return powers @ self.positions, powers @ self.slip
 
 
 def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
-    """Return how slip grows from a pin at rest on the disc at ``z`` whose pull is not less than friction.
+    """Return the slip of a pin from rest at ``z`` if the pull is at least friction; linear supports only.
 
-    On a linear support.
+    With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. At rest θ is the direction of the
+    pull. If the pull exceeds friction, slip grows linearly and the series converges. If they are equal (release from
+    stick), slip grows quadratically with its direction slaved to the pull. Then the point is an irregular singular
+    point and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. Both cases obey the same
+    recurrence, at order t^k: (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
 
-    In polar slip coordinates w = s·exp(iθ) and with b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b.
-    At rest θ is the direction of the pull. Where the pull exceeds friction, slip grows linearly and the
-    series converges. Where it is just equal (release from a stick phase), slip grows quadratically with its
-    direction slaved to the pull; the point is an irregular singular one and the series asymptotic, with an
-    error like exp(−2g/(κt)), κ = d|a|/dt. Both obey the same recurrence: of order t^k,
-    (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
-
-    ``duration`` is where the last terms of slip and direction reach ``tolerance``.
+    Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
     """
     omega = 1j * motion.disc_speed
     position = np.zeros(terms + 1, dtype=complex)
@@ -228,7 +225,7 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
         slip[k] = np.dot(speed[1 : k + 1], direction[k - 1 :: -1])
         velocity[k] = slip[k] + omega * position[k]
         pull[k] = -(motion.damping + omega) * velocity[k] - motion.support.stiffness * position[k]
-        # Coefficient k of exp(iθ) and of b = a·exp(−iθ) but for the terms with θ_k itself.
+        # Coefficient k of exp(iθ), and of b = a·exp(−iθ), without the terms that contain θ_k itself.
         direction[k] = 1j * np.dot(order[1:k] * theta[1:k], direction[k - 1 : 0 : -1]) / k
         b = np.dot(pull[: k + 1], direction[k::-1].conj())
         turning = np.dot(speed[2 : k + 1], (order[k - 1 : 0 : -1] * theta[k - 1 : 0 : -1]))
@@ -242,10 +239,10 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
 
 def _first_rest(speed: FloatArray, duration: float) -> float:
-    """Return the first time up to ``duration`` at which slip falls to zero, or inf.
+    """Return the first zero of the slip speed up to ``duration``, or inf.
 
-    ``speed`` are the coefficients of slip speed over time. Its rounding at a release, where the first of them
-    should vanish, adds a root next to zero; there slip rises.
+    ``speed`` contains the coefficients of the slip speed over time. At a release the first of them should vanish, and
+    its rounding error adds a root near zero, where slip rises.
     """
     if not math.isfinite(duration):
         return math.inf

@@ -1,1 +1,1 @@
-"""Mathematics that knows nothing of friction: roots, continuation, collocation."""
+"""General numerical methods, independent of friction: roots, continuation, collocation."""

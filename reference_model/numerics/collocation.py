@@ -1,12 +1,12 @@
-"""Radau's collocation: an implicit method of high order for stiff motions, with its polynomial in between.
+"""Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
-A polynomial goes through the start of a step and solves the equations of motion at its nodes, of which the last is
-the end (Radau IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). What decays faster than the
-step is damped out, so that the step is as long as the motion is smooth, and between the nodes the polynomial is as
-accurate as at its end.
+A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Fast decaying components are damped
+out, so the smoothness of the motion determines the step. Between the nodes the polynomial is as accurate as at its
+end.
 
-It is written out because SciPy's ``Radau`` has three nodes, and with them the order 5: with the eight taken here it
-is 15, as tolerances down to 1e-14 need.
+SciPy's ``Radau`` has three nodes and order 5. Tolerances down to 1e-14 need the eight nodes and order 15 of this
+module.
 """
 
 from __future__ import annotations
@@ -25,61 +25,58 @@ from reference_model.systems import FloatArray
 
 NODES = 8
 POINTS = np.append(roots_jacobi(NODES - 1, 1.0, 0.0)[0], 1.0)
-"""Radau's nodes in −1..1, the last at 1."""
+"""Radau nodes in [−1, 1], the last at 1."""
 
 TO_SERIES = np.linalg.inv(legendre.legvander(POINTS, NODES - 1))
-"""Makes Legendre coefficients of values at the nodes."""
+"""Matrix from values at the nodes to Legendre coefficients."""
 
 INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
-"""Makes integrals from 0 to the nodes, of 0..1, of values at them."""
+"""Matrix from values at the nodes to integrals from 0 to the nodes, scaled to [0, 1]."""
 
 FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
-"""Makes Legendre coefficients of values at the start and the nodes."""
-
-DERIVATIVE = 2.0 * legendre.legval(POINTS, legendre.legder(FROM_START)).T
-"""Makes derivatives at the nodes, of 0..1, of values at the start and the nodes."""
+"""Matrix from values at the start and the nodes to Legendre coefficients."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
-"""Of Newton's method, before a shorter step is tried: most of the work is in the Jacobians."""
+"""Limits on Newton iterations and on Jacobians, which take most of the work, before the step is reduced."""
 
 CONVERGED = 0.01
-"""Change, as a share of what is tolerated, at which the unknowns at the nodes count as solved for."""
+"""Change of the unknowns, as a share of their tolerances, of a converged Newton iteration."""
 
 STALLED = 0.3
-"""Factor between two changes above which Newton's method needs another Jacobian."""
+"""Ratio of successive changes above which Newton's method needs a new Jacobian."""
 
 LARGEST_GROWTH = 2.0
-"""Of one step over the one before."""
+"""Largest ratio of successive steps."""
 
 SETTLED = 5
-"""Steps that did not grow much after which they count as settled: transients are over."""
+"""Steps without much growth after a transient until the step size has settled."""
 
 LEAST_SHARE = 1e-8
-"""A step is not made smaller than this share of the first."""
+"""Smallest step as a share of the first."""
 
 
 def newton_matrix(jacobians: FloatArray, step: float) -> FloatArray:
-    """Return the matrix of Newton's method for Jacobians at the nodes, shape (NODES, n, n)."""
+    """Return the Newton matrix for Jacobians at the nodes, shape (NODES, n, n)."""
     size = NODES * jacobians.shape[1]
     coupling = np.einsum("ij,jkl->ikjl", INTEGRAL, jacobians).reshape(size, size)
     return np.asarray(np.eye(size) - step * coupling)
 
 
 RatesAt = Callable[[FloatArray], FloatArray]
-"""Takes the unknowns at many places, shape (n, k), and returns their rates, of the same shape."""
+"""Takes the unknowns of many states, shape (n, k), and returns their rates."""
 
 
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
-    """Return the derivatives of the rates by the unknowns, by differences, shape (NODES, n, n).
+    """Return the Jacobians of the rates at the nodes by differences, shape (NODES, n, n).
 
     Parameters
     ----------
     rates : RatesAt
-        The right side.
+        Right-hand side.
     values, found : array of shape (NODES, n)
-        Unknowns, and their rates.
+        Unknowns and their rates.
     changes : array of shape (NODES, n)
-        Of the unknowns, by which derivatives are found.
+        Changes of the unknowns for the differences.
 
     """
     nodes, n = values.shape
@@ -90,14 +87,14 @@ def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes:
 
 
 class Scales(NamedTuple):
-    """How large is little for the unknowns of a motion.
+    """Scales of the unknowns of a motion.
 
     Parameters
     ----------
     differences : callable
-        Takes unknowns (k, n) and returns their changes by which derivatives are found, of the same shape.
+        Takes unknowns (k, n) and returns their changes for numerical derivatives, of the same shape.
     most : array of shape (n,)
-        Changes of the unknowns that Newton's method may make at a time.
+        Largest change of each unknown in one Newton iteration.
 
     """
 
@@ -111,19 +108,18 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
     Parameters
     ----------
     first, last : float
-        Times, or what stands for them.
+        Limits of the integration variable.
     coefficients : array of shape (NODES + 1, n)
-        Of the Legendre series.
+        Coefficients of the Legendre series.
 
     """
 
     def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
-        """Take up a series."""
         super().__init__(first, last)
         self.coefficients = coefficients
 
     def beyond(self, t: FloatArray, noise: FloatArray) -> FloatArray:
-        """Return the continuation to times (k,) after the step without terms below ``noise`` (n,), shape (k, n)."""
+        """Return the extrapolation to ``t`` (k,) without terms below ``noise`` (n,), shape (k, n)."""
         seen = np.where(abs(self.coefficients) > noise, self.coefficients, 0.0)
         return np.asarray(legendre.legval(self._place(t), seen).T)
 
@@ -135,22 +131,22 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 
 
 class Radau:
-    """Steps by collocation with an interface like that of SciPy's solvers.
+    """Steps by collocation, with an interface like that of SciPy's solvers.
 
     Parameters
     ----------
     rates : RatesAt
-        The right side.
+        Right-hand side.
     t, y : float, array of shape (n,)
-        Where to begin.
+        Initial time and unknowns.
     end : float
-        When to end.
+        Final time.
     first_step : float
-        The step to try first.
+        First step to try.
     tolerated : callable
-        Takes the unknowns and returns the errors that a step may have.
+        Takes the unknowns and returns the allowed errors of a step.
     scales : Scales
-        Of differences and changes.
+        Scales for differences and for Newton's method.
 
     """
 
@@ -177,12 +173,12 @@ class Radau:
 
     @property
     def settled(self) -> bool:
-        """Whether the steps have found their length."""
+        """True if the step size has settled."""
         return self._unchanged >= SETTLED
 
     @property
     def stiffness(self) -> float:
-        """The length of the last step times the largest rate at its end."""
+        """Length of the last step times the largest rate at its end."""
         polynomial = self.dense_output()
         return float((polynomial.t - polynomial.t_old) * np.max(abs(np.linalg.eigvals(self._jacobian))))
 
@@ -192,7 +188,7 @@ class Radau:
         return self._polynomial
 
     def step(self) -> str | None:
-        """Take one step, as long as the tolerances allow; return what went wrong, or None."""
+        """Take one step, as long as the tolerances allow; return an error message, or None."""
         h, most = self._next, LARGEST_GROWTH
         while True:
             h = min(h, self.t_bound - self.t)
@@ -222,9 +218,9 @@ class Radau:
             self.status = "finished"
         return None
 
-    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # of a trial, which is given up for that
+    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
     def _collocate(self, h: float) -> Polynomial | None:
-        """Solve for the unknowns at the nodes of a step; None if Newton's method does not converge."""
+        """Solve for the unknowns at the nodes of a step; return None if Newton's method does not converge."""
         places = self.t + 0.5 * h * (POINTS + 1.0)
         if self._polynomial is None:
             values = self.y + np.outer(places - self.t, self.f)
@@ -253,7 +249,7 @@ class Radau:
             size = float(np.max(abs(change) / self._tolerated))
             if not math.isfinite(size):
                 return None
-            if size < CONVERGED or STALLED * last < size < 0.5:  # the latter by rounding
+            if size < CONVERGED or STALLED * last < size < 0.5:  # the latter at the level of rounding
                 self._jacobian = jacobians[-1]
                 coefficients = FROM_START @ np.vstack((self.y, values))
                 return Polynomial(self.t, self.t + h, coefficients)
@@ -263,6 +259,5 @@ class Radau:
         return None
 
     def _rates(self, values: FloatArray) -> FloatArray:
-        """Return the rates at ``values`` (n, k), and count them."""
         self.nfev += values.shape[1]
         return self._fun(values)

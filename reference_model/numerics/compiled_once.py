@@ -1,7 +1,7 @@
-"""Functions that Python calls: compiled once on a machine and kept on disk while their sources stay the same.
+"""Functions called from Python, compiled once per machine and kept on disk until their sources change.
 
-numba's cache checks only the file of the function itself, but functions and constants of other files are compiled
-into it. So each package keeps its compiled functions in a folder named after the content of all of its sources.
+numba's cache checks only the file of the function itself, although functions and constants of other files are
+compiled into it. So each package keeps its compiled functions in a folder named after a digest of all its sources.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from typing import Any
 
 import numba
 
-with suppress(ImportError):  # of Windows
+with suppress(ImportError):  # on Windows
     import fcntl
 
 LONG = 1.0
-"""Time in s after which a line on standard error says that something is being compiled; loading takes less."""
+"""Time in s before a line on standard error announces the compilation; loading takes less."""
 
 VERSIONS = 4
-"""Number of versions of the sources for which compiled functions are kept."""
+"""Number of source versions whose compiled functions are kept."""
 
 UNUSED = 86_400.0
-"""Age in s from which older versions are deleted; a running process may still need a younger one."""
+"""Age in s of versions that are deleted; a running process may still need a younger one."""
 
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
@@ -41,14 +41,14 @@ _told_already = threading.Lock()
 
 
 class CompiledOnce:
-    """A function without result that Python calls, compiled for the types of its arguments when they first occur.
+    """A function without result, called from Python and compiled when argument types first occur.
 
     Parameters
     ----------
     function : callable
-        A function that numba can compile. It runs without Python's lock.
+        A function that numba can compile. It runs without the global interpreter lock.
     package : Path
-        The folder of all sources from which the function is compiled.
+        Folder of all sources that are compiled into the function.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class CompiledOnce:
         digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
-        """Call it; the first call with arguments of new types compiles it or loads it from disk."""
+        """Call the function; a call with new argument types first compiles it or loads it from disk."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
@@ -74,7 +74,7 @@ class CompiledOnce:
 def compiled_for(
     kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
 ) -> Any:
-    """Return numba's dispatcher of a function, compiled for arguments of these types or loaded from disk.
+    """Return numba's dispatcher of a function for these argument types, compiled or loaded from disk.
 
     Threads and processes that need it at the same time wait for the first one and load its result.
     """
@@ -91,7 +91,7 @@ def compiled_for(
 
 @contextmanager
 def _cached_in(folder: str) -> Iterator[None]:
-    """Let numba keep functions in ``folder`` that are decorated meanwhile."""
+    """Make numba cache functions in ``folder`` that are decorated in this context."""
     before = config.CACHE_DIR
     config.CACHE_DIR = folder
     try:
@@ -104,7 +104,7 @@ def _cached_in(folder: str) -> Iterator[None]:
 def digest_of(package: Path) -> str:
     """Return a digest of all sources of a package.
 
-    The first call must come when the package is imported: compiled functions belong to the sources of that moment.
+    Call it first when the package is imported: compiled functions belong to the sources of that moment.
     """
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):
@@ -116,9 +116,9 @@ def digest_of(package: Path) -> str:
 
 @cache
 def folder_of(package: Path) -> str:
-    """Return the folder of compiled functions for the present sources of a package, "" if none is writable.
+    """Return the folder of compiled functions for the present sources, or "" if none is writable.
 
-    It lies in the folder that ``NUMBA_CACHE_DIR`` names, or else with the sources, or in the user's cache if the
+    It lies in the folder given by ``NUMBA_CACHE_DIR``, else next to the sources, or in the user's cache if the
     sources are read-only.
     """
     for place in _places(package):
@@ -142,7 +142,7 @@ def _places(package: Path) -> Iterator[Path]:
 
 
 def _delete_old(place: Path, package: Path) -> None:
-    with suppress(OSError):  # another process deletes them too
+    with suppress(OSError):  # another process may delete them too
         used = sorted((folder.stat().st_mtime, folder) for folder in place.glob(f"{package.name}-*"))
         for last, folder in used[:-VERSIONS]:
             if time.time() - last > UNUSED:
@@ -151,7 +151,7 @@ def _delete_old(place: Path, package: Path) -> None:
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes, which ends with its owner. Without one, work may be done twice."""
+    """Hold a lock between processes, which is released when its owner ends. Without locks work may be done twice."""
     with ExitStack() as held:
         with suppress(OSError, NameError):
             file = held.enter_context(lock.open("w"))
@@ -161,7 +161,7 @@ def _locked(lock: Path) -> Iterator[None]:
 
 @contextmanager
 def _told() -> Iterator[None]:
-    """Print a line, once in a process, if compiling takes long; worker processes are silent."""
+    """Print a line, once per process, if compiling takes long; worker processes are silent."""
     timer = threading.Timer(LONG, _tell)
     timer.daemon = True
     timer.start()
@@ -179,7 +179,7 @@ def _tell() -> None:
 
 @contextmanager
 def _without_garbage_collection() -> Iterator[None]:
-    """Leave garbage for later: looking for it again and again takes a tenth of the time that compiling does."""
+    """Disable garbage collection, which takes a tenth of the compile time."""
     enabled = gc.isenabled()
     gc.disable()
     try:

@@ -1,10 +1,8 @@
-"""Curves along which equations hold with one unknown to spare, followed by pseudo-arclength continuation.
+"""Solution curves of d − 1 equations in d unknowns, by pseudo-arclength continuation.
 
-Each point is predicted along the tangent and corrected across it by Newton's method, so that a curve may turn back
-in every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems).
-
-It is written out because SciPy has no continuation, and packages that have it bring their own problem descriptions
-for what takes a page here.
+Each point is predicted along the tangent and corrected across it by Newton's method, so a curve may turn back in
+every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems). SciPy has no
+continuation, and packages for it need their own problem descriptions.
 """
 
 from __future__ import annotations
@@ -21,20 +19,20 @@ from reference_model.systems import FloatArray
 Function = Callable[[FloatArray], FloatArray]
 
 DIFFERENCE = 6e-6
-"""Step of the central differences in units of the scales: about the third root of rounding."""
+"""Step of the central differences in units of the scales: about the cube root of the rounding error."""
 
 CONVERGED = 1e-7
-"""Correction below which one more iteration leaves nothing but rounding."""
+"""Correction below which one more iteration leaves only rounding errors."""
 
 ITERATIONS = 8
 QUICK = 3
-"""Of Newton's method: at most, and for the next step to be longer."""
+"""Largest number of Newton iterations, and largest number that lets the step grow."""
 
 TURN = 0.97
-"""Least cosine of the angle between the tangents of neighbouring points."""
+"""Smallest cosine of the angle between the tangents at neighbouring points."""
 
 SHORTEST = 1e-9
-"""Step in units of the scales at which a curve is given up."""
+"""Smallest step, in units of the scales."""
 
 
 class ContinuationError(RuntimeError):
@@ -48,9 +46,9 @@ class Curve:
     Parameters
     ----------
     points : array of shape (n, d)
-        In the order in which they follow each other; the last one of a closed curve is the first one again.
+        Points in order along the curve. A closed curve repeats its first point at the end.
     ends : tuple of int
-        The limits that the first and the last point lie on, by their index; none of a closed curve.
+        Indices of the limits that the first and the last point lie on; empty for a closed curve.
 
     """
 
@@ -59,33 +57,33 @@ class Curve:
 
     @property
     def closed(self) -> bool:
-        """Whether the curve comes back to where it began."""
+        """True if the curve returns to its first point."""
         return not self.ends
 
 
 def follow(
     equations: Function, limits: Function, start: ArrayLike, scales: ArrayLike, *, step: float = 0.03
 ) -> Curve:
-    """Follow the curve through ``start`` both ways, until it reaches a limit or closes.
+    """Follow the curve through ``start`` in both directions until it reaches a limit or closes.
 
     Parameters
     ----------
     equations : callable
-        From the d unknowns, shape (d,), to the d − 1 numbers that are zero on the curve.
+        Takes the d unknowns, shape (d,), and returns the d − 1 residuals that are zero on the curve.
     limits : callable
-        From the unknowns to numbers, shape (m,), all of which are positive where the curve is wanted. It must be
-        possible to evaluate both functions a little beyond.
+        Takes the unknowns and returns numbers, shape (m,), that are positive in the region of interest. Both
+        functions must be defined a little beyond it.
     start : array of shape (d,)
         A point near the curve, within the limits.
     scales : array of shape (d,)
-        Changes of the unknowns that count as much as each other.
+        Changes of the unknowns that count as equally large.
     step : float
         Largest distance between neighbouring points in units of ``scales``.
 
     Raises
     ------
     ContinuationError
-        If Newton's method leads to no curve from the start or from a point on the way.
+        If Newton's method does not converge at the start or further along the curve.
 
     """
     tracer = _Tracer(equations, limits, np.asarray(scales, dtype=float), step)
@@ -102,7 +100,7 @@ def follow(
 
 @dataclass(frozen=True, eq=False)
 class _Tracer:
-    """The curve in units of the scales."""
+    """The continuation in units of the scales."""
 
     equations: Function
     limits: Function
@@ -110,7 +108,7 @@ class _Tracer:
     step: float
 
     def walk(self, first: FloatArray, direction: FloatArray) -> tuple[list[FloatArray], int | None]:
-        """Return the points from ``first`` on and the limit where they end, None if they come back."""
+        """Return the points from ``first`` on and the limit at their end, or None if the curve closes."""
         points, tangent, step = [first], direction, self.step / 4.0
         while step > SHORTEST:
             try:
@@ -134,7 +132,7 @@ class _Tracer:
         raise ContinuationError(f"the curve can't be followed beyond {points[-1] * self.scales}")
 
     def end(self, inside: FloatArray, outside: FloatArray) -> tuple[FloatArray, int]:
-        """Return the point between two others at which the first limit is reached, and which that is."""
+        """Return the first point between two others that lies on a limit, and the index of that limit."""
         chord = outside - inside
 
         def between(share: float) -> FloatArray:
@@ -149,14 +147,14 @@ class _Tracer:
         return between(shares[first]), violated[first]
 
     def corrected(self, near: FloatArray, across: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Return the point of the curve in the plane through ``near`` across a vector, tangent and iterations."""
+        """Return the curve point in the plane through ``near`` normal to ``across``, its tangent, and iterations."""
 
         def excess(point: FloatArray) -> FloatArray:
             return np.append(self.equations(point * self.scales), across @ (point - near))
 
         point, converged = near, False
         for iteration in range(1, ITERATIONS + 1):
-            if not converged:  # the last ones are off by no more than CONVERGED, as is the tangent by them
+            if not converged:  # kept for the last iterations: its error is at most CONVERGED
                 slopes = _slopes(excess, point)
             correction = np.linalg.solve(slopes, excess(point))
             point = point - correction
@@ -171,12 +169,11 @@ class _Tracer:
 
 
 def _along(slopes: FloatArray) -> FloatArray:
-    """Return the unit vector, shape (d,), in whose direction nothing of ``slopes``, shape (d − 1, d), changes."""
+    """Return the unit vector, shape (d,), in the null space of ``slopes``, shape (d − 1, d)."""
     return np.asarray(np.linalg.svd(slopes / np.linalg.norm(slopes, axis=1, keepdims=True))[2][-1])
 
 
 def _slopes(function: Function, point: FloatArray) -> FloatArray:
-    """Return the derivatives of ``function`` by central differences, shape (m, d)."""
     columns = []
     for i in range(len(point)):
         shift = np.zeros(len(point))

@@ -1,13 +1,12 @@
-"""The curves in a rectangle on which a function of two variables changes its sign.
+"""Curves in a rectangle where a function of two variables changes sign.
 
-A grid tells where they are. Each is followed from point to point with no more than the sign and the zero of the
-function: the next point is the zero on an arc ahead of the last one. So the function need not be smooth, and away
-from its zeros it may be as good as constant.
+A grid shows where they are. Each curve is followed from point to point: the next point is the zero of the function on
+an arc ahead of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be
+constant away from its zeros.
 
-Libraries of contours interpolate between values on a grid, and a value costs a simulation here. For a circle
-contourpy is wrong by 6e-4 of the rectangle with 1,100 values, and by 1e-5 with 66,000; for a function of which only
-the sign says anything, by 1e-2 with 66,000. Here 1,800 values put each point on the circle to 6e-16, and 3,400 on the
-latter to 5e-13.
+Contour libraries interpolate between grid values, and each value costs a simulation here. For a circle contourpy's
+error is 6e-4 of the rectangle with 1,100 values and 1e-5 with 66,000; for a function that is constant on either side
+it is 1e-2 with 66,000. Here 1,800 values give the circle to 6e-16, and 3,400 values the latter to 5e-13.
 """
 
 from __future__ import annotations
@@ -28,44 +27,45 @@ ComplexArray = NDArray[np.complex128]
 Function = Callable[[FloatArray], float]
 
 TURN = 0.35
-"""Largest angle in rad between neighbouring chords of the same length; where a curve bends more they are shorter."""
+"""Largest angle in rad between neighbouring chords of the same length; they become shorter where a curve bends more.
+"""
 
 SHORTEST = 1e-7
-"""Step, as a fraction of the rectangle, at which a curve is given up."""
+"""Smallest step of a search, as a fraction of the rectangle."""
 
 MOST_POINTS = 10_000
-"""Points after which a curve is given up that neither closes nor leaves the rectangle."""
+"""Largest number of points of a curve that neither closes nor leaves the rectangle."""
 
 EXACT = 1e-13
-"""Error of a point across the curve, as a fraction of the rectangle, that its search leaves if no other is given."""
+"""Default error of a point across the curve, as a fraction of the rectangle."""
 
 SAME = 0.25
-"""Distance, in steps along a curve, up to which a zero counts as one of it."""
+"""Largest distance from a curve, in steps, of a zero that counts as a point of it."""
 
 
 def dividing_curves(
     function: Function, low: FloatArray, high: FloatArray, cells: int, error: float = EXACT
 ) -> tuple[Curve, ...]:
-    """Return the curves in a rectangle on which ``function`` changes its sign, with points of shape (n, 2).
+    """Return the curves in a rectangle where ``function`` changes sign, with points of shape (n, 2).
 
-    The limits at which a curve ends are, by their index, the lower ones of both variables, then the upper ones.
+    Each curve names the limits where it ends: 0 and 1 are the lower limits of both variables, 2 and 3 the upper.
 
     Parameters
     ----------
     function : callable
-        From a point, shape (2,), to a number; it is asked up to a cell beyond the rectangle too.
+        Takes a point, shape (2,), and returns a number. It must be defined up to one cell beyond the rectangle.
     low, high : array of shape (2,)
-        The limits of the rectangle.
+        Limits of the rectangle.
     cells : int
-        The sides of points on a grid of as many cells in each direction tell where a curve is, and the points of a
-        curve are no farther apart than a cell. What comes and goes between two points of the grid is not found.
+        Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
+        that pass between the points of the grid.
     error : float
-        Of a point across the curve, as a fraction of the rectangle, that its search may leave.
+        Allowed error of a point across the curve, as a fraction of the rectangle.
 
     Raises
     ------
     ContinuationError
-        If a curve can't be followed, because it has no end or others are much nearer to it than a cell.
+        If a curve cannot be followed, because it ends inside or other curves are much closer to it than a cell.
 
     """
     square = _Square(function, low, high, 1.0 / cells, error)
@@ -81,7 +81,7 @@ def dividing_curves(
 
 @dataclass(frozen=True)
 class _Square:
-    """The rectangle as the unit square of the complex plane, in which a step has the same length all over."""
+    """The rectangle as the unit square of the complex plane, where a step has the same length everywhere."""
 
     function: Function
     low: FloatArray
@@ -90,7 +90,7 @@ class _Square:
     error: float
 
     def point(self, z: complex) -> FloatArray:
-        """Return the point, shape (2,), that ``z`` stands for."""
+        """Return the point, shape (2,), for ``z``."""
         return np.asarray(self.low + (self.high - self.low) * (z.real, z.imag))
 
     def zero(
@@ -98,7 +98,7 @@ class _Square:
     ) -> float | None:
         """Return where on a path the function is zero; None if it has the same sign at both ends.
 
-        ``scale`` is the length on the path of a unit of its parameter.
+        ``scale`` is the path length per unit of its parameter.
         """
 
         def value(parameter: float) -> float:
@@ -115,7 +115,7 @@ class _Square:
         return first + share * (second - first)
 
     def follow(self, start: complex, across: complex) -> tuple[ComplexArray, tuple[int, ...]]:
-        """Return the curve through ``start``, shape (n,), and the limits at which it ends."""
+        """Return the curve through ``start``, shape (n,), with the limits at its ends."""
         ahead, last = self.walk(start, 1j * across)
         if last is None:
             return np.array(ahead), ()
@@ -125,7 +125,7 @@ class _Square:
         return np.array([*behind[:0:-1], *ahead]), (first, last)
 
     def walk(self, start: complex, along: complex) -> tuple[list[complex], int | None]:
-        """Return the points from ``start`` on and the limit where they end, None if they come back."""
+        """Return the points from ``start`` on and the limit at their end, or None if the curve closes."""
         path, heading, width, step = [start], cmath.phase(along), 0.5 * math.pi, 0.25 * self.step
         while step > SHORTEST and len(path) < MOST_POINTS:
             home = start - path[-1]
@@ -144,11 +144,14 @@ class _Square:
         raise ContinuationError(f"the curve can't be followed beyond {self.point(path[-1])}")
 
     def ahead(self, last: complex, step: float, heading: float, width: float) -> float | None:
-        """Return in which direction, not more than ``width`` off ``heading``, the curve is a ``step`` ahead."""
+        """Return the direction of the curve one ``step`` ahead, within ``width`` of ``heading``.
+
+        None if there is none.
+        """
         return self.zero(lambda angle: last + cmath.rect(step, angle), heading - width, heading + width, step)
 
     def end(self, last: complex, step: float, heading: float) -> complex:
-        """Return the point less than a ``step`` ahead at which the first limit is reached."""
+        """Return the point less than one ``step`` ahead where the curve first reaches a limit."""
 
         def point(part: float) -> complex:
             turned = self.ahead(last, part, heading, 0.5 * math.pi)
@@ -170,7 +173,7 @@ def _margins(z: complex) -> tuple[float, float, float, float]:
 
 
 def _edges(side: Callable[[complex], bool], cells: int) -> Iterator[tuple[complex, complex]]:
-    """Yield the edges of a grid over the unit square whose ends lie on different sides, those on its rim last."""
+    """Yield the grid edges whose ends lie on different sides, those on the rim of the unit square last."""
     ticks = np.arange(cells + 1) / cells
     nodes = ticks[:, np.newaxis] + 1j * ticks
     sides = np.vectorize(side, otypes=[bool])(nodes)
@@ -186,7 +189,6 @@ def _edges(side: Callable[[complex], bool], cells: int) -> Iterator[tuple[comple
 
 
 def _crosses(path: ComplexArray, first: complex, second: complex) -> bool:
-    """Tell whether the polygon through the points of ``path``, shape (n,), crosses the line between two others."""
     chords = np.diff(path)
     across = _cross(second - first, path - first)
     ends = _cross(chords, first - path[:-1]) * _cross(chords, second - path[:-1])
@@ -198,7 +200,6 @@ def _cross(a: ComplexArray | complex, b: ComplexArray) -> FloatArray:
 
 
 def _distance(path: ComplexArray, point: complex) -> float:
-    """Return the distance of a ``point`` from the polygon through the points of ``path``, shape (n,)."""
     chords, to_point = np.diff(path), point - path[:-1]
     share = np.clip((np.conj(chords) * to_point).real / np.abs(chords) ** 2, 0.0, 1.0)
     return float(np.min(np.abs(to_point - share * chords)))

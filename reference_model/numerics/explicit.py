@@ -1,9 +1,8 @@
-"""Dormand and Prince's explicit method of eighth order: SciPy's DOP853 for motions of few unknowns, in less time.
+"""Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
-A step of some twelve evaluations of four or six unknowns takes SciPy longer than the evaluations. Here every stage is
-one product of matrices, weights times what is known, and its unknowns go to the equations of motion as a list. The
-coefficients, the choice of the step and the interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary
-Differential Equations I, II.4 and II.5).
+With four or six unknowns SciPy spends more time on a step than on its twelve evaluations. Here each stage is one
+matrix product, and the unknowns reach the equations of motion as a list. The coefficients, the step control and the
+interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations
@@ -17,20 +16,20 @@ from scipy.integrate import DOP853
 from reference_model.systems import FloatArray
 
 Rates = Callable[[list[float]], Sequence[float]]
-"""Takes the unknowns and returns their rates; nothing depends on the time."""
+"""Takes the unknowns and returns their rates; the equations are autonomous."""
 
 Tolerated = Callable[[FloatArray], FloatArray]
-"""Takes the unknowns and returns the errors that a step may have, of the same shape."""
+"""Takes the unknowns and returns the allowed errors of a step, of the same shape."""
 
 TIGHTEST = 3e-14
-"""The smallest relative tolerance that SciPy's integrators take."""
+"""Smallest relative tolerance that SciPy's integrators accept."""
 
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
-"""Of a step over the one before."""
+"""Safety factor, and smallest and largest ratio of successive steps."""
 
 STAGES = DOP853.n_stages
 _WEIGHTS = np.zeros((STAGES, STAGES + 1))
-"""Row s makes the unknowns of stage s + 1, of the last row those at the end, from y and h times the rates before."""
+"""Row s gives the unknowns of stage s + 1, the last row those at the end, from y and h times the earlier rates."""
 _WEIGHTS[:-1, 1:] = DOP853.A[1:]
 _WEIGHTS[-1, 1:] = DOP853.B
 _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
@@ -42,17 +41,17 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     Parameters
     ----------
     rates : callable
-        The right side.
+        Right-hand side.
     t, y : float, array of shape (n,)
-        Where to begin.
+        Initial time and unknowns.
     end : float
-        When to end, after t.
+        Final time, > t.
     first_step : float or None
-        The step to try first; None to have it chosen.
+        First step to try; None for an automatic choice.
     tolerated : callable
-        Takes the unknowns and returns the errors that a step may have, shape (n,).
+        Takes the unknowns and returns the allowed errors of a step, shape (n,).
     most : float
-        The longest step.
+        Longest step.
 
     """
 
@@ -86,14 +85,14 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
         known = np.zeros((len(self.K_extended) + 1, self.n))  # y, then the rates at all stages
         self._known, self.K_extended, self.K = known, known[1:], known[1 : STAGES + 2]
         self._scaled = np.ones_like(_WEIGHTS)
-        # A bound method, with a place for its result, takes a third of the time of an operator for so few numbers.
+        # A bound method with preallocated output takes a third of the time of an operator on such small arrays.
         self._new = np.empty(self.n)
         self._stages = [(self._scaled[s, : s + 2].dot, known[: s + 2], s + 2) for s in range(STAGES)]
         self._last_two: tuple[list[float], Sequence[float]] = [], []
 
     @property
     def stiffness(self) -> float:
-        """The length of the last step times the largest rate of decay, by its last two stages, both at its end.
+        """Length of the last step times the largest decay rate, estimated from the last two stages, both at the end.
 
         Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2.
         """
@@ -117,7 +116,7 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
             error = self._size_of_error(h, np.maximum(self._scale, scale))
             if error < 1.0:
                 break
-            h *= max(LEAST_FACTOR, SAFETY * error**self.error_exponent)  # by the former if it is not a number
+            h *= max(LEAST_FACTOR, SAFETY * error**self.error_exponent)  # a NaN error selects LEAST_FACTOR
             most = 1.0
         self.h_previous, self.y_old, self._scale = h, y, scale
         self.t, self.y, self.f = end, new, known[STAGES + 1].copy()
@@ -125,7 +124,6 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
         return True, None
 
     def _take(self, h: float) -> FloatArray:
-        """Return the unknowns after a step of ``h``, and keep the rates at its stages."""
         known, rates, new = self._known, self._rates, self._new
         np.multiply(_WEIGHTS[:, 1:], h, out=self._scaled[:, 1:])
         unknowns: list[float] = []

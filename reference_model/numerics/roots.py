@@ -1,7 +1,7 @@
 """All zeros of a function of one variable on an interval.
 
-SciPy finds one zero in a bracket, or one near a guess. That all are found, those next to the ends of the interval and
-pairs in a dip among them, takes the search for brackets that is written here; ``brentq`` does the rest.
+SciPy finds one zero in a bracket. This module searches for the brackets of all zeros, including those next to the
+ends of the interval and pairs in a dip, and leaves the rest to ``brentq``.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from scipy.optimize import brentq, minimize_scalar
 from reference_model.systems import FloatArray
 
 NODES = 121
-REACH = 3.25  # the outermost nodes are at some 1e-17 of the interval from its ends
+REACH = 3.25  # the outermost nodes are about 1e-17 of the interval from its ends
 
 FLAT = 1e-13
-"""Relative change between nodes that rounding alone may make, as it does next to the ends."""
+"""Relative change between nodes that rounding alone may cause, for example next to the ends."""
 
 
 def nodes_between(left: float, right: float) -> FloatArray:
-    """Return points of [left, right] with both ends, doubly exponentially dense towards them, at most NODES + 2.
+    """Return at most NODES + 2 points of [left, right], both ends included, doubly exponentially dense towards them.
 
-    As in tanh-sinh quadrature, so that what happens on any scale next to an end is seen.
+    They are the nodes of tanh-sinh quadrature, which resolve any scale next to an end.
     """
     part = 1.0 / (1.0 + np.exp(np.pi * np.sinh(np.linspace(REACH, -REACH, NODES))))
-    # From the nearer end, where the distance to it has all its digits.
+    # Measured from the nearer end, so that the distance to it keeps all its digits.
     inner = np.where(part < 0.5, left + (right - left) * part, right - (right - left) * part[::-1])
     return np.unique(np.concatenate(([left], inner, [right])))
 
@@ -34,9 +34,9 @@ def nodes_between(left: float, right: float) -> FloatArray:
 def zeros_between(function: Callable[[float], float], left: float, right: float) -> list[float]:
     """Return the zeros of a continuous ``function`` on [left, right] in increasing order.
 
-    Zeros are found by a change of sign between two of the :func:`nodes_between`, or as a pair in a dip towards
-    zero that the nodes show and that a search for its bottom follows. Only two dips between three neighbouring
-    nodes could hide zeros. Where neighbouring nodes are zeros themselves, they count as one.
+    A zero shows as a change of sign between two of the :func:`nodes_between`, or as one of a pair in a dip towards
+    zero whose bottom is then searched for. Only two dips between three neighbouring nodes could hide zeros.
+    Neighbouring nodes that are zeros count as one zero.
     """
     return sorted(set(_zeros(function, nodes_between(left, right).tolist())))
 
@@ -76,7 +76,7 @@ def _zeros(function: Callable[[float], float], nodes: list[float]) -> Iterator[f
 
 
 def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
-    """Return one zero for all neighbouring nodes from ``first`` on that are zeros: an end, if it is one of them."""
+    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if the run contains it."""
     last = next((i for i in range(first, len(nodes)) if values[i] != 0.0), len(nodes)) - 1
     if first == 0:
         return nodes[0]
@@ -84,7 +84,7 @@ def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
 
 
 def _bottom(function: Callable[[float], float], left: float, right: float, sign: float) -> float:
-    """Return where ``sign`` times ``function`` is least, to a part in 1e9 of the interval."""
+    """Return the minimum of ``sign`` times ``function``, to 1e-9 of the interval."""
     found = minimize_scalar(
         lambda x: sign * function(x),
         bounds=(left, right),

@@ -1,4 +1,4 @@
-"""Closed orbits by shooting, branches of them, and the boundaries of basins that unstable ones make."""
+"""Periodic orbits by shooting, their branches, and the basin boundaries formed by unstable orbits."""
 
 from reference_model.orbits.branch import last_whirl, whirl_branch
 from reference_model.orbits.modulated import modulated_cycle

@@ -1,9 +1,8 @@
-"""The boundary between the starts of a pin that come to its self-centred equilibrium and those that whirl.
+"""The boundary between the basins of a pin's self-centred equilibrium and its whirl.
 
-Where a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
-released, sooner or later, at the orbit's angle. The angle of a release depends smoothly on the start. So a point of
-the boundary is the root of an equation; end states, which only tell on which side a start lies, serve to find where
-to look for it.
+If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
+eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
+boundary is the root of an equation. End states show the side of a start, which brackets the root.
 """
 
 from __future__ import annotations
@@ -27,17 +26,17 @@ from reference_model.systems import FloatArray, checked_state, finite_number
 COMPONENTS = ("x", "y", "vx", "vy")
 
 NEAR = 0.3
-"""Angle in rad within which a release counts as near to that of the orbit.
+"""Angle in rad within which a release counts as near that of the orbit.
 
-A root is on the boundary whatever this is. It decides how near two starts must come for one to be looked for; the
-other starts are followed to their ends, which takes ten times as long.
+A root lies on the boundary whatever this value. It decides how close two starts must come for a root to be searched;
+all other starts are followed to their ends, which takes ten times as long.
 """
 
 SPARE = 0.1
 """Error that the search for a point may leave, over the tolerance of the orbit."""
 
 DISTINCT = 0.1
-"""Relative difference in radius of two motions that are told apart by it."""
+"""Smallest relative difference in radius that distinguishes two motions."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class Separatrix:
     orbit : StickSlipOrbit
         The saddle.
     releases : ReleaseMap
-        How releases follow each other.
+        The release map of the pin.
 
     """
 
@@ -63,21 +62,21 @@ class Separatrix:
             raise ValueError(f"orbit = {orbit!r}: it must be a StickSlipOrbit")
         if not orbit.multiplier > 1.0:
             raise ValueError(
-                f"orbit has the multiplier {orbit.multiplier:g}: only the stable set of one with a multiplier > 1 "
-                "has two sides that lead to different motions"
+                f"orbit has the multiplier {orbit.multiplier:g}: a basin boundary needs one > 1, so that its stable "
+                "set has two sides"
             )
         separatrix = cls(orbit, ReleaseMap(orbit.system, orbit.problem.tolerance))
         before, behind = separatrix.ends
         if abs(before - behind) < DISTINCT * max(before, behind):
             raise ValueError(
-                f"from both sides of the orbit the pin comes to motions of the same radius, {before:g} m and "
+                f"both sides of the orbit lead to motions of the same radius, {before:g} m and "
                 f"{behind:g} m: the orbit does not separate them"
             )
         return separatrix
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Radii in m to which the pin comes if it is released before the orbit and behind it."""
+        """Radii in m of the motions after a release before the orbit's angle and after it."""
         before, behind = (
             self.rough.first(self.rough.state(self.orbit.release_angle + shift), lambda _: False)[1]
             for shift in (-NEAR, NEAR)
@@ -86,14 +85,14 @@ class Separatrix:
 
     @cached_property
     def rough(self) -> ReleaseMap:
-        """The releases with an error that matters only next to the boundary."""
+        """The release map with a loose tolerance, which matters only next to the boundary."""
         return replace(self.releases, tolerance=max(ROUGH, self.releases.tolerance))
 
     def miss(self, start: ArrayLike) -> float:
-        """Return by which angle the pin that starts from a state misses the orbit, at its first release near to it.
+        """Return the angular distance from the orbit at the pin's first release near it.
 
-        Positive is the side of the releases behind that of the orbit. Without a near release it is ±NEAR, by the
-        motion to which the pin comes.
+        It is positive for releases after that of the orbit. Without a near release it is ±NEAR, depending on the
+        final motion.
         """
 
         def near(release: Release) -> bool:
@@ -109,17 +108,17 @@ class Separatrix:
         return NEAR if abs(radius - behind) < abs(radius - before) else -NEAR
 
     def point_between(self, first: FloatArray, second: FloatArray) -> FloatArray:
-        """As :func:`boundary_point`."""
+        """Like :func:`boundary_point`, for states of shape (4,)."""
 
-        @functools.cache  # a search asks for its ends again
+        @functools.cache  # the search evaluates the ends again
         def miss(share: float) -> float:
             return self.miss(first + share * (second - first))
 
         if miss(0.0) * miss(1.0) > 0.0:
             raise ValueError(
-                f"from {first} and from {second} the pin comes to the same motion: they must lie on different sides"
+                f"{first} and {second} lead to the same motion: they must lie on different sides of the boundary"
             )
-        # Beyond its tolerance the search would only look for the zeros of noise.
+        # A smaller tolerance would find zeros of noise.
         share = float(brentq(miss, 0.0, 1.0, xtol=SPARE * self.orbit.problem.tolerance, rtol=1e-14))
         point = first + share * (second - first)
         _require_on_boundary(point, miss(share))
@@ -127,21 +126,21 @@ class Separatrix:
 
 
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
-    """Return the start, shape (4,), at which the straight line between two starts crosses the boundary of the basins.
+    """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
     Parameters
     ----------
     orbit : StickSlipOrbit
         The saddle whose stable set is the boundary. Its tolerance is that of the point.
     first, second : array-like of shape (4,)
-        Starts that come to different motions.
+        Starts that lead to different motions.
 
     Raises
     ------
     ValueError
-        If the orbit is no saddle that separates two motions, or if both starts come to the same of them.
+        If the orbit is not a saddle that separates two motions, or if both starts lead to the same motion.
     RuntimeError
-        If what separates the starts is not the stable set of this orbit.
+        If the starts are separated by something other than the stable set of this orbit.
 
     """
     separatrix = Separatrix.of(orbit)
@@ -156,30 +155,30 @@ def basin_boundary(
     others: ArrayLike = (0.0, 0.0, 0.0, 0.0),
     cells: int = 32,
 ) -> tuple[Curve, ...]:
-    """Return the boundary of the basins in a rectangle of starts, as curves of points of shape (n, 2).
+    """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
-    The limits at which a curve ends are, by their index, the lower ones of both components, then the upper ones.
+    Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
 
     Parameters
     ----------
     orbit : StickSlipOrbit
         The saddle whose stable set is the boundary. Its tolerance is that of the points.
     components : (str, str)
-        What varies in the rectangle: two of "x", "y", "vx", "vy".
+        State components that vary in the rectangle: two of "x", "y", "vx", "vy".
     ranges : pair of (float, float)
-        From where to where, in m or m/s.
+        Their ranges in m or m/s.
     others : array-like of shape (4,)
-        The state of which they are replaced.
+        State that supplies the other components.
     cells : int
-        The resolution: starts on a grid of as many cells in each direction tell where a curve is, and points of a
-        curve are not farther apart than a cell. A curve that no edge of the grid crosses just once is not found.
+        Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
+        that no grid edge crosses exactly once.
 
     Raises
     ------
     ValueError
-        If the orbit is no saddle that separates two motions, or for a rectangle or resolution that are not as above.
+        If the orbit is not a saddle that separates two motions, or if the rectangle or the resolution is invalid.
     RuntimeError
-        If some boundary is not in the stable set of this orbit, or if a curve can't be followed.
+        If a boundary is not in the stable set of this orbit, or if a curve cannot be followed.
 
     """
     separatrix = Separatrix.of(orbit)
@@ -188,7 +187,7 @@ def basin_boundary(
     state = checked_state(orbit.system, others)
     require_whole("cells", cells, least=2)
 
-    @functools.cache  # a search asks for its ends again, and the curve for its points
+    @functools.cache  # searches evaluate their ends again, and curves their points
     def miss(*point: float) -> float:
         start = state.copy()
         start[places] = point
@@ -203,15 +202,13 @@ def basin_boundary(
 
 
 def _require_on_boundary(point: FloatArray, miss: float) -> None:
-    """Raise ``RuntimeError`` if the start at a ``point`` at which the side changes does not lead to the orbit."""
     if abs(miss) > JUMP:
         raise RuntimeError(
-            f"the boundary at {point} is not in the stable set of the orbit: no release is near to that of it"
+            f"the boundary at {point} is not in the stable set of the orbit: no release is near that of the orbit"
         )
 
 
 def _checked_places(components: tuple[str, str]) -> list[int]:
-    """Return the places of two components in the state, or raise ``ValueError``."""
     if len(components) != 2 or components[0] == components[1] or not set(components) <= set(COMPONENTS):
         raise ValueError(f"components = {components!r}: they must be two of {', '.join(COMPONENTS)}")
     return [COMPONENTS.index(name) for name in components]
@@ -220,7 +217,7 @@ def _checked_places(components: tuple[str, str]) -> list[int]:
 def _checked_ranges(
     components: tuple[str, str], ranges: Sequence[tuple[float, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the lower and the upper limits, each of shape (2,), or raise ``ValueError``."""
+    """Return the lower and the upper limits, each of shape (2,); raise ``ValueError`` if they are invalid."""
     if len(ranges) != 2 or any(len(limits) != 2 for limits in ranges):
         raise ValueError(f"ranges = {ranges!r}: they must be two pairs of numbers")
     for name, limits in zip(components, ranges, strict=True):

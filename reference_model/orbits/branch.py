@@ -1,4 +1,4 @@
-"""Orbits continued from load to load: the branch of whirls or modulated cycles, and the fold where whirls end."""
+"""Continuation of orbits in the load: the branch of whirls or modulated cycles, and the fold where whirls end."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ BRANCH_STEP = 0.08
 def whirl_branch(
     orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
 ) -> Iterator[Orbit]:
-    """Yield ``orbit``, a whirl or a modulated cycle, and those of other loads that continue it, by decreasing x.
+    """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing x.
 
-    x is where they cross the axis. Each is sought from the line through the two before it, for a fall in x by the
-    fraction ``step``; where Newton's method fails, half of that is tried. The load rises or falls along the
-    branch as it will, and stick phases may come in.
+    x is where the orbits cross the axis. Each orbit is predicted by extrapolation from the two before it, for a
+    relative decrease of x by ``step``. If Newton's method fails, the step is halved. The load may rise or fall along
+    the branch, and stick phases may appear.
 
     Parameters
     ----------
     orbit : Orbit
-        Where to start; its engine and tolerance are used for all.
+        First orbit; its engine and tolerance are used for all.
     until : float
-        Smallest crossing x in m to go to, > 0.
+        Smallest crossing x in m, > 0.
     step : float
-        Largest fraction of x between neighbours.
+        Largest relative change of x between neighbours.
     samples : int
-        Intervals of each trajectory.
+        Number of intervals of each trajectory.
 
     Raises
     ------
     RuntimeError
-        If the branch breaks off: if not even a step of ``step``/64 finds an orbit.
+        If the branch breaks off, so that even a step of ``step``/64 finds no orbit.
 
     """
     seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
@@ -70,7 +70,7 @@ def whirl_branch(
 
 
 def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
-    """Return a guess for the orbit at the crossing ``x`` on the line through two others."""
+    """Return a guess for the orbit at the crossing ``x`` by linear extrapolation."""
     ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
     load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
     return replace(
@@ -90,17 +90,16 @@ def last_whirl(
     tolerance: float = 1e-12,
     precision: float = 0.0,
 ) -> Orbit:
-    """Return the whirl at the smallest load for which there is one: the fold of the branch.
+    """Return the whirl at the smallest load with a whirl: the fold of the branch.
 
-    There the whirl meets the unstable one that separates it from the other motions, and below it neither
-    exists. The paper does not give this load. The branch is followed from the load of ``system``, or from
-    ``guess``, towards the axis; the fold is the minimum of the load over the crossing x. All arguments are as in
-    :func:`whirl_orbit`.
+    There the whirl meets the unstable whirl that separates it from the other motions, and below it neither exists.
+    The paper does not give this load. The branch is followed from the load of ``system``, or from ``guess``, towards
+    the axis. The fold is the minimum of the load over the crossing x. All arguments are those of :func:`whirl_orbit`.
 
     Raises
     ------
     ValueError, RuntimeError
-        As ``whirl_orbit``: if there is no whirl to start from, or if the branch ends before it folds.
+        As ``whirl_orbit``, if there is no whirl to start from or the branch ends before it folds.
 
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)

@@ -1,4 +1,4 @@
-"""The cycle of a whirl whose radius swells and shrinks (Fig. 11), by shooting; without offset only."""
+"""The modulated whirl, whose radius oscillates (Fig. 11), by shooting; without offset only."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 RECURRENCE = 0.05
-"""Largest relative difference of two states between which a motion is taken to have come round."""
+"""Largest relative difference of two recurrent states."""
 
 LEAST_MODULATION = 1e-6
-"""Swing of the radius, as a fraction of it, that tells a modulated cycle from a whirl found to ``CONVERGED``."""
+"""Smallest relative oscillation of the radius of a modulated cycle; a whirl found to ``CONVERGED`` has less."""
 
 
 def modulated_cycle(
@@ -43,36 +43,36 @@ def modulated_cycle(
     samples: int = 1024,
     precision: float = 0.0,
 ) -> Orbit:
-    """Return the cycle of a whirl whose radius swells and shrinks, X0 = 0 only, by shooting (Fig. 11).
+    """Return the cycle of a whirl whose radius oscillates, X0 = 0 only, by shooting (Fig. 11).
 
-    Two frequencies are in it, that of the modulation and the carrier. But without offset it is periodic but for a
-    turn: after the period T of the modulation all is the same turned about the axis by an angle θ. The orbit starts
-    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+    It contains two frequencies, the modulation and the carrier. Without offset it is periodic up to a rotation: after
+    the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts where
+    the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     guess : Trajectory or Orbit
-        Where to start: a simulation that has come near to the cycle in its end, over more than a period of the
-        modulation and at times close enough to resolve a turn; or the cycle of nearby parameters.
+        Start of the iteration: a simulation that ends close to the cycle and covers more than a period of the
+        modulation, at times close enough to resolve a revolution; or the cycle for nearby parameters.
     simulate, at_crossing, tolerance, samples, precision
         As in :func:`whirl_orbit`.
 
     Raises
     ------
     ValueError
-        If the offset is not zero, if a disc rests on single points, or if ``guess`` does not come round.
+        If the offset is not zero, a disc rests on single points, or ``guess`` does not recur.
     RuntimeError
-        If Newton's method does not converge, or finds a whirl of constant radius: there is no such cycle near the
-        guess.
+        If Newton's method does not converge or finds a whirl of constant radius, because there is no such cycle near
+        the guess.
 
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
     if system.offset != 0.0:
         raise ValueError(
-            f"offset = {system.offset:g} m: a modulated cycle comes back turned about the axis, which takes an "
-            "offset of 0"
+            f"offset = {system.offset:g} m: a modulated cycle repeats up to a rotation about the axis, which "
+            "needs an offset of 0"
         )
     if isinstance(guess, Trajectory):
         state, period, turn = _recurrence(guess)
@@ -95,9 +95,9 @@ def modulated_cycle(
 
 
 def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
-    """Return state, period and turn of the last round between two like maxima of the radius.
+    """Return state, period and rotation of the last recurrence between two similar maxima of the radius.
 
-    The state is turned so that the centre lies on the x axis. Raises ``ValueError`` if there is no such round.
+    The state is rotated so that the centre lies on the x axis. Raises ``ValueError`` without a recurrence.
     """
     states, times = trajectory.states, trajectory.times
     velocities = trajectory.system.state_size // 2
@@ -115,6 +115,6 @@ def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
                 state = np.insert(last, 2, 0.0) if len(last) > SPIN else last
                 return state, period, float(angles[maxima[-1]] - angles[i])
     raise ValueError(
-        f"the trajectory does not come round by t = {times[-1]:g} s: no two of {len(maxima)} maxima of its radius "
-        "are alike; simulate longer, or start nearer to the cycle"
+        f"the trajectory does not recur by t = {times[-1]:g} s: no two of {len(maxima)} maxima of its radius "
+        "are similar; simulate longer or start closer to the cycle"
     )

@@ -1,12 +1,12 @@
-"""Periodic motions of a pin with one stick phase a period, all of them, by their return map.
+"""All periodic motions of a pin with one stick phase per period, by their return map.
 
-Where friction lets go the pin rests on the disc and its pull is as large as friction, (7) with equality. These
-places lie on half a circle, so that all that a stick phase leaves of the motion before it is one number: the angle α
-by which the pull lags behind that of the offset, between 0 and π. From one release to the next α goes by a map of one
-variable. Its fixed points are the orbits, and its slope there is their multiplier: of the other three one is that of
-a shift in time, and two are zero, because stick forgets with which velocity and when the pin came to rest.
+At a release the pin rests on the disc and its pull equals friction, (7) with equality. These positions lie on half a
+circle, so one number summarises the motion before: the lag α of the pull behind that of the offset, between 0 and π.
+The map from one α to the next is a function of one variable. Its fixed points are the orbits, and its slope there is
+their multiplier. Of the other three multipliers one belongs to a shift in time, and two are zero, because stick
+forgets the time and the velocity of the stop.
 
-The map has gaps, from which the pin never sticks again, or for ever, and jumps where the stick phase that follows
+The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
 """
 
@@ -32,38 +32,38 @@ from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, re
 from reference_model.trajectory import Trajectory
 
 LOOKS = (1.5, 16.0)
-"""Turns, of the disc or of the pin on its springs, the slower of the two, for which a pin is followed.
+"""Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
 
-Most stick again in the first of them; one that did not in the last is taken never to do so.
+Most pins stick again within the first time. One that does not within the second is taken never to stick again.
 """
 
 NODES = 48
-"""Releases at which the map is first asked; gaps and orbits less than π/NODES apart may hide between them."""
+"""Number of initial nodes of the map; gaps and orbits less than π/NODES apart may be missed."""
 
 NODES_OF_PIECE = 32
-"""Releases between two gaps through which a spline is laid, to find two fixed points next to each other as well."""
+"""Number of spline nodes between two gaps, which resolve two neighbouring fixed points as well."""
 
 ROUNDING = 1e-12
-"""Pull of a stuck pin, per distance and as a fraction of ω², that is nothing but rounding: then ω = k and β = 0."""
+"""Pull of a stuck pin, per distance and as a fraction of ω², within rounding of zero, as for ω = k and β = 0."""
 
 EDGE = 1e-5
-"""Angle in rad to which the edges of the gaps are found."""
+"""Tolerance in rad of the edges of the gaps."""
 
 ROUGH = 1e-6
-"""Tolerance at which fixed points are looked for, before each is found to the one asked for."""
+"""Tolerance of the search for fixed points, before each is refined to the requested tolerance."""
 
 JUMP = 1e-4
-"""Angle in rad by which the map misses a fixed point if it changes sides there by a jump."""
+"""Smallest residual in rad of a sign change that is a jump and not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
-"""Angles in rad of the central differences of fourth order that give the multiplier: the first that meets no gap.
+"""Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used.
 
-At a tolerance of 1e-12 the map's noise of some 1e-13 leaves 1e-10 with the first, and so does its fourth power.
+At a tolerance of 1e-12 the map's noise of about 1e-13 and the fourth power of the first step each leave 1e-10.
 """
 
 
 class Release(NamedTuple):
-    """The end of a stick phase: when in s, the angle α in rad, and how long it had lasted in s."""
+    """The end of a stick phase: its time in s, the angle α in rad, and the duration of the phase in s."""
 
     time: float
     angle: float
@@ -72,14 +72,14 @@ class Release(NamedTuple):
 
 @dataclass(frozen=True)
 class ReleaseMap:
-    """How the releases of a pin follow each other.
+    """The map from one release of a pin to the next.
 
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters, with friction, an offset and a disc that turns.
+        Parameters of the system, with friction, an offset and a turning disc.
     tolerance : float
-        Handed to ``simulate``.
+        Tolerance for ``simulate``.
 
     """
 
@@ -88,23 +88,23 @@ class ReleaseMap:
 
     @property
     def possible(self) -> bool:
-        """Whether there is a release at all: friction that holds the pin, and a pull that changes meanwhile."""
+        """True if releases exist: friction must hold the pin, and the pull must change in stick."""
         turns = abs(self._carried_pull) > ROUNDING * self.pin.disc_speed**2
         return turns and abs(self._offset_pull) > 0.0 and self.pin.friction_force > 0.0
 
     @property
     def turn(self) -> float:
-        """Time in s of one turn of the disc or of the pin on its springs, the longer of the two."""
+        """The longer of one turn of the disc and one period of the pin on its springs, in s."""
         return 2.0 * math.pi / min(abs(self.pin.disc_speed), self.pin.natural_frequency)
 
     @property
     def _offset_pull(self) -> complex:
-        """Pull on the axis in m/s², k²X0: it does not turn. Zero if the disc does not turn either."""
+        """Pull on the axis in m/s², k²X0, which does not turn; zero if the disc is at rest."""
         return self._motion.pull(0j, 0j) if self.pin.disc_speed != 0.0 else 0j
 
     @property
     def _carried_pull(self) -> complex:
-        """Pull per distance from the axis in 1/s², ω² − k² − iωβ/m: it turns with the disc."""
+        """Pull per distance from the axis in 1/s², ω² − k² − iωβ/m, which turns with the disc."""
         motion, omega = self._motion, 1j * self.pin.disc_speed
         return -motion.support.stiffness - (motion.damping + omega) * omega
 
@@ -113,7 +113,7 @@ class ReleaseMap:
         return SlipMotion.of(self.pin)
 
     def state(self, angle: float) -> FloatArray:
-        """Return the state, shape (4,), in which the pin is released at ``angle``."""
+        """Return the state of release at ``angle``, shape (4,)."""
         motion, offset = self._motion, self._offset_pull
         lag = cmath.exp(-1j * math.copysign(angle, motion.disc_speed))
         z = (motion.friction * lag * offset / abs(offset) - offset) / self._carried_pull
@@ -121,16 +121,13 @@ class ReleaseMap:
         return np.array((z.real, z.imag, v.real, v.imag))
 
     def angle(self, state: ArrayLike) -> float:
-        """Return the angle by which the pull lags behind that of the offset in a ``state``, shape (4,), of rest."""
+        """Return the lag of the pull behind that of the offset, for a ``state`` of rest, shape (4,)."""
         x, y = np.asarray(state)[:2].tolist()
         pull = self._motion.pull(complex(x, y), 0j)
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)
 
     def first(self, state: ArrayLike, wanted: Callable[[Release], bool]) -> tuple[Release | None, FloatArray]:
-        """Return the first ``wanted`` release on the way from ``state``, shape (4,), if there is one.
-
-        And the last state that was looked at, shape (4,): without such a release that after all the patience.
-        """
+        """Return the first ``wanted`` release after ``state``, shape (4,), or None, and the last state reached."""
         for turns in LOOKS:
             times = [0.0, turns * self.turn]
             trajectory = REFERENCE(self.pin, state, times, tolerance=self.tolerance)
@@ -146,12 +143,12 @@ class ReleaseMap:
                 yield Release(slip.start, self.angle(slip.initial_state), stick.end - stick.start)
 
     def after(self, angle: float) -> Release | None:
-        """Return the release that follows on one at ``angle``; None if the pin never sticks again."""
-        # By rounding the pin may still be held for a moment.
+        """Return the release after one at ``angle``; None if the pin never sticks again."""
+        # Because of rounding the pin may be held for another moment.
         return self.first(self.state(angle), lambda release: release.time > release.stick_time)[0]
 
     def slope(self, angle: float) -> float:
-        """Return the derivative of the map at ``angle`` by central differences, shorter ones next to a gap."""
+        """Return the derivative of the map at ``angle`` by central differences, with shorter steps next to a gap."""
         for step in SLOPE_STEPS:
             near, far = (
                 (self.change(angle + reach) - self.change(angle - reach)) / (2.0 * reach)
@@ -162,7 +159,7 @@ class ReleaseMap:
         return 1.0 + near + (near - far) / 3.0
 
     def pieces(self) -> Iterator[tuple[float, float]]:
-        """Yield intervals of angles, in increasing order, from which the pin sticks again."""
+        """Yield intervals of angles, in increasing order, with a next stick phase."""
         nodes = (np.arange(NODES) + 0.5) * math.pi / NODES
         sticks = [self.after(node) is not None for node in nodes.tolist()]
         start: float | None = EDGE if sticks[0] else None
@@ -176,7 +173,7 @@ class ReleaseMap:
             yield start, math.pi - EDGE
 
     def _edge(self, inside: float, outside: float) -> float:
-        """Return where a gap begins between two angles, on the side from which the pin sticks again."""
+        """Return the edge of a gap between two angles, on the side with a next stick phase."""
         while abs(outside - inside) > EDGE:
             middle = 0.5 * (inside + outside)
             if self.after(middle) is None:
@@ -186,7 +183,7 @@ class ReleaseMap:
         return inside
 
     def fixed(self) -> list[float]:
-        """Return the angles that come back to themselves, in increasing order."""
+        """Return the fixed points of the map, in increasing order."""
         rough = replace(self, tolerance=max(ROUGH, self.tolerance))
         found: list[float] = []
         for guess in (guess for piece in rough.pieces() for guess in rough.nearly_fixed(*piece)):
@@ -206,27 +203,27 @@ class ReleaseMap:
         return [float(zero) for zero in spline.roots(extrapolate=False)]
 
     def change(self, angle: float) -> float:
-        """Return by how much the angle changes from one release to the next; nan if one of them is none."""
+        """Return the change of the angle from one release to the next; nan without a next release."""
         release = self.after(angle) if 0.0 < angle < math.pi else None
         return math.nan if release is None else release.angle - angle
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StickSlipOrbit(Orbit):
-    """A periodic motion of a pin with one stick phase a period; as an :class:`Orbit` it starts halfway through slip.
+    """A periodic motion of a pin with one stick phase per period; as an :class:`Orbit` it starts in mid-slip.
 
     Parameters
     ----------
     system : PinOnDisc
-        The parameters.
+        Parameters of the system.
     release : array of shape (4,)
-        The state in which friction lets go.
+        State at the release.
     release_angle : float
-        α in rad, by which the pull lags behind that of the offset there.
+        α in rad, the lag of the pull behind that of the offset at the release.
     stick_time : float
-        In s.
+        Duration of stick in s.
     multiplier : float
-        Factor by which a small deviation of the release angle grows in a period.
+        Growth factor per period of a small deviation of the release angle.
 
     """
 
@@ -238,36 +235,36 @@ class StickSlipOrbit(Orbit):
 
     @property
     def multipliers(self) -> tuple[complex, ...]:
-        """Floquet multipliers, largest first: ``multiplier``, 1 of a shift in time, and two that are zero."""
+        """Floquet multipliers, largest first: ``multiplier``, 1 for a shift in time, and two zeros."""
         return tuple(sorted((complex(self.multiplier), 1.0 + 0j, 0j, 0j), key=abs, reverse=True))
 
     @property
     def stable(self) -> bool:
-        """Whether all small deviations die out but for a shift in time."""
+        """True if all small deviations decay, apart from a shift in time."""
         return abs(self.multiplier) < 1.0
 
 
 def stick_slip_orbits(
     pin: PinOnDisc, *, tolerance: float = 1e-12, samples: int = 256
 ) -> tuple[StickSlipOrbit, ...]:
-    """Return the periodic motions of ``pin`` that stick once a period, by increasing release angle.
+    """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
-    The stable ones are stick–slip cycles. One whose multiplier is larger than 1 is a saddle: what comes to it
-    separates the starts that come to two other motions.
+    The stable ones are stick-slip cycles. An orbit with a multiplier > 1 is a saddle: its stable set separates the
+    starts that lead to two other motions.
 
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters. There are no such motions without offset, without friction, or on a disc at rest.
+        Parameters of the system. There are no such motions without offset or friction, or on a disc at rest.
     tolerance : float
-        Handed to ``simulate``.
+        Tolerance for ``simulate``.
     samples : int
-        Intervals of the returned trajectories.
+        Number of intervals of the returned trajectories.
 
     Raises
     ------
     ValueError
-        If ``pin`` is no pin, if its support is not linear, or for a tolerance or samples that can't be.
+        If ``pin`` is not a pin, its support is not linear, or tolerance or samples are invalid.
 
     """
     require_system(pin, PinOnDisc)
@@ -278,7 +275,6 @@ def stick_slip_orbits(
 
 
 def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
-    """Return the orbit that is released at ``angle``."""
     pin, tolerance = releases.pin, releases.tolerance
     release = releases.after(angle)
     assert release is not None  # the angle is a fixed point

@@ -1,8 +1,8 @@
-"""The smallest shock that throws a pin from its self-centred equilibrium into the whirl: what a basin is asked for.
+"""The smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 
-A shock changes the velocity at once and the place not at all. The smallest one is the point of the boundary of the
-basins, in the plane of velocities through the equilibrium, that lies nearest to it. Where to look for it the ends of
-many starts tell; the point itself is on the stable set of a saddle orbit, and bisection of ends checks it.
+A shock changes the velocity at once and leaves the position unchanged. The smallest one is the nearest point of the
+basin boundary, in the plane of velocities through the equilibrium. End states of many starts show its approximate
+direction. The point itself lies on the stable set of a saddle orbit, and bisection of end states checks it.
 """
 
 from __future__ import annotations
@@ -23,20 +23,22 @@ from reference_model.systems import FloatArray, PinOnDisc
 BoolArray = NDArray[np.bool_]
 
 DIRECTIONS = 64
-"""In which shocks are tried first: a turn between neighbours by a tenth of a radian."""
+"""Number of directions that are tried first, about a tenth of a radian apart."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Of shocks that are tried first, over the speed of the disc's surface where the whirl is or at the offset: a tenth
-more each time, so that a region of whirls which is thinner may be missed."""
+"""Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset.
+
+They grow by a tenth, so the search may miss a thinner region of whirls.
+"""
 
 PERIODS = 500.0
-"""Of the free oscillation, for which an end is waited: longer than any takes that is not on the boundary."""
+"""Longest time to an end state, in periods of the free oscillation, unless the start lies on the boundary."""
 
 COARSE, FINE = 1e-2, 1e-7
-"""Relative width at which bisection stops: to know the direction, and to check the result."""
+"""Relative widths of bisection: for the direction, and to check the result."""
 
 ANGLE = 1e-4
-"""In rad, of the direction: the size has a minimum there and changes with the square of it."""
+"""Tolerance of the direction in rad; the size has a minimum there and depends on its square."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,9 @@ class Shock:
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters.
+        Parameters of the system.
     vx, vy : float
-        The change of the velocity in m/s.
+        Change of the velocity in m/s.
 
     """
 
@@ -58,28 +60,28 @@ class Shock:
 
     @property
     def speed(self) -> float:
-        """Its size in m/s."""
+        """Magnitude in m/s."""
         return math.hypot(self.vx, self.vy)
 
     @property
     def impulse(self) -> float:
-        """What it takes, in N s."""
+        """Impulse in N s."""
         return self.pin.mass * self.speed
 
     @property
     def direction(self) -> float:
-        """Its angle to the x-axis in rad, from −π to π."""
+        """Angle to the x axis in rad, from −π to π."""
         return math.atan2(self.vy, self.vx)
 
 
 def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
-    """Return the smallest shock after which ``pin`` does not come back to its equilibrium but to the whirl.
+    """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
     Raises
     ------
     ValueError
-        If there is no equilibrium, or no shock that was tried leads to the whirl, or no saddle orbit with a stick
-        phase divides the two.
+        If there is no equilibrium, if none of the shocks tried leads to the whirl, or if there is no saddle orbit
+        with a stick phase between the two.
     RuntimeError
         If the boundary is not in the stable set of that orbit.
 
@@ -88,7 +90,8 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
     if len(saddles) != 1:
         raise ValueError(
-            f"{len(saddles)} stick–slip orbits of saddle type: the boundary is known where there is one"
+            f"{len(saddles)} saddle-type stick-slip orbits at these parameters: exactly one is needed to compute the "
+            "smallest shock"
         )
     separatrix = Separatrix.of(saddles[0])
     angles = np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False)
@@ -112,31 +115,33 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 
 
 def by_bisection(shock: Shock) -> float:
-    """Return the size in m/s at which shocks in the same direction begin to lead to the whirl, by ends alone.
+    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, from end states.
 
-    Relative error ``FINE``. It is looked for from 0.9 to 1.15 times the size of ``shock``.
+    The relative error is ``FINE``. The search covers 0.9 to 1.15 times the size of ``shock``.
 
     Raises
     ------
     ValueError
-        If the end does not change there.
+        If the end state does not change in this range.
 
     """
     pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
     low, high = (
         np.array([0.9 * shock.speed]),
         np.array([1.15 * shock.speed]),
-    )  # of which no midpoint is the shock
+    )  # asymmetric, so that no midpoint is the shock itself
     before, behind = (bool(_whirls(pin, rest, angle, sizes)[0]) for sizes in (low, high))
     if before or not behind:
-        raise ValueError(f"from 0.9 to 1.15 times {shock.speed:g} m/s the end does not change to the whirl")
+        raise ValueError(
+            f"from 0.9 to 1.15 times {shock.speed:g} m/s the end state does not change to the whirl"
+        )
     return float(_bisected(pin, rest, angle, low, high, FINE)[0])
 
 
 def _rest(pin: PinOnDisc) -> FloatArray:
     found = self_centred_equilibria(pin)
     if not found:
-        raise ValueError(f"no equilibrium to throw the pin out of: {why_no_equilibrium(pin)}")
+        raise ValueError(f"no equilibrium to start from: {why_no_equilibrium(pin)}")
     return np.array([found[0].x, found[0].y, 0.0, 0.0])
 
 
@@ -148,14 +153,14 @@ def _shocks(angles: float | FloatArray) -> FloatArray:
 
 
 def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatArray) -> BoolArray:
-    """Return which shocks, each of an angle and a size, lead to the whirl."""
+    """Return which shocks, each with an angle and a size, lead to the whirl."""
     starts = rest + sizes[:, np.newaxis] * _shocks(angles)
     duration = PERIODS * 2.0 * math.pi / pin.natural_frequency
     return np.asarray(simulate_ensemble(pin, starts, duration=duration).end == EndState.WHIRL)
 
 
 def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each angle two sizes between which the whirl begins, inf where none of those tried leads there."""
+    """Return for each angle two sizes that bracket the onset of the whirl; inf if none of the sizes leads there."""
     reach = abs(pin.disc_speed) * max(
         abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
     )
@@ -172,7 +177,7 @@ def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tu
 def _bisected(
     pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
 ) -> FloatArray:
-    """Return sizes at which the whirl begins, between ``low`` and ``high``, inf where these are."""
+    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``; inf where these are inf."""
     sizes = np.full(len(angles), math.inf)
     there = np.flatnonzero(np.isfinite(high))
     low, high, angles = low[there].copy(), high[there].copy(), angles[there]

@@ -1,12 +1,12 @@
 """Periodic orbits by shooting, with any engine's ``simulate``.
 
-The angle of a disc drops out on an isotropic contact: what comes back after a period are place, velocity and
-spin. Without offset everything looks the same from all directions, and a motion may come back turned about the axis.
+With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
+offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
 Newton's method is written out here. ``scipy.optimize.root`` (hybr, in the same units) finds the whirls of Figs. 4, 6
-and 11 to the same 2e-15 with as many return maps, 17 to 20 in place of 14 to 20; but where there is no orbit near the
-guess it takes 51 to 63 of them to say so, in place of 10 to 16, since it knows nothing of what is far from the guess
-or has collapsed onto the axis, and each is a simulation.
+and 11 equally well, with 17 to 20 return maps compared with 14 to 20. But without an orbit near the guess it needs 51
+to 63 return maps, each a simulation, to fail, compared with 10 to 16 here. It cannot know that an orbit is far from
+the guess or has collapsed onto the axis.
 """
 
 from __future__ import annotations
@@ -36,44 +36,44 @@ from reference_model.trajectory import Trajectory
 Simulate = Callable[..., Trajectory]
 
 REFERENCE: Simulate = partial(simulate, compiled=None)
-"""The engine of whoever names none: an orbit takes up to some hundred simulations."""
+"""Default engine, compiled because an orbit takes up to about a hundred simulations."""
 
 X, Y, VX, VY, SPIN = range(5)
-"""Places in the part of the state that an orbit is about; a pin has no spin."""
+"""Indices of the state without angle; a pin lacks the spin."""
 
 PERIOD, LOAD, TURN = -3, -2, -1
-"""Places behind that part in the unknowns of shooting: T, μN, and the angle θ of a turn about the axis."""
+"""Indices of the other unknowns of shooting: T, μN, and the angle θ of a rotation about the axis."""
 
 CENTRAL = 3e-4
-"""Relative step of the central differences of fourth order that give multipliers.
+"""Relative step of the fourth-order central differences for multipliers.
 
-Measured against the exponentials of the turning frame's eigenvalues and against the variational equations: the noise
-of the flow over the step, and its fourth power, are alike here for the whirl of Fig. 11 with an offset, the worst
-case. Multipliers are right to 1e-11 for the pin, 1e-9 for the disc without offset; with one to 1e-7 by the reference,
-and to 1e-5 by an engine of which a tolerance of 1e-12 leaves more noise.
+It was measured against the eigenvalues of the turning frame and the variational equations. For the whirl of Fig. 11
+with an offset, the worst case, the noise of the flow over the step equals the step's fourth power. The error of
+multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it is 1e-7 by the reference, and
+1e-5 by engines with more noise at a tolerance of 1e-12.
 """
 
 MOST_ITERATIONS = 25
 
 CONVERGED = 1e-9
-"""Largest relative miss of an orbit; Newton's method goes on below it until rounding stops it."""
+"""Largest relative residual of an orbit; Newton's method continues below it until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""The same over an engine's precision, where that is more: a miss has its noise several times over."""
+"""Largest residual over an engine's precision, if that is more: a residual contains its noise several times."""
 
 SLOW = 0.3
-"""Part of the miss that may be left after an iteration; with more, the derivatives are taken anew."""
+"""Share of the residual that may be left after an iteration before the derivatives are computed again."""
 
 FARTHEST_PERIOD = 0.5
-"""Relative change of the period beyond which an orbit is no longer near to the guess."""
+"""Largest relative change of the period of an orbit near the guess."""
 
 COLLAPSED = 1e-6
-"""Size relative to the guess below which an orbit is no longer near to it: a pin that sticks on the axis has none."""
+"""Smallest size relative to the guess; below it the pin has collapsed onto the axis."""
 
 
 @dataclass(frozen=True)
 class ShootingProblem:
-    """The return map of an engine, and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
+    """The return map of an engine and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
 
     ``precision`` is the relative noise of its states, whatever the tolerance.
     """
@@ -85,7 +85,7 @@ class ShootingProblem:
 
     @property
     def converged(self) -> float:
-        """The largest relative miss of an orbit."""
+        """Largest relative residual of an orbit."""
         return max(CONVERGED, ABOVE_NOISE * self.precision)
 
     def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
@@ -93,12 +93,12 @@ class ShootingProblem:
         return np.array([*without_angle(state), period, load, turn])
 
     def start(self, unknowns: FloatArray) -> FloatArray:
-        """Return the state, shape (4,) or (6,), from which the motion of ``unknowns`` starts; its angle is zero."""
+        """Return the initial state for ``unknowns``, shape (4,) or (6,), with the angle zero."""
         part = unknowns[:PERIOD]
         return np.insert(part, 2, 0.0) if isinstance(self.system, DiscOnDisc) else part.copy()
 
     def miss(self, unknowns: FloatArray) -> FloatArray:
-        """Return Φ_T(state), turned back by θ, less the state, shape (4,) or (5,)."""
+        """Return the residual Φ_T(state), rotated back by θ, minus the state, shape (4,) or (5,)."""
         system = replace(self.system, friction_force=float(unknowns[LOAD]))
         times = [0.0, float(unknowns[PERIOD])]
         end = self.simulate(system, self.start(unknowns), times, tolerance=self.tolerance).at_end
@@ -106,7 +106,7 @@ class ShootingProblem:
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
         """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
-        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature of the map and its noise
+        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise of the map
         columns = []
         for i in sought:
             shifted = unknowns.copy()
@@ -115,7 +115,7 @@ class ShootingProblem:
         return np.column_stack(columns)
 
     def monodromy(self, unknowns: FloatArray) -> FloatArray:
-        """Return the linearised return map, shape (4, 4) or (5, 5), by central differences of fourth order."""
+        """Return the linearised return map, shape (4, 4) or (5, 5), by fourth-order central differences."""
         n = len(unknowns[:PERIOD])
         steps = np.zeros((n, len(unknowns)))
         steps[:, :n] = max(CENTRAL, self.precision**0.2) * np.diag(self.size(unknowns)[:n])
@@ -129,10 +129,10 @@ class ShootingProblem:
         return near + (near - far) / 3.0 + np.eye(n)
 
     def size(self, unknowns: FloatArray) -> FloatArray:
-        """Return by what deviations of the unknowns are to be judged."""
+        """Return the scales of the unknowns."""
         size = np.abs(unknowns)
         size[:PERIOD] = size_of(self.system, unknowns[:PERIOD])
-        if size[TURN] > 0.0:  # many turns in a period: one of them counts
+        if size[TURN] > 0.0:  # of many turns in a period, one sets the scale
             size[PERIOD] /= size[TURN]
             size[TURN] = 1.0
         return size
@@ -145,21 +145,21 @@ class Orbit:
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     state : array of shape (4,) or (6,)
-        Where the orbit starts: it crosses the x axis there, y = 0, unless it was found from a guess that starts
-        elsewhere. The angle of a disc is zero.
+        Initial state of the orbit. It lies on the x axis, y = 0, unless the guess started elsewhere. The angle of a
+        disc is zero.
     period : float
-        In s.
+        Period in s.
     residual : float
-        Distance by which the orbit misses its start, relative to its size.
+        Distance between start and end of the orbit, relative to its size.
     trajectory : Trajectory
         One period at equally spaced times, both ends included.
     problem : ShootingProblem
-        The return map that it was found with.
+        Its return map.
     turn : float
-        Angle in rad by which the motion has turned about the axis after a period, whole turns included; 0 where
-        it comes back to the very same place.
+        Rotation of the motion about the axis in a period, in rad, including whole turns; 0 if it recurs without
+        rotation.
 
     """
 
@@ -178,19 +178,19 @@ class Orbit:
 
     @property
     def carrier(self) -> float:
-        """Mean speed in rad/s at which a motion that comes back turned goes about the axis."""
+        """Mean angular velocity about the axis in rad/s of a motion that recurs up to a rotation."""
         return self.turn / self.period
 
     @property
     def mean(self) -> FloatArray:
-        """Time mean of x and y in m, shape (2,); for a period the trapezoidal rule is exact to rounding."""
+        """Time mean of x and y in m, shape (2,); the trapezoidal rule is exact to rounding over a period."""
         return np.asarray(self.trajectory.states[:-1, :2].mean(axis=0))
 
     def from_the_right(self) -> Orbit:
-        """Return the same orbit, started at the sample where x is greatest.
+        """Return the same orbit, started at the sample with the largest x.
 
-        As a guess for the next one it serves whether or not they cross the x axis: it crosses its own y at a right
-        angle there.
+        It crosses its own y at a right angle there. So it is a guess for the next orbit whether or not they cross the
+        x axis.
         """
         states = self.trajectory.states
         state = self.problem.start(np.array([*without_angle(states[np.argmax(states[:, 0])]), 0.0, 0.0, 0.0]))
@@ -209,14 +209,14 @@ class Orbit:
     def multipliers(self) -> tuple[complex, ...]:
         """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
 
-        One of them is 1, that of a shift in time; if the motion comes back turned, a turn is another.
+        One of them is 1, for a shift in time; if the motion recurs up to a rotation, so is a second one.
         """
         multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
 
     @property
     def stable(self) -> bool:
-        """Whether all small deviations die out but for a shift in time and a turn about the axis."""
+        """True if all small deviations decay, apart from a shift in time and a rotation about the axis."""
         shifts = 1 if self.turn == 0.0 else 2
         nearest_to_one = sorted(self.multipliers, key=lambda multiplier: abs(multiplier - 1.0))
         return all(abs(multiplier) < 1.0 for multiplier in nearest_to_one[shifts:])
@@ -225,7 +225,7 @@ class Orbit:
 def shoot(
     problem: ShootingProblem, unknowns: FloatArray, sought: list[int], samples: int, what: str
 ) -> Orbit:
-    """Solve for the ``sought`` unknowns by Newton's method, or Broyden's where it will do; return the orbit."""
+    """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit."""
     scale, period = problem.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
     units = problem.size(unknowns)[sought]
@@ -240,26 +240,26 @@ def shoot(
         miss = problem.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
         if smallest < problem.converged and size >= 0.5 * smallest:
-            break  # rounding is reached
+            break  # rounding level reached
         if size < smallest:
             best, smallest = unknowns, size
         if slopes is None or size > SLOW * last:
             slopes = problem.slopes(unknowns, miss, sought)
-        else:  # Broyden's update: the last step should have brought the miss to zero
+        else:  # Broyden's update: the last step should have made the residual zero
             slopes += np.outer(miss, step / units) / float(step @ step)
         units = problem.size(unknowns)[sought]
         try:
             step = np.asarray(-np.linalg.solve(slopes * units, miss))
         except np.linalg.LinAlgError:
-            break  # no direction to go on in
+            break  # no descent direction
         last, unknowns = size, unknowns.copy()
         unknowns[sought] += units * step
     if not smallest < problem.converged:
         raise RuntimeError(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
-            f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative miss of {smallest:.1e}; "
-            "start from the orbit of a nearby load; one that does not cross "
-            f"y = {unknowns[Y]:g} m takes a guess that starts elsewhere"
+            f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative residual of {smallest:.1e}; "
+            "start from the orbit of a nearby load; if it does not cross "
+            f"y = {unknowns[Y]:g} m, from one that starts elsewhere"
         )
     period, load, turn = (float(value) for value in best[PERIOD:])
     system, state = replace(problem.system, friction_force=load), problem.start(best)
@@ -270,7 +270,7 @@ def shoot(
 
 
 def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Hold x at y = 0 and seek the load in its place, from that of a ``guess`` that is an orbit."""
+    """Fix x at y = 0 and make the load unknown, starting from that of a ``guess`` that is an orbit."""
     unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):
@@ -280,7 +280,7 @@ def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[in
 def require_start(
     system: System, guess: object, guesses: tuple[type, ...], at_crossing: float | None, samples: int
 ) -> None:
-    """Refuse what shooting can't start from."""
+    """Raise ``ValueError`` for an unsuitable system or guess."""
     require_system(system)
     if isinstance(system, DiscOnDisc):
         isotropic_contact_of(system, None, "periodic orbits")
@@ -289,7 +289,7 @@ def require_start(
         finite_number("at_crossing", at_crossing)
     if not isinstance(guess, guesses):
         names = " or ".join("None" if kind is type(None) else kind.__name__ for kind in guesses)
-        raise ValueError(f"guess = {guess!r}: it must be of {names}")
+        raise ValueError(f"guess = {guess!r}: it must be {names}")
     if isinstance(guess, Orbit | Whirl):
         checked_state(system, guess.state)
     elif isinstance(guess, Trajectory):
@@ -297,12 +297,12 @@ def require_start(
 
 
 def without_angle(state: FloatArray) -> FloatArray:
-    """Return x, y, vx, vy and the spin of a disc."""
+    """Return x, y, vx, vy and, for a disc, the spin."""
     return np.delete(state, ANGLE) if len(state) == DiscOnDisc.state_size else np.array(state)
 
 
 def size_of(system: System, part: FloatArray) -> FloatArray:
-    """Return by what deviations of the state without an angle are to be judged, of the same shape."""
+    """Return the scales of the state without angle, of the same shape."""
     size = np.full(len(part), np.max(np.abs(part[:SPIN])))
     if isinstance(system, DiscOnDisc):  # the speed of the rim counts like that of the centre
         size[SPIN] /= system.contact_radius
@@ -310,6 +310,6 @@ def size_of(system: System, part: FloatArray) -> FloatArray:
 
 
 def rotated(part: FloatArray, angle: float) -> FloatArray:
-    """Return the state without an angle, turned about the axis by ``angle`` in rad."""
+    """Return the state without angle, rotated about the axis by ``angle`` in rad."""
     z, v = (complex(part[i], part[i + 1]) * cmath.exp(1j * angle) for i in (X, VX))
     return np.array([z.real, z.imag, v.real, v.imag, *part[SPIN:]])

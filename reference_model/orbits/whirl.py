@@ -1,4 +1,4 @@
-"""The whirl of a pin or disc with an offset, a periodic orbit near to a circle, by shooting."""
+"""The whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting."""
 
 from __future__ import annotations
 
@@ -31,39 +31,39 @@ def whirl_orbit(
     samples: int = 256,
     precision: float = 0.0,
 ) -> Orbit:
-    """Return the whirl of a pin or disc with an offset, a periodic orbit near to a circle, by shooting.
+    """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
-    Newton's method on x, vx, vy, the spin of a disc and the period T for Φ_T(x, y, vx, vy) = (x, y, vx, vy), with
-    the derivatives of the flow Φ from differences. The phase is fixed by y, which stays that of the guess: 0 unless
-    the guess starts elsewhere. Orbits with stick phases are found as well: nothing but ``simulate`` is asked for.
+    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, with
+    differences for the derivatives of the flow Φ. The phase is fixed by y, which is that of the guess: 0 unless the
+    guess starts elsewhere. Only ``simulate`` is used, so orbits with stick phases are found too.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters, with a whirl without offset: |ω| > k on a linear support.
+        Parameters of a system with a whirl without offset: |ω| > k on a linear support.
     simulate : callable
-        The engine; the reference, compiled where it can be, unless told otherwise.
-        ``functools.partial(simulate, contact=...)`` is that of a disc under another law.
+        The engine; by default the reference, compiled if possible. Use ``functools.partial(simulate, contact=...)``
+        for a disc with another friction law.
     guess : Orbit or Whirl, optional
-        Where to start, such as the orbit for a nearby load; unless told otherwise, the largest circle that there
-        is without offset. With a large offset the whirl of a disc no longer crosses the x axis: then it takes that
-        of a nearby offset, :meth:`Orbit.from_the_right`.
+        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset.
+        With a large offset the whirl of a disc no longer crosses the x axis: then use :meth:`Orbit.from_the_right` of
+        the orbit for a nearby offset.
     at_crossing : float, optional
-        If given, x at y = 0 is held at this value in m and the load μN is sought in its place. This goes round the
-        folds of the branch, where two whirls of the same load meet.
+        Fixed value of x at y = 0, in m; the load μN becomes unknown in its place. So a branch can be followed around
+        its folds, where two whirls of the same load meet.
     tolerance : float
-        Handed to ``simulate``.
+        Tolerance for ``simulate``.
     samples : int
-        Intervals of the returned trajectory.
+        Number of intervals of the returned trajectory.
     precision : float
-        Relative noise of the engine's states, whatever the tolerance: 1e-6 in single precision.
+        Relative noise of the engine's states, whatever the tolerance, for example 1e-6 in single precision.
 
     Raises
     ------
     ValueError
-        If there is no circle to start from, or if a disc rests on single points.
+        If a circle to start from does not exist, or if a disc rests on single points.
     RuntimeError
-        If Newton's method does not converge: there is no such orbit near the guess.
+        If Newton's method does not converge, because such an orbit does not exist near the guess.
 
     """
     require_start(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)

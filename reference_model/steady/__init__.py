@@ -1,1 +1,1 @@
-"""Steady motions, their stability, and the curves on which it changes."""
+"""Steady motions, their stability, and stability boundaries."""

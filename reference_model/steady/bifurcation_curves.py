@@ -1,14 +1,14 @@
-"""Where the whirl of a disc loses its stability or its existence, as curves in planes of two parameters.
+"""Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
 The paper stops at "the existence region of this complex limit cycle can be investigated analytically by a stability
-analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that
-analysis, for X0 = 0 and any isotropic law of friction. A whirl is known by the ratio of the slip speeds of centre and
-rim, and its torsional balance is left, see :func:`reference_model.formulas.disc.whirl_arm`. That ratio and two
-parameters of the disc make three unknowns, and a boundary has two equations, the balance and
+analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that analysis,
+for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl up to its
+torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes
+three unknowns, and a boundary has two equations, the balance and one of
 
-- *Hopf*: Hurwitz' determinant is zero, so that a pair of eigenvalues ±iν is imaginary;
-- *fold*: the constant coefficient is zero; two whirls meet, and an eigenvalue is zero;
-- *onset*: the whirl has no size; there the rotation of the centred disc about the axis loses its stability.
+- *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
+- *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
+- *onset*: the whirl has zero radius, where the centred rotation about the axis becomes unstable.
 """
 
 from __future__ import annotations
@@ -35,31 +35,30 @@ __all__ = ["Boundary", "Kind", "ParameterPlane", "boundaries", "crossings"]
 Kind = Literal["Hopf", "fold", "onset"]
 
 FAST, SLOW = 1, -1
-"""Which of centre and rim slips faster: the sides of U = W, where a ring's friction has no derivative."""
+"""Sides of U = W, where a ring's friction has an infinite slope: the centre (FAST) or the rim slips faster."""
 
 NEAREST = 8.0
-"""Of ln(U/|U − W|), up to which curves are followed.
+"""Largest ln(U/|U − W|) of the curves.
 
-The friction of a ring has derivatives that grow like this number as U → W, so it is the unknown in which the curves
-are smooth there.
+The derivatives of a ring's friction grow like this number for U → W. With it as an unknown the curves are smooth.
 """
 
 FARTHEST = 2e-3
-"""Of the same, that is nearly the least U : W or W : U."""
+"""Smallest ln(U/|U − W|), approximately the smallest U : W or W : U."""
 
 SCALE = 3.0
-"""Change of it that counts as much as a whole range of a parameter."""
+"""Change of ln(U/|U − W|) that counts as much as the whole range of a parameter."""
 
 INERTIA = "polar_inertia"
 
 SLOWEST = 3e-3
-"""Frequency ν of a pair at which a Hopf curve ends, as a fraction of k: the two are about to become real."""
+"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; below it the pair is about to become real."""
 
 NODES = 41
-"""Ratios that are tried on each of them."""
+"""Number of ratios tried on each line."""
 
 SAME = 3e-3
-"""Distance from a known curve in units of the scales at which a start is taken to lie on it."""
+"""Largest distance of a start from a known curve, in units of the scales, to lie on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +70,11 @@ class Boundary:
     kind : str
         "Hopf", "fold" or "onset".
     parameters : array of shape (n, 2)
-        The points, in the units of the two parameters.
+        Points of the curve, in the units of the two parameters.
     alpha : array of shape (n,)
-        The angle of (24) of the whirl there, in rad: tan α = R|ω − φ̇|/U, π/2 where it has no size.
+        Angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a whirl of zero radius.
     closed : bool
-        Whether the last point is the first one again.
+        Whether the last point equals the first one.
 
     """
 
@@ -90,8 +89,8 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a kind in ``plane``.
 
-    They are looked for on ``parameter_plane.LINES`` lines in each direction, the borders among them: only a closed
-    curve between neighbouring lines would not be found.
+    The search starts from ``parameter_plane.LINES`` lines in each direction, including the borders. It misses only
+    closed curves between neighbouring lines.
 
     Parameters
     ----------
@@ -100,14 +99,14 @@ def boundaries(
     kind : str
         "Hopf", "fold" or "onset".
     contact : IsotropicContact or None
-        Law of friction; None for that of the parameters.
+        Friction law; None for the law of the parameters.
     step : float
         Largest distance of neighbouring points, in units of the ranges.
 
     Raises
     ------
     ValueError
-        For an unknown kind, or if the disc rests on single points.
+        If the kind is unknown, or the disc rests on single points.
 
     """
     return tuple(
@@ -125,7 +124,7 @@ def crossings(
     plane, kind, contact
         As in :func:`boundaries`.
     name : str
-        The one of the two parameters that is the same along the line.
+        Name of the parameter that is constant along the line.
     value : float
         Its value.
 
@@ -137,7 +136,7 @@ def crossings(
     Raises
     ------
     ValueError
-        As :func:`boundaries`; if ``name`` is none of the plane, or ``value`` is not in its range.
+        As :func:`boundaries`; if ``name`` is not in the plane, or ``value`` is not in its range.
 
     """
     if name not in plane.names:
@@ -156,7 +155,7 @@ def crossings(
 
 
 def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
-    """Yield the equations on both sides of U = W and for both signs of ω − Ω, as far as there are such."""
+    """Yield the equations on both sides of U = W and for both signs of ω − Ω."""
     if kind not in get_args(Kind):
         raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
     law = isotropic_contact_of(plane.disc, contact, "the boundaries")
@@ -167,10 +166,10 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 
 @dataclass(frozen=True, eq=False)
 class _Condition:
-    """The equations of a boundary, for unknowns (two parameters, nearness to U = W), on one side of U = W.
+    """The equations of a boundary, for the unknowns (two parameters, ln(U/|U − W|)).
 
-    And for one sign of ω − Ω, because |ω − Ω| has a kink. The onset is where the centre slips no more: it leaves
-    the two parameters.
+    They hold on one side of U = W and for one sign of ω − Ω, because |ω − Ω| has a kink. At the onset only the two
+    parameters are unknown.
     """
 
     plane: ParameterPlane
@@ -180,7 +179,7 @@ class _Condition:
     sense: float
 
     def ratio(self, unknowns: FloatArray) -> tuple[float, float]:
-        """Return slip and rim speed, the larger one being 1."""
+        """Return slip and rim speed, scaled so that the larger one is 1."""
         if self.kind == "onset":
             return 0.0, 1.0
         smaller = -math.expm1(-float(unknowns[2]))
@@ -193,9 +192,9 @@ class _Condition:
 
     @cached_property
     def at(self) -> Callable[[float, float], tuple[DiscOnDisc, Callable[[float, float], float]]]:
-        """Return the function from two parameters to the disc and its :func:`whirl_arm`."""
+        """Function from two parameters to the disc and its :func:`whirl_arm`."""
 
-        @lru_cache(maxsize=16)  # Newton's method asks for the same ones at several ratios
+        @lru_cache(maxsize=16)  # Newton's method uses the same parameters at several ratios
         def found(first: float, second: float) -> tuple[DiscOnDisc, Callable[[float, float], float]]:
             disc = self.plane.at((first, second))
             return disc, whirl_arm(disc, self.law)
@@ -207,27 +206,27 @@ class _Condition:
         return self.at(*unknowns[:2].tolist())[0]
 
     def balance(self, unknowns: FloatArray) -> float:
-        """Return the torsional balance of the whirl, in N m."""
+        """Return the residual of the whirl's torsional balance, in N m."""
         disc, arm = self.at(*unknowns[:2].tolist())
         torque = disc.shaft_damping * self.sense * (disc.disc_speed - disc.shaft_speed)
         return disc.friction_force * arm(*self.ratio(unknowns)) - torque
 
     def coefficients(self, unknowns: FloatArray) -> Coefficients:
-        """Return those of the characteristic equation."""
+        """Return the coefficients of the characteristic equation."""
         return characteristic_coefficients(self.disc(unknowns), *self.ratio(unknowns), self.law)
 
     def margin(self, unknowns: FloatArray) -> float:
-        """Return what is zero on the boundary besides the balance."""
+        """Return the second residual of the boundary."""
         found = self.coefficients(unknowns)
         return found.hurwitz if self.kind == "Hopf" else found.constant
 
     def equations(self, unknowns: FloatArray) -> FloatArray:
-        """Return what is zero on the boundary."""
+        """Return the residuals of the boundary."""
         rest = () if self.kind == "onset" else (self.margin(unknowns),)
         return np.array([self.balance(unknowns), *rest])
 
     def limits(self, unknowns: FloatArray) -> FloatArray:
-        """Return what is positive inside."""
+        """Return numbers that are positive inside the plane and the limits of the search."""
         disc = self.disc(unknowns)
         inside = [
             *(unknowns[:2] - self.plane.lower),
@@ -242,13 +241,13 @@ class _Condition:
         return np.array(inside)
 
     def starts(self) -> Iterator[FloatArray]:
-        """Yield the points at which the curves cross the lines."""
+        """Yield the crossings of the curves with the lines."""
         for across in (0, 1):
             for value in self.plane.lines(across).tolist():
                 yield from self.crossings(across, value)
 
     def crossings(self, across: int, value: float) -> Iterator[FloatArray]:
-        """Yield the points of the curves, within the limits, at which one of the parameters has a value."""
+        """Yield the points of the curves, within the limits, for a ``value`` of one parameter."""
         found = [self.whirl(across, value)] if self.kind == "onset" else self.zeros(across, value)
         for point in found:
             if point is not None and np.all(self.limits(point) > 0.0):
@@ -282,7 +281,7 @@ class _Condition:
         return (value, other) if across == 0 else (other, value)
 
     def whirl(self, across: int, value: float, *nearness: float) -> FloatArray | None:
-        """Return the unknowns of the whirl at a ratio on a line, on which one parameter has a value."""
+        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter; None if none exists."""
         along = 1 - across
         low, high = self.plane.lower[along], self.plane.upper[along]
 
@@ -292,12 +291,11 @@ class _Condition:
         def balance(other: float) -> float:
             return self.balance(unknowns(other))
 
-        # It grows or falls with every parameter, on one side of ω = Ω, so that it has one zero at most.
+        # The balance is monotonic in every parameter on one side of ω = Ω, so it has at most one zero.
         return unknowns(brentq(balance, low, high)) if balance(low) * balance(high) < 0.0 else None
 
 
 def _traced(condition: _Condition, step: float) -> Iterator[Boundary]:
-    """Yield every curve once."""
     scales = condition.plane.size if condition.kind == "onset" else np.append(condition.plane.size, SCALE)
     curves: list[FloatArray] = []
     for start in condition.starts():
@@ -320,14 +318,14 @@ def _composed(
 
 
 def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:
-    """Yield a zero of ``function`` between all neighbouring ``nodes`` where it changes its sign."""
+    """Yield a zero of ``function`` between any neighbouring ``nodes`` of different sign."""
     for (left, low), (right, high) in itertools.pairwise((node, function(node)) for node in nodes.tolist()):
         if low * high < 0.0:
             yield float(brentq(function, left, right))
 
 
 def _near(point: FloatArray, curve: FloatArray) -> bool:
-    """Return whether a point lies on the line through the points of a curve, but for its sag."""
+    """Return whether a point lies on the polygon through the points of a curve, within its sag."""
     begin, along = curve[:-1], np.diff(curve, axis=0)
     share = np.sum((point - begin) * along, axis=1) / np.sum(along**2, axis=1)
     feet = begin + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along

@@ -1,8 +1,8 @@
-"""How the modulation of a whirl is born where the whirl loses its stability: softly, or with a jump.
+"""The first Lyapunov coefficient of a whirl at its Hopf boundary: soft or hard onset of modulation.
 
-Near a Hopf boundary the motion is ż = λz + c·z|z|² in one complex amplitude z, after coordinates are chosen well. If
-Re c < 0 a small stable cycle grows out of the whirl beyond the boundary; if Re c > 0 an unstable cycle shrinks on to
-it on the near side, and beyond the motion jumps to whatever else there is (Kuznetsov 2004, Elements of applied
+Near a Hopf boundary the motion is ż = λz + c·z|z|² in one complex amplitude z, in suitable coordinates. If Re c < 0 a
+small stable cycle grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl
+before the boundary, and beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied
 bifurcation theory, sections 3.5 and 5.4).
 """
 
@@ -19,13 +19,13 @@ from reference_model.support import Support, require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 
 STEP = 8e-3
-"""Of the differences, in units of the distance to where friction has no derivatives.
+"""Step of the differences, in units of the distance to infinite derivatives of friction.
 
-Error and rounding of the third one balance where STEP⁵ is about rounding; both are far below a percent.
+Truncation and rounding errors of the third difference balance if STEP⁵ is about rounding; both are far below 1 %.
 """
 
 SIZE = 4
-"""Of the state (r, ṙ, rψ̇, ω − φ̇)."""
+"""Number of components of the state (r, ṙ, rψ̇, ω − φ̇)."""
 
 Rates = Callable[[FloatArray], FloatArray]
 ComplexVector = NDArray[np.complex128]
@@ -34,23 +34,23 @@ ComplexVector = NDArray[np.complex128]
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
     """Return Re c in 1/s of a whirl with a pair of eigenvalues on the imaginary axis.
 
-    The amplitude is that of the radius: with r = ρ·(1 + a·cos νt) it is ȧ = Re λ·a + Re c·a³. So a cycle of the
+    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. So a cycle of the
     amplitude √(−Re λ/Re c) exists near the boundary.
 
     Parameters
     ----------
     disc : DiscOnDisc
-        The parameters, without offset.
+        Parameters of the system, without offset.
     state : array of shape (6,)
         A state on the whirl, with the centre on the x axis.
     contact : IsotropicContact or None
-        Law of friction; None for that of the parameters.
+        Friction law; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If the eigenvalues nearest to the imaginary axis are real; if the disc rests on single points, or its
-        support is not linear.
+        If the eigenvalues nearest to the imaginary axis are real, the disc rests on single points, or its support is
+        not linear.
 
     """
     require_linear_support(disc)
@@ -58,7 +58,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
     radius, _, _, _, speed, spin = checked_state(disc, state).tolist()
     whirl = np.array([radius, 0.0, speed, disc.disc_speed - spin])
     slip, rim = abs(speed - disc.disc_speed * radius), disc.contact_radius * abs(whirl[3])
-    # A small part of the way to where a point of the ring comes to rest, or the centre reaches the axis.
+    # A fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.
     scales = np.array([radius, radius, radius, abs(whirl[3])]) * min(abs(slip / rim - 1.0), 0.3)
     rates = polar_rates(disc, law)
 
@@ -69,7 +69,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
 
 
 def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
-    """Return the function from (r, ṙ, rψ̇, ω − φ̇) to its derivative: (19) without offset, free of angles."""
+    """Return the function from (r, ṙ, rψ̇, ω − φ̇) to its derivative: (19) without offset."""
     support = Support.of(disc)
 
     def rates(state: FloatArray) -> FloatArray:
@@ -92,9 +92,9 @@ def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
 
 
 def _real_cubic_coefficient(rates: Rates) -> float:
-    """Return Re c at the origin, where z is such that the first component deviates by Re z: half of (5.62).
+    """Return Re c at the origin, with z such that the first component deviates by Re z: half of (5.62) in Kuznetsov.
 
-    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are no pair.
+    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are not a complex pair.
     """
     origin = np.zeros(SIZE)
     at_origin = rates(origin)
@@ -118,7 +118,10 @@ def _real_cubic_coefficient(rates: Rates) -> float:
     values, vectors = np.linalg.eig(matrix)
     which = int(np.argmin(np.abs(values.real)))
     if values[which].imag == 0.0:
-        raise ValueError(f"eigenvalue {values[which].real:g} 1/s: no pair is next to the imaginary axis")
+        raise ValueError(
+            f"eigenvalue {values[which].real:g} 1/s: the eigenvalue nearest to the imaginary axis must be "
+            "one of a complex pair"
+        )
     q: ComplexVector = np.asarray(vectors[:, which] / (2.0 * vectors[0, which]), dtype=np.complex128)
     p = np.linalg.inv(vectors)[which] * (2.0 * vectors[0, which])
     a, b = q.real, q.imag

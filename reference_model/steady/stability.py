@@ -1,7 +1,7 @@
 """Linear stability of sliding motions of pin and disc, from analytic Jacobians of eq. 1 and 19.
 
-Eigenvalues are in 1/s and come as tuples of complex numbers, the one that decays slowest first. On an isotropic
-contact nothing depends on the angle of a disc, which drops out of its steady motions: five states are left.
+Eigenvalues are in 1/s, as tuples of complex numbers with the slowest decay first. With an isotropic contact nothing
+depends on the angle of a disc, so steady motions have five states without it.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
-    """Return the derivative of the right side of eq. 1 or 19 by the state, for a contact that slides.
+    """Return the derivative of the right side of eq. 1 or 19 by the state, for a sliding contact.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     state : array of shape (4,) or (6,)
-        Of a pin x, y in m and vx, vy in m/s; of a disc x, y, angle (rad), vx, vy, spin (rad/s).
+        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
     contact : Contact or None
-        Law of friction of a disc; None for that of the parameters.
+        Friction law of a disc; None for the law of the parameters.
 
     Returns
     -------
@@ -45,8 +45,8 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     Raises
     ------
     ValueError
-        If a point of the contact is at rest, where Coulomb friction has no derivative; if the stop of the support
-        just begins; if the state is none; or if a pin is given a contact.
+        If a point of the contact is at rest, where Coulomb friction has no derivative; if the state is invalid or
+        exactly at the stop of the support; or if a contact is given for a pin.
 
     """
     state = checked_state(system, state)
@@ -66,7 +66,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # How u_x, u_y, S and φ, on which friction depends, change with x, y, φ and with their rates.
+        # Derivatives of the arguments of friction, u_x, u_y, S and φ, by x, y, φ and by their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]
@@ -78,10 +78,10 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
 def jacobian_without_angle(
     system: System, state: ArrayLike, contact: IsotropicContact | None = None
 ) -> FloatArray:
-    """Return :func:`sliding_jacobian` without row and column of the angle, on which nothing depends.
+    """Return :func:`sliding_jacobian` without row and column of the angle.
 
-    Shape (4, 4) of a pin, (5, 5) of a disc. Parameters and errors as there; ``ValueError`` too for single points,
-    whose friction does depend on the angle.
+    The shape is (4, 4) for a pin, (5, 5) for a disc. Parameters and errors are those of :func:`sliding_jacobian`;
+    ``ValueError`` is also raised for single points, whose friction depends on the angle.
     """
     if isinstance(system, PinOnDisc):
         return sliding_jacobian(system, state, contact)
@@ -93,37 +93,36 @@ def jacobian_without_angle(
 def equilibrium_eigenvalues(
     system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
 ) -> tuple[complex, ...]:
-    """Eigenvalues of an equilibrium in space below which the master disc slides: four of a pin, five of a disc.
+    """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
-    Those of a pin (3) are known in closed form. It slips along the circumference, so friction resists its
-    radial velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. The tangential motion also
-    drives the radial one, but not the other way round: the eigenvalues are the roots of mλ² + βλ + C and
-    mλ² + (β + μN/(|ω|ρ*))λ + C. That is why the equilibrium is always stable, as the paper says below (5),
-    provided that β > 0.
+    For a pin (3) they are known in closed form. It slips along the circumference, so friction resists its radial
+    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. The tangential motion drives the radial
+    one, but not vice versa. So the eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the
+    equilibrium is always stable if β > 0, as the paper says below (5).
 
-    Those of a disc, and of a pin on a support that is not linear, are the eigenvalues of :func:`sliding_jacobian`
-    without the angle.
+    For a disc, and for a pin on a nonlinear support, they are the eigenvalues of :func:`sliding_jacobian` without the
+    angle.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     state : array of shape (6,) or None
-        Of the disc whose centre rests in space, see :func:`reference_model.self_centred_equilibria`; a pin
-        needs none.
+        State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
+        pin.
     contact : IsotropicContact or None
-        Law of friction of a disc; None for that of the parameters.
+        Friction law of a disc; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If there is no such equilibrium of a pin, or it is on the axis, where the pin does not slide; if a disc
-        rests on single points, which keep the angle; as :func:`sliding_jacobian`.
+        If a pin has no such equilibrium, or has it on the axis, where it does not slide; if a disc rests on single
+        points, whose friction depends on the angle; as :func:`sliding_jacobian`.
 
     """
     if isinstance(system, DiscOnDisc):
         if state is None:
-            raise ValueError("state = None: that of a disc is needed, see self_centred_equilibria()")
+            raise ValueError("state = None: a disc needs a state, see self_centred_equilibria()")
         return slowest_first(np.linalg.eigvals(jacobian_without_angle(system, state, contact)))
     radius = equilibrium_radius(system)
     friction_damping = 0.0
@@ -148,27 +147,26 @@ def equilibrium_eigenvalues(
 def turning_frame_jacobian(
     system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
 ) -> FloatArray:
-    """Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
+    """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
-    The state is the position in m and the velocity in m/s (that of the frame at rest), both along the turning
-    axes, and the spin of a disc in rad/s. Without offset eq. 1 and 19 look the same from all directions, so the
-    whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v.
+    The state is the position in m and the absolute velocity in m/s, both in components along the turning axes, and
+    the spin of a disc in rad/s. Without offset eq. 1 and 19 are isotropic, so the whirl is a fixed point there: p' =
+    v − κ×p, v' = a(p, v) − κ×v.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters.
+        Parameters of the system.
     state : array of shape (4,) or (6,), or None
-        A state on the whirl, with the centre on the x axis: y = vx = 0. A pin has one whirl at most and needs
-        none.
+        A state on the whirl, with the centre on the x axis: y = vx = 0. None for a pin, which has at most one whirl.
     contact : IsotropicContact or None
-        Law of friction of a disc; None for that of the parameters.
+        Friction law of a disc; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If there is no whirl of a pin; if the state can't lie on one; if a disc rests on single points, which
-        keep the angle; as :func:`sliding_jacobian`.
+        If a pin has no whirl; if the state cannot lie on a whirl; if a disc rests on single points, whose friction
+        depends on the angle; as :func:`sliding_jacobian`.
 
     """
     state = _state_on_whirl(system, state)
@@ -181,15 +179,15 @@ def turning_frame_jacobian(
 def whirl_eigenvalues(
     system: System, state: ArrayLike | None = None, contact: IsotropicContact | None = None
 ) -> tuple[complex, ...]:
-    """Eigenvalues of a whirl in the frame that turns with it: an exact zero first, then three or four more.
+    """Return the eigenvalues of a whirl in the frame that turns with it: an exact zero, then three or four more.
 
-    The zero belongs to the phase, which is free; for a pin, the other three are the roots of the corrected (13).
-    Parameters and errors as in :func:`turning_frame_jacobian`.
+    The zero belongs to the free phase. For a pin the other three are the roots of the corrected (13). Parameters and
+    errors are those of :func:`turning_frame_jacobian`.
     """
     state = _state_on_whirl(system, state)
     jacobian = turning_frame_jacobian(system, state, contact)
-    # A turn of the whole motion is its free phase: (0, 1) in position, (−κ, 0) in velocity. Taking that
-    # direction out of the matrix leaves the other eigenvalues free of the rounding of a zero among them.
+    # A rotation of the whole motion is the free phase: (0, 1) in position, (−κ, 0) in velocity. Deflating this
+    # direction keeps the rounding error of a zero eigenvalue out of the others.
     phase = np.zeros(len(jacobian))
     phase[1], phase[2] = 1.0, -_frequency(system, state)
     others = [i for i in range(len(jacobian)) if i != 1]
@@ -198,31 +196,31 @@ def whirl_eigenvalues(
 
 
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N at which the rotation of a centred disc about the axis loses its stability.
+    """Return the largest μN in N for a stable rotation of a centred disc about the axis.
 
-    With the centre on the axis nothing but the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M
-    is the moment of pure spin (R for a ring). Against a small slip u of the centre friction is a damper
-    μN·g/|S| that turns with the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
+    With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the moment
+    of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that turns with
+    the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
-    C is the stiffness for small deflections, so that hardening does not matter, nor a stop that has a gap. A motion
-    z ~ exp(±ikt) in the sense of ω neither grows nor decays where μN·g(|ω| − k) = βk|S|, which is linear in μN.
-    Above, up to the load at which the disc sticks (b|ω − Ω| = μN·M), the centred rotation is unstable.
+    C is the stiffness for small deflections, so hardening and a stop with a gap do not matter. A motion z ~ exp(±ikt)
+    in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. The instability ends
+    at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
     Parameters
     ----------
     disc : DiscOnDisc
-        The parameters, without offset; ``friction_force`` does not matter.
+        Parameters of the system, without offset; ``friction_force`` is ignored.
     contact : IsotropicContact or None
-        Law of friction; None for that of the parameters.
+        Friction law; None for the law of the parameters.
 
     Raises
     ------
     ValueError
-        If there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the rotation is
-        stable at every load; if b = 0 or Ω = ω, where friction lets the disc stick at every load; or if the disc
-        rests on single points.
+        If there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the rotation is stable
+        at every load; if b = 0 or Ω = ω, where the disc may stick at every load; or if the disc rests on single
+        points.
 
     """
     law = isotropic_contact_of(disc, contact, "the onset")
@@ -237,7 +235,8 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     if disc.shaft_damping == 0.0 or disc.disc_speed == disc.shaft_speed:
         raise ValueError(
             f"shaft_damping = {disc.shaft_damping:g} N m s/rad, disc_speed - shaft_speed = "
-            f"{disc.disc_speed - disc.shaft_speed:g} rad/s: nothing makes the disc turn against the master disc"
+            f"{disc.disc_speed - disc.shaft_speed:g} rad/s: the shaft exerts no moment, so the disc may stick at "
+            "every load"
         )
     torque = disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
     against_slip = disc.shaft_damping * law.slopes(0.0, 1.0).resistance_by_slip * (speed - k)
@@ -246,7 +245,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
 
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
-    """Sort by decreasing real part, conjugates with the positive imaginary part first."""
+    """Return the eigenvalues by decreasing real part, then by decreasing imaginary part."""
     return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
 
 
@@ -254,7 +253,7 @@ def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:
     if state is None:
         if isinstance(system, DiscOnDisc):
             raise ValueError(
-                "state = None: a disc may have several whirls, a state on one is needed, see whirls()"
+                "state = None: a disc may have several whirls; pass a state on one, see whirls()"
             )
         radius = whirl_radius(system)
         return np.array([radius, 0.0, 0.0, whirl_frequency(system) * radius])
@@ -269,16 +268,14 @@ def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:
 
 
 def _frequency(system: System, state: FloatArray) -> float:
-    """Return the angular velocity of the centre about the axis, in rad/s."""
     return float(state[system.state_size // 2 + 1] / state[0])
 
 
 def _oscillator_eigenvalues(mass: float, damping: float, stiffness: float) -> tuple[complex, complex]:
-    """Both roots of mλ² + βλ + C = 0 for C > 0."""
     discriminant = damping**2 - 4.0 * mass * stiffness
     if discriminant < 0.0:
         oscillating = complex(-damping, math.sqrt(-discriminant)) / (2.0 * mass)
         return oscillating, oscillating.conjugate()
     faster = -(damping + math.sqrt(discriminant)) / 2.0
-    # From the product of the roots: the difference would cancel where the damping is strong.
+    # From the product of the roots, because their difference cancels for strong damping.
     return complex(stiffness / faster), complex(faster / mass)

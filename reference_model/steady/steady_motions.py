@@ -1,4 +1,4 @@
-"""What is known of a steady motion: the place or the circle, the spin, and the eigenvalues of small deviations."""
+"""Steady motions: position or circle, spin, and eigenvalues of small deviations."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class SelfCentredEquilibrium:
     Parameters
     ----------
     x, y : float
-        In m.
+        Position in m.
     eigenvalues : tuple of complex
-        In 1/s, the one that decays slowest first: four of a pin, five of a disc, whose angle drops out.
+        Eigenvalues in 1/s, slowest decay first: four for a pin, five for a disc, whose angle drops out.
     stable : bool
-        Whether all small deviations die out.
+        Whether all small deviations decay.
 
     """
 
@@ -31,7 +31,7 @@ class SelfCentredEquilibrium:
 
     @property
     def state(self) -> FloatArray:
-        """The state as it is simulated, shape (4,)."""
+        """State for a simulation, shape (4,)."""
         return np.array([self.x, self.y, 0.0, 0.0])
 
 
@@ -50,7 +50,7 @@ class SpinningEquilibrium(SelfCentredEquilibrium):
 
     @property
     def state(self) -> FloatArray:
-        """The state as it is simulated, with the angle zero, shape (6,)."""
+        """State for a simulation, with the angle zero, shape (6,)."""
         return resting(self.x, self.y, self.spin)
 
 
@@ -61,14 +61,14 @@ class Whirl:
     Parameters
     ----------
     radius : float
-        In m.
+        Radius in m.
     frequency : float
-        In rad/s, negative where the centre turns clockwise.
+        Angular frequency in rad/s, negative if clockwise.
     eigenvalues : tuple of complex
-        In 1/s, in the frame that turns with the whirl: first the exact zero of the free phase, then the
-        others, the one that decays slowest first: three of a pin, four of a disc, whose angle drops out.
+        Eigenvalues in 1/s in the frame that turns with the whirl: first the exact zero of the free phase, then the
+        others, slowest decay first: three for a pin, four for a disc, whose angle drops out.
     stable : bool
-        Whether all small deviations die out but for a shift in phase.
+        Whether all small deviations decay, apart from a shift in phase.
 
     """
 
@@ -79,7 +79,7 @@ class Whirl:
 
     @property
     def state(self) -> FloatArray:
-        """The state as it is simulated, with the centre on the x axis, shape (4,)."""
+        """State for a simulation, with the centre on the x axis, shape (4,)."""
         return np.array([self.radius, 0.0, 0.0, self.frequency * self.radius])
 
 
@@ -90,7 +90,7 @@ class SpinningWhirl(Whirl):
     Parameters
     ----------
     spin : float
-        φ̇ in rad/s, the same all the time.
+        φ̇ in rad/s, constant.
 
     """
 
@@ -98,7 +98,7 @@ class SpinningWhirl(Whirl):
 
     @property
     def state(self) -> FloatArray:
-        """The state as it is simulated, with the centre on the x axis and the angle zero, shape (6,)."""
+        """State for a simulation, with the centre on the x axis and the angle zero, shape (6,)."""
         return circling(self.radius, self.frequency, self.spin)
 
 

@@ -1,1 +1,1 @@
-"""What coefficient and load may be: numbers, tables and functions, and how compiled code asks them."""
+"""Coefficients and loads as numbers, tables and functions, and their evaluation in compiled code."""

@@ -1,8 +1,7 @@
-"""Calls of functions from compiled code: of Python, and of what numba has compiled by itself.
+"""Calls from compiled code to Python functions and to functions that numba compiled separately.
 
-Compiled code that needs one number from Python need not return to it: it calls the function as the interpreter does,
-which costs as much as the function itself. Where a function is, and where numbers are in memory, is told by its
-address as a float, which has 53 bits where addresses have 48.
+Compiled code calls a Python function like the interpreter does, which costs no more than the function itself.
+Addresses of functions and numbers are passed as floats, whose 53 bits exceed the 48 bits of an address.
 """
 
 from __future__ import annotations
@@ -15,17 +14,17 @@ import numba.extending
 from llvmlite import ir
 from numba.core import types
 
-extending: Any = numba.extending  # not typed throughout
+extending: Any = numba.extending  # not fully typed
 cgutils: Any = numba.core.cgutils
 
 ARGUMENTS = 4
-"""That a function may take, all of them floats."""
+"""Number of arguments that a function may take, all of them floats."""
 
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
 
 
 class PythonFunction(types.Type):
-    """Anything that Python can call, which compiled code does not look into."""
+    """Any Python callable, opaque to compiled code."""
 
     def __init__(self) -> None:
         super().__init__("PythonFunction")
@@ -43,16 +42,16 @@ def _as_it_is(kind: Any, argument: Any, context: Any) -> Any:
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
 def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
-    """Return what a Python function returns for those of four numbers whose bits are set in ``places``.
+    """Return the result of a Python function called with those of four numbers whose bits are set in ``places``.
 
-    That is NaN for anything but a number. What the function raises is raised.
+    The result is NaN for anything but a number. An error that the function raises is passed on.
     """
     floats = [types.float64] * ARGUMENTS
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         api = context.get_python_api(builder)
         callee, chosen, *numbers = arguments
-        # The first place is for the function that is called to use.
+        # The callee may use the first place.
         stack = cgutils.alloca_once(builder, api.pyobj, size=ARGUMENTS + 1)
         count = cgutils.alloca_once_value(builder, _WORD(0))
         for i, number in enumerate(numbers):
@@ -77,7 +76,7 @@ def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c:
         with builder.if_then(builder.fcmp_ordered("==", builder.load(value), _DOUBLE(-1.0)), likely=False):
             with builder.if_then(api.c_api_error()):
                 api.err_clear()
-            builder.store(_DOUBLE(float("nan")), value)  # −1 is as wrong
+            builder.store(_DOUBLE(float("nan")), value)  # a negative value is invalid anyway
         return builder.load(value)
 
     return types.float64(function, types.int64, *floats), generate
@@ -85,7 +84,7 @@ def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c:
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
 def result_at(typing: Any, address: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
-    """Return what the compiled function at ``address_of`` returns for four numbers, or raise what it raises."""
+    """Return the result of the compiled function at ``address_of`` for four numbers, or raise its error."""
     floats = (types.float64,) * ARGUMENTS
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -102,7 +101,7 @@ def result_at(typing: Any, address: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
 def number_at(typing: Any, address: Any, place: Any) -> Any:
-    """Return number ``place`` of a contiguous array of floats at an address."""
+    """Return element ``place`` of a contiguous array of floats at an address."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         where, index = arguments
@@ -113,6 +112,6 @@ def number_at(typing: Any, address: Any, place: Any) -> Any:
 
 
 def address_of(function: Any) -> float:
-    """Return where the machine code of a function of four floats is that numba has compiled for these alone."""
+    """Return the address of the machine code of a function of four floats that numba has compiled for these only."""
     (found,) = function.overloads.values()
     return float(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))

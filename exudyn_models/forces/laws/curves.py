@@ -1,4 +1,4 @@
-"""Coefficients of friction over the slip speed: a table, and a peak at rest."""
+"""Coefficients of friction as functions of the slip speed: a table, and a peak at rest."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray
 
 ROUNDING = 0.01
-"""Of the edge of ``peak_over_sliding``, so that its slope is finite there: 50 times that of a fall along a line."""
+"""Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times that of a linear fall."""
 
 COLUMNS = 3
-"""Numbers of a piece of ``curve_of_table``: slip speed and coefficient where it begins, and its slope."""
+"""Columns of ``curve_of_table``: slip speed and coefficient at the start of a piece, and its slope."""
 
 
 @compiled
 def peak_over_sliding(share: float, static_ratio: float) -> float:
-    """Return by how much friction exceeds that of sliding: ``static_ratio`` up to P/ε = ``share`` = 1, 1 from 2 on.
+    """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
-    Between it falls like a root of P/ε − 1. A law that leaves its peak along a line gets away from it by exponential
-    growth, which takes the time ε·ln(1/ε); along a root it takes the time ε.
+    In between it falls like a square root of P/ε − 1. A law with a linear fall leaves its peak by exponential growth,
+    which takes the time ε·ln(1/ε); with a square root it takes the time ε.
     """
     if share <= 1.0:
         return static_ratio
@@ -35,12 +35,12 @@ def peak_over_sliding(share: float, static_ratio: float) -> float:
 
 
 def curve_of_table(name: str, table: Any) -> FloatArray:
-    """Return the pieces of a coefficient over the slip speed from rows of a slip speed (m/s) and its coefficient.
+    """Return the pieces of a coefficient curve, shape (n, ``COLUMNS``), from rows of slip speed and coefficient.
 
     The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
     A single row is a constant. The pieces have the shape (n, ``COLUMNS``).
 
-    Raises ``ValueError`` if it is no such table.
+    Raises ``ValueError`` if the table is invalid.
     """
     speeds, values = _checked_table(name, table)
     slopes = np.diff(values) / np.diff(speeds) if len(speeds) > 1 else np.zeros(1)
@@ -49,9 +49,12 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
 
 @compiled
 def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> float:
-    """Return the coefficient at a slip speed >= 0 (m/s) on as many pieces of ``curve_of_table`` at an address."""
+    """Return the coefficient at a slip speed >= 0 (m/s).
+
+    ``pieces`` is the size of the ``curve_of_table`` at ``address``.
+    """
     first, last = 0, int(pieces) - 1
-    while first < last:  # the piece is one of these
+    while first < last:  # the piece is between them
         middle = (first + last + 1) // 2
         if number_at(address, middle * COLUMNS) <= slip_speed:
             first = middle
@@ -73,5 +76,5 @@ def _checked_table(name: str, table: Sequence[Sequence[float]]) -> tuple[Any, An
     if not np.isfinite(rows).all() or rows[:, 1].min() < 0.0:
         raise ValueError(f"{name} = {rows.tolist()}: all numbers must be finite and >= 0")
     if (np.diff(rows[:, 0]) <= 0.0).any():
-        raise ValueError(f"{name} = {rows.tolist()}: slip speeds must grow from row to row")
+        raise ValueError(f"{name} = {rows.tolist()}: slip speeds must increase")
     return rows[:, 0], rows[:, 1]

@@ -1,4 +1,4 @@
-"""Coefficient or load as a function: which arguments it takes, and what it may return."""
+"""Coefficients and loads as functions: their arguments and checks of their results."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from exudyn_models.forces.laws.calls import address_of
 from reference_model.systems import finite_number
 
 ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s", "relative_spin": "rad/s"}
-"""What a coefficient or load may depend on, with its unit.
+"""Possible arguments of a coefficient or load, with units.
 
 ``radius`` is the distance of the disc's node from the master's axis, ``slip_speed`` the mean slip speed P,
-``relative_spin`` S, that of the disc less that of the master.
+``relative_spin`` S, the spin of the disc relative to the master.
 """
 
 Checked = Callable[[float, float, float, float], float]
-"""A coefficient or load as a function of all of ``ARGUMENTS`` that raises ``ValueError`` if it is none."""
+"""A coefficient or load as a function of all ``ARGUMENTS``, which raises ``ValueError`` for an invalid result."""
 
 
 @dataclass(frozen=True, eq=False)
 class LawFunction:
-    """A coefficient or load that is a function, as compiled code calls it.
+    """A coefficient or load that is a function, for compiled code.
 
     Parameters
     ----------
     arguments : tuple of str
-        Those of ``ARGUMENTS`` that it takes, in their order.
+        Its arguments, in the order of ``ARGUMENTS``.
     positional : callable
-        Takes just them.
+        The function of just these arguments.
     checked : callable
-        Takes all, and tells what is wrong with the result.
+        The function of all ``ARGUMENTS``, which raises an error for an invalid result.
     address : float
-        Where compiled code finds it, 0 if that has to ask Python.
+        Address of its machine code, 0 for a Python function.
 
     """
 
@@ -55,7 +55,7 @@ class LawFunction:
 
 
 def law_function(name: str, function: Callable[..., float], unit: str) -> LawFunction:
-    """Return a coefficient or load of this name; raise ``ValueError`` if it can't be one."""
+    """Return a coefficient or load named ``name``; raise ``ValueError`` if ``function`` is not valid."""
     arguments, in_order = _arguments(name, function)
     positional = function if in_order else partial(_call_by_name, arguments, function)
 
@@ -74,9 +74,7 @@ def law_function(name: str, function: Callable[..., float], unit: str) -> LawFun
     try:
         address = address_of(_of_four(function, arguments))
     except numba.core.errors.NumbaError as error:
-        raise ValueError(
-            f"{name} is a function for numba, which can't compile it for floats: {error}"
-        ) from error
+        raise ValueError(f"{name} is a numba function that cannot be compiled for floats: {error}") from error
     return LawFunction(arguments, positional, checked, address)
 
 
@@ -93,16 +91,16 @@ def _call_by_name(arguments: Sequence[str], function: Callable[..., float], *giv
 
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ...], bool]:
-    """Return which of ``ARGUMENTS`` a function takes, in their order, and whether that is its own order.
+    """Return which ``ARGUMENTS`` a function takes, in their order, and whether the function has the same order.
 
     Raises ``ValueError`` if it needs others.
     """
-    allowed = f"any of {', '.join(ARGUMENTS)} by these names, as `lambda time: ...` does"
+    allowed = f"any of {', '.join(ARGUMENTS)} by these names, for example `lambda time: ...`"
     try:
         parameters = list(inspect.signature(function).parameters.values())
     except (TypeError, ValueError):
         raise ValueError(
-            f"{name} = {function!r}: its arguments can't be seen; it must take {allowed}"
+            f"{name} = {function!r}: it has no readable signature; it must take {allowed}"
         ) from None
     fixed = function.keywords if isinstance(function, partial) else {}
     taken = set()
@@ -121,9 +119,9 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
     return arguments, positional and tuple(parameter.name for parameter in first) == arguments
 
 
-@cache  # machine code stays, wherever it may still be called
+@cache  # machine code must persist while it may be called
 def _of_four(function: Any, arguments: tuple[str, ...]) -> Any:
-    """Return a function that numba compiles as one of four floats."""
+    """Return the function compiled by numba as one of four floats."""
     places = tuple(list(ARGUMENTS).index(argument) for argument in arguments)
     adapt = _OF_FOUR[len(places)]
 
@@ -143,4 +141,4 @@ _OF_FOUR = [
         lambda f, k, i: f(k[i[0]], k[i[1]], k[i[2]], k[i[3]]),
     )
 ]
-"""Calls of functions of none to four arguments with those of four numbers at some places."""
+"""Calls of functions of zero to four arguments with the numbers at given places."""

@@ -1,8 +1,7 @@
-"""How an annulus is pressed together over its radius, as compiled code knows it.
+"""Pressure of an annulus as a function of the radius, for compiled code.
 
-The share of the load on the ring from r to r + dr is d(r)·dr, d ∝ p·r. It is a polynomial of s, from 0 at the inner
-to 1 at the outer radius, and of such a degree that the rule over the radius in ``slip_potential`` integrates it to
-all digits.
+The share of the load on the ring from r to r + dr is d(r)·dr, d ∝ p·r. It is a polynomial in s, which is 0 at the
+inner and 1 at the outer radius, of a degree that the quadrature in ``slip_potential`` integrates exactly.
 """
 
 from __future__ import annotations
@@ -19,19 +18,19 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray, finite_number
 
 Pressure = Literal["uniform", "wear"] | Callable[[float], float]
-"""Alike everywhere; ∝ 1/r, as linings come to be that wear evenly; or a function of r in m, of whatever unit."""
+""""uniform"; "wear", which is ∝ 1/r, as in evenly worn linings; or a function of r in m, in any unit."""
 
 DEGREE = 7
-"""With the cubes of ``slip_potential`` 3·7 + 2 = 23, which is what Gauss's rule of 12 points integrates."""
+"""Degree of the polynomial: with the cubes of ``slip_potential`` 3·7 + 2 = 23, exact for a 12-point Gauss rule."""
 
 DEVIATION = 1e-6
-"""Of the largest share, by which the polynomial may miss a function."""
+"""Largest deviation of the polynomial from a function, over its largest value."""
 
 
 def density_of(pressure: Pressure, inner: float, outer: float) -> int:
-    """Return what stands for ``pressure`` in a ``Contact``: 0 if it is uniform, else minus an address.
+    """Return the code of ``pressure`` in a ``Contact``: 0 if uniform, else minus an address.
 
-    Raises ``ValueError`` if it is none, or no smooth one.
+    Raises ``ValueError`` if it is not a valid, smooth pressure.
     """
     if isinstance(pressure, str) and pressure == "uniform":
         return 0
@@ -48,8 +47,8 @@ def density_of(pressure: Pressure, inner: float, outer: float) -> int:
     deviation = float(np.abs(found(places) - shares).max() / shares.max()) if shares.any() else math.inf
     if deviation > DEVIATION:
         raise ValueError(
-            f"pressure: a polynomial of degree {DEGREE} in the radius misses it by {deviation:.1g} of its largest "
-            "share; it must be a smooth function, > 0 somewhere; for one with a step add a contact on either side"
+            f"pressure: a polynomial of degree {DEGREE} in the radius deviates by {deviation:.1g} of its largest "
+            "share; it must be a smooth function, > 0 somewhere; for a step use two contacts"
         )
     power = found.convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0], window=[0.0, 1.0])
     coefficients = np.zeros(DEGREE + 1)
@@ -78,7 +77,7 @@ def share_of_ring(density: int, radius: float, inner: float, outer: float) -> fl
 
 
 _KNOWN: list[FloatArray] = []
-"""Coefficients from the highest power down, which stay where they are."""
+"""Coefficients from the highest power down, kept alive at fixed addresses."""
 
 
 @cache

@@ -15,17 +15,17 @@ from reference_model.systems import FloatArray
 
 NUMBERS = 8
 
-_types: Any = numba.types  # not typed throughout
+_types: Any = numba.types  # not fully typed
 _floats: Any = Floats
 
 LAW = _types.Tuple((_floats(_types.float64, NUMBERS), *[python_function] * 4))
-"""The type of what ``law_of`` returns, as compiled code sees it."""
+"""Type of the result of ``law_of`` in compiled code."""
 
 Law = tuple[list[float], Any, Any, Any, Any]
-"""Numbers, then each of two functions with one that tells what is wrong with its result."""
+"""Numbers, then each of two functions with a function that reports an error in its result."""
 
 ABSENT = -1.0
-"""In place of the arguments of a function, where there is none."""
+"""Marker for the arguments of an absent function."""
 
 
 def law_of(
@@ -41,7 +41,7 @@ def law_of(
     functions: list[Any] = []
     for function, instead in ((coefficient, curve), (load, None)):
         numbers += [ABSENT, 0.0] if function is None else [function.places, function.address]
-        # A curve is there to live as long as its address is in use.
+        # Keep the curve alive while its address is in use.
         functions += [instead, None] if function is None else [function.positional, function.checked]
     first, its_check, second, seconds_check = functions
     return numbers, first, its_check, second, seconds_check
@@ -51,9 +51,9 @@ def law_of(
 def friction_force_under(
     law: Law, epsilon: float, t: float, radius: float, slip_speed: float, relative_spin: float
 ) -> float:
-    """Return the friction force in N at a time in s and a motion as ``ARGUMENTS`` tell it, under ε (m/s).
+    """Return the friction force in N at the time t in s, for a motion as in ``ARGUMENTS`` and ε in m/s.
 
-    Raises ``ValueError`` if a function returns anything but a finite number >= 0, and what it raises itself.
+    Raises ``ValueError`` if a function returns anything but a finite number >= 0, and any error that it raises.
     """
     numbers, coefficient, checked_coefficient, load, checked_load = law
     constant, static_ratio, curve, pieces, of_coefficient, its_address, of_load, loads_address = numbers

@@ -1,1 +1,1 @@
-"""The pin and the disc, built of bodies, support and friction."""
+"""Models of the pin and the disc, built from bodies, support and friction."""

@@ -19,10 +19,10 @@ def build(
     friction: AddFriction = add_ring_friction,
     axes_speed: float = 0.0,
 ) -> Model:
-    """Build ``system``, starting in ``initial_state``, with what ``friction`` adds between the discs.
+    """Build ``system`` in ``initial_state``, with the contact that ``friction`` adds between the discs.
 
-    In axes that turn with ``axes_speed`` (rad/s) it is the same model, in which the ground turns the other way, as
-    ``supported_body`` adds it. ``initial_state`` is one in these axes.
+    In axes that turn with ``axes_speed`` (rad/s), which ``initial_state`` refers to, the ground turns backwards, see
+    ``supported_body``.
     """
     options: dict[str, Any] = {
         "regularisation": regularisation,

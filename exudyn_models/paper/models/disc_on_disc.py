@@ -23,11 +23,11 @@ def build_disc_on_disc(
     friction: AddFriction = add_ring_friction,
     axes_speed: float = 0.0,
 ) -> Model:
-    """Build the disc, starting in ``initial_state`` (x, y in m, angle in rad, vx, vy in m/s, spin in rad/s).
+    """Build the disc in ``initial_state`` (x, y in m, angle in rad, vx, vy in m/s, spin in rad/s).
 
-    A rigid body on springs and dampers to a support at (X0, 0), a torsional damper to the shaft, a master disc that
-    turns about (0, 0) with ω, and ring friction between the two discs. Without friction or shaft damping there is no
-    such connector. All of it is seen from axes that turn with ``axes_speed`` (rad/s).
+    The model consists of a rigid body on springs and dampers to a support at (X0, 0), a torsional damper to the
+    shaft, a master disc that turns about (0, 0) with ω, and ring friction between the two discs. Connectors with zero
+    friction or damping are omitted. The model is described in axes that turn with ``axes_speed`` (rad/s).
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -50,9 +50,9 @@ def build_disc_on_disc(
 
 
 def add_shaft(mbs: Any, node: Any, disc: DiscOnDisc, axes_speed: float = 0.0) -> None:
-    """Add the torsional damper of ``disc`` between its node and a shaft that turns at Ω, moment b(Ω − φ̇).
+    """Add the torsional damper between a node of ``disc`` and a shaft that turns at Ω, with the moment b(Ω − φ̇).
 
-    The shaft is the ground's coordinate, and Ω the damper's velocity offset, less the speed of the axes.
+    The shaft is the ground's coordinate, and Ω, relative to the axes, is the damper's velocity offset.
     """
     ground = mbs.AddNode(items.NodePointGround())
     mbs.AddObject(

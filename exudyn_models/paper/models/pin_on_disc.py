@@ -18,16 +18,16 @@ def build_pin_on_disc(
     friction: AddFriction = add_ring_friction,
     axes_speed: float = 0.0,
 ) -> Model:
-    """Build the pin on the disc, starting in ``initial_state`` (x, y in m, vx, vy in m/s).
+    """Build the pin on the disc in ``initial_state`` (x, y in m, vx, vy in m/s).
 
-    A rigid body on springs and dampers to a support at (X0, 0), a master disc that turns about (0, 0) with ω, and
-    ring friction of one point at radius 0 between them. Without friction there is no connector. All of it is seen
-    from axes that turn with ``axes_speed`` (rad/s).
+    The model consists of a rigid body on springs and dampers to a support at (X0, 0), a master disc that turns about
+    (0, 0) with ω, and ring friction of one point at radius 0 between them, unless friction is zero. It is described
+    in axes that turn with ``axes_speed`` (rad/s).
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     master = add_master(mbs, pin.disc_speed - axes_speed)
-    # Nothing turns the pin's body, so that its moment of inertia is any number.
+    # The moment of inertia is arbitrary, because nothing turns the pin's body.
     body = add_supported_body(mbs, pin, initial_state, pin.mass, axes_speed)
     if pin.friction_force > 0.0:
         friction(

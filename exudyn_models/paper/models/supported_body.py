@@ -1,4 +1,4 @@
-"""What pin and friction disc share in Exudyn: the master disc, the body on its support, what is recorded of it."""
+"""Common parts of the models of pin and friction disc: master disc, supported body, and sensors."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from reference_model.systems import FloatArray, System
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 MASTER_INERTIA = 1e30
-"""kg m². The master disc's speed is prescribed: it is a body that no torque of the contact can slow down.
+"""Inertia in kg m² of the master disc, a body whose speed no contact torque can change.
 
-With this inertia a torque of 1 N m changes ω by 1e-30 rad/s in a second, so that ω stays what it is to the last bit.
-Constraints would do the same for implicit solvers only; explicit ones ignore them without a word.
+A torque of 1 N m changes ω by 1e-30 rad/s per second, so ω stays constant to the last bit. A constraint would work
+with implicit solvers only; explicit ones silently ignore it.
 """
 
 
 def add_master(mbs: Any, speed: float) -> Any:
-    """Add the master disc, which turns about (0, 0) with ``speed`` (rad/s) for good; return its ``NodeIndex``."""
+    """Add the master disc, which always turns about (0, 0) with ``speed`` (rad/s); return its ``NodeIndex``."""
     node = mbs.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
     )
@@ -36,8 +36,8 @@ def add_supported_body(
 ) -> Any:
     """Add a planar body on springs and dampers to a support at (X0, 0); return its ``NodeIndex``.
 
-    ``initial_state`` is a state of ``system``; the body of a pin starts at the angle 0 without spin. In axes that
-    turn with ``axes_speed`` (rad/s) the ground with its support is a body that turns the other way.
+    ``initial_state`` is a state of ``system``; a pin's body starts at the angle 0 without spin. In axes that turn
+    with ``axes_speed`` (rad/s) the ground with its support is a body that turns backwards.
     """
     position, velocity = initial_state.reshape(2, -1).tolist()
     turn = [0.0] * (3 - len(position))
@@ -66,7 +66,7 @@ def add_supported_body(
 
 
 def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
-    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r on a body, in axes that turn with ``speed``."""
+    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r on a body, for axes that turn with ``speed``."""
     coriolis = 2.0 * mass * speed
     mbs.AddObject(
         items.ObjectGenericODE2(
@@ -79,7 +79,7 @@ def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
 
 
 def assembled(container: Any, mbs: Any, node: Any, system: System) -> Model:
-    """Assemble ``mbs`` so that the motion of ``node`` is recorded as that of ``system``."""
+    """Assemble ``mbs`` with sensors for the motion of ``node`` as a state of ``system``."""
     variables = exu.OutputVariableType
     position, velocity, acceleration = (
         mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))

@@ -1,1 +1,1 @@
-"""What pins and discs share in the kernels: lanes and laws, what is asked of them, what shows an end."""
+"""Common parts of the kernels of pins and discs: lanes, laws, requested times and convergence."""

@@ -1,6 +1,6 @@
-"""The times that a trajectory is asked for, and with which pace it goes on from the step in which one of them lies.
+"""The requested times of a trajectory, and its pace in the steps that contain them.
 
-Of pins and of discs alike: their lanes and memories call by the same names what is taken from them here.
+The functions serve pins and discs, whose lanes and memories use the same names for these fields.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from reference_model.ensemble.core.jit import inlined, scalar
 
 @inlined
 def recorded(aims: Any) -> bool:
-    """Tell whether checkpoints are asked for."""
+    """Return whether checkpoints are requested."""
     asked: bool = aims.checkpoints.size > 0
     return asked
 
 
 @scalar
 def next_asked(memory: Any, aims: Any) -> float:
-    """Return the next time that is asked for, in units; inf if there is none."""
+    """Return the next requested time in units; inf if there is none."""
     if memory.passed < aims.checkpoints.size:
         asked: float = aims.checkpoints[memory.passed].asked * memory.rate
         return asked
@@ -30,9 +30,9 @@ def next_asked(memory: Any, aims: Any) -> float:
 
 @scalar
 def passes_asked(lanes: Any, moment: Any, memory: Any, lane: int, until: float, aims: Any) -> bool:
-    """Tell whether times are asked for up to the time ``until``, and pass them.
+    """Return whether times up to ``until`` are requested, and mark them as passed.
 
-    The pace of ``moment`` is kept for the checkpoint that is to be taken next, if there is room for it.
+    The pace of ``moment`` is stored for the next checkpoint, if there is room for it.
     """
     before = memory.passed
     while memory.passed < aims.checkpoints.size and next_asked(memory, aims) <= until:

@@ -1,15 +1,15 @@
-"""Friction of a ring and of points on a ring as straight-line code, which lanes take over whole.
+"""Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
 Both are shares of μN for the slip u of the disc's centre and the velocity W·t of the rim, W = R·(φ̇ − ω) of either
-sign: a resistance to slip of the centre and one to slip of the rim (the moment over R). Times the two speeds they are
-the mean slip speed on the circle, which is the power that friction takes per newton.
+sign: a resistance to slip of the centre and one to slip of the rim (the moment over R). Multiplied by the two speeds
+they give the mean slip speed on the circle, which is the power of friction per newton.
 
-The ring's are complete elliptic integrals by the arithmetic-geometric mean. With k the smaller over the larger of
-U = |u| and |W|, with a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
+The ring's are complete elliptic integrals by the arithmetic-geometric mean. With k the smaller over the larger of U =
+|u| and |W|, with a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
-where A is the mean (DLMF 19.8(i)). Nothing cancels but what is of the order of 1/A, a logarithm, where U = |W|.
+where A is the mean (DLMF 19.8(i)). The only cancellation is of order 1/A, a logarithm, at U = |W|.
 """
 
 from __future__ import annotations
@@ -24,16 +24,19 @@ from numba.extending import overload
 from reference_model.ensemble.core.jit import INLINED, inlined
 
 LEAST = 1e-300
-"""Stands for a speed of zero where something is divided by it."""
+"""Lower bound on speeds in denominators."""
 
 NEAREST = 1e-16
-"""Relative distance from U = |W| below which it makes no difference."""
+"""Smallest relative distance from U = |W| that makes a difference."""
 
 SMALL = 1e-4
-"""k² below which what follows c₁² in the sum over k² is less than rounding, and its own rounding would be seen."""
+"""k² below which the terms after c₁² in the sum over k² are less than rounding.
+
+Their own rounding would be larger.
+"""
 
 HALVINGS = 7
-"""Means of a and g: they agree to rounding from k = 0 to the nearest that k comes to one."""
+"""Number of means of a and g; both then agree to rounding for all k."""
 
 QUARTER = (
     float.fromhex("0x1.921fb54400000p+0"),
@@ -44,7 +47,7 @@ QUARTER = (
 
 SINE = tuple((-1.0) ** n / math.factorial(2 * n + 1) for n in range(8, -1, -1))
 COSINE = tuple((-1.0) ** n / math.factorial(2 * n) for n in range(8, -1, -1))
-"""Taylor's series in the square of the angle, the highest power first."""
+"""Taylor coefficients in the square of the angle, highest power first."""
 
 
 @inlined
@@ -55,12 +58,12 @@ def ring_shares(slip: float, rim: float) -> tuple[float, float]:
     smaller = rim if more else slip
     larger = larger if larger > LEAST else LEAST
     k = smaller / larger
-    apart = (larger - smaller) / larger  # 1 − k, all of whose digits count here
+    apart = (larger - smaller) / larger  # 1 − k to full precision
     apart = apart if apart > NEAREST else NEAREST
     m = k * k
     a, g = 1.0, math.sqrt(apart * (1.0 + k))
     a, g = 0.5 * (a + g), math.sqrt(a * g)
-    first = m / (8.0 * a * a)  # 2·c₁²/k², with c₁ = k²/(4·a₁)
+    first = m / (8.0 * a * a)
     rest, weight = 0.0, 1.0
     for _ in range(HALVINGS - 1):
         c = a - g
@@ -76,10 +79,10 @@ def ring_shares(slip: float, rim: float) -> tuple[float, float]:
 def points_shares(
     ux: float, uy: float, rim: float, around: tuple[float, ...]
 ) -> tuple[float, float, float, float]:
-    """Return the resistance along x and y, that of the rim, and the mean slip speed of points on a ring.
+    """Return the resistances along x, y and the rim, and the mean slip speed, of points on a ring.
 
-    ``around`` holds the unit vectors to the points, (cos, sin) of each, one after the other: a tuple, which says how
-    many there are, so that the sum is written out. A point at rest gives nothing. Compiled code only.
+    ``around`` contains the unit vectors to the points, (cos, sin) of each in sequence, as a tuple whose length is
+    known when the sum is unrolled. A point at rest contributes nothing. Compiled code only.
     """
     raise NotImplementedError
 
@@ -106,10 +109,10 @@ def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any
 
 @inlined
 def turned(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle of up to some 1e6 rad, to rounding, without a branch.
+    """Return cosine and sine of an angle of up to about 1e6 rad, to rounding, without a branch.
 
-    Quarter turns are taken off in three parts, each but the last with zeros at its end (Cody and Waite), and Taylor's
-    series do for what is left, below π/4.
+    Quarter turns are subtracted in three parts, the first two with trailing zeros (Cody and Waite). Taylor series
+    give the rest, below π/4.
     """
     quarters = np.rint(angle * (2.0 / math.pi))
     x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]

@@ -1,14 +1,13 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-A processor takes a step in eight lanes in the time of one. All numbers of all lanes stand in one record, each in a
-row of its own (:mod:`records`), so that a loop over the lanes which loads, steps and stores becomes a loop of vector
-instructions. (It must be a function of its own that calls nothing but inlined functions of numbers and tuples.)
+A processor takes a step in eight lanes in the time of one. One record holds all numbers of all lanes, each number in
+its own row (:mod:`records`), so a loop over the lanes that loads, steps and stores becomes vector instructions. For
+this the loop needs its own function, and may call only inlined functions of numbers and tuples. The step is also
+compiled for one lane, with bit-identical results, because a single trajectory would pay for all lanes.
 
-A trajectory by itself would pay for all lanes: its step is compiled for one lane besides, to the same bits.
-
-A round is one trial step in every lane, each with a step size of its own. What is rare (rest, release, the end) is
-seen to lane by lane in scalar code: the lane raises a flag. What happens in a lane does not depend on the others: a
-trajectory comes out the same bit by bit wherever and beside whichever others it runs.
+A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
+release, the end), which scalar code handles lane by lane. Lanes are independent: the result of a trajectory is the
+same bit by bit wherever and next to whichever others it runs.
 """
 
 from __future__ import annotations
@@ -25,9 +24,10 @@ from reference_model.systems import FloatArray
 
 
 class _Lanes(Protocol):
-    """What the record of all lanes must hold.
+    """Required fields of the record of all lanes.
 
-    The motion as it is ``now`` and after the ``trial`` step; why a lane wants to be attended, positive if it does.
+    They are the current motion ``now``, the motion after the ``trial`` step, and a flag that is positive if a lane
+    needs attention.
     """
 
     now: Any
@@ -62,27 +62,27 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task`` to their ends.
 
-    It is long by its arguments: compiled code has no methods, so that all that a kind of system does is handed over.
+    It has many arguments because compiled code has no methods: all functions of a kind of system are passed in.
 
     Parameters
     ----------
     load, advance, alone, attend, store, idle : compiled functions
-        ``load(lanes, memory, lane, number, task, aims)`` puts the start of a trajectory into the trial of a lane,
-        ``advance(lanes, kind)`` makes a trial step in all lanes and ``alone`` in the first one only,
-        ``attend(lanes, memory, lane, aims)`` sees to a lane with a flag and may change its trial,
-        ``store(lanes, memory, lane, results)`` writes down the trial, and ``idle(lanes, lane)`` puts something
-        harmless into a lane. ``load`` and ``attend`` return whether the trajectory has ended.
+        ``load(lanes, memory, lane, number, task, aims)`` writes the start of a trajectory to the trial of a lane.
+        ``advance(lanes, kind)`` makes a trial step in all lanes and ``alone`` in the first one only. ``attend(lanes,
+        memory, lane, aims)`` handles a lane with a flag and may change its trial. ``store(lanes, memory, lane,
+        results)`` writes the result from the trial. ``idle(lanes, lane)`` fills a lane with harmless numbers.
+        ``load`` and ``attend`` return whether the trajectory has ended.
     room : array of shape (1,)
-        Of the record of all lanes, with zeros in it.
+        The record of all lanes, initially zeros.
     memory : array of shape (LANES,)
-        Of the records in which scalar code keeps what no vector needs.
+        Records of scalar code, for data that no vector needs.
     first, last : int
         Numbers of trajectories.
     kind
-        What about the system must be known when ``advance`` is compiled, as a type.
+        Properties of the system that must be known when ``advance`` is compiled, as a type.
     task, aims, results : tuples
-        Parameters and starts; what ``attend`` must know, which is called often, so that it should hold few arrays;
-        where results go.
+        Parameters and starts; the settings for ``attend``, which is called often and should receive few arrays; the
+        output arrays.
 
     """
     wide_vectors()
@@ -92,7 +92,7 @@ def run(
     for lane in range(LANES):
         idle(room[0], lane)
     while True:
-        # The record is taken from its room in every round: it is there as long as something asks for the room.
+        # The record is taken from its room in every round, because it exists only while something refers to the room.
         lanes = room[0]
         for lane in range(LANES):
             ended = False
@@ -121,12 +121,11 @@ def run(
 
 @inlined
 def row_of(values: FloatArray, number: int) -> FloatArray:
-    """Return the row of a trajectory in what has one for each, or a single one for all."""
+    """Return the row of a trajectory in an array with a row for each, or a single one for all."""
     row: FloatArray = values[number if values.shape[0] > 1 else 0]
     return row
 
 
 @scalar
 def _accept(lanes: _Lanes) -> None:
-    """Take over the trial of every lane."""
     lanes.now = lanes.trial

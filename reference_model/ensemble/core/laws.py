@@ -1,4 +1,4 @@
-"""The constants of pins and discs, the forces that act on them, and how long rest lasts."""
+"""Constants of pins and discs, the forces on them, and the duration of rest."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
 CREEP = 0.1
-"""Excess of the pull, as a fraction of by how much it changes in a turn or of g, up to which slip creeps."""
+"""Largest excess of the pull for creeping slip, as a fraction of the pull's change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):
-    """The constants of a pin, divided by its mass, in units in which motion is of order one.
+    """Constants of a pin, divided by its mass, scaled so that motion is of order one.
 
     ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
-    s₀; without friction nothing rests, and ``free`` = 1 keeps time as it is.
+    s₀; without friction nothing rests, and ``free`` = 1 keeps time unstretched.
     """
 
     stiffness: float
@@ -31,10 +31,10 @@ class PinLaw(NamedTuple):
 
 
 class DiscLaw(NamedTuple):
-    """The constants of a disc in units in which motion is of order one; seven as of a pin.
+    """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
 
-    ``around`` are the unit vectors to the points of contact, (cos, sin) of each, one after the other; none for the
-    ring. ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
+    ``around`` contains the unit vectors to the contact points, (cos, sin) of each in sequence; () for the ring.
+    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
     """
 
     around: tuple[float, ...]
@@ -54,7 +54,7 @@ class DiscLaw(NamedTuple):
 Law = PinLaw | DiscLaw
 
 Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, float, float]]
-"""Returns friction of a slip u_x, u_y, r at an angle, and the mean slip speed, as :func:`ring_friction`."""
+"""Takes the slip u_x, u_y, r and the angle; returns friction and mean slip speed, as :func:`ring_friction`."""
 
 
 @inlined
@@ -81,7 +81,7 @@ def ring_friction(
 def points_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return what :func:`ring_friction` does, of points: in the frame of the disc they always stand alike."""
+    """Return the friction of points, like :func:`ring_friction`; computed in the frame of the disc."""
     c, s = turned(angle)
     fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
     return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
@@ -89,7 +89,7 @@ def points_friction(
 
 @scalar
 def release_delay(z: complex, law: PinLaw) -> float:
-    """Return how long a pin at rest at ``z`` stays stuck, as ``sticking.release_delay`` does: eq. 7; inf for ever."""
+    """Return how long a pin at rest at ``z`` sticks, like ``stick.release_delay``: eq. 7; inf for permanent stick."""
     constant = law.stiffness * law.offset
     turning = pull(z, 0j, law) - constant
     p, q, g = abs(constant), abs(turning), law.friction
@@ -105,13 +105,13 @@ def release_delay(z: complex, law: PinLaw) -> float:
     )
     turn = (-limit - angle) % (2.0 * math.pi)
     if 2.0 * math.pi - turn < ROUNDING:
-        turn = 0.0  # at the limit already
+        turn = 0.0  # already at the limit
     return turn / abs(law.disc_speed)
 
 
 @scalar
 def sticking_radius(law: PinLaw) -> float:
-    """Return the largest distance from the axis at which a pin may stay stuck for ever (9): where p + q = g."""
+    """Return the largest distance from the axis with permanent stick of a pin (9), where p + q = g."""
     turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
     spare = law.friction - law.stiffness * abs(law.offset)
     return spare / turning if turning > 0.0 else math.inf
@@ -119,12 +119,12 @@ def sticking_radius(law: PinLaw) -> float:
 
 @scalar
 def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
-    """Tell whether a pin that was released at the radius ``last`` and then at ``radius`` creeps inward for ever.
+    """Return whether a pin released at the radius ``last`` and then at ``radius`` creeps inward forever.
 
-    Of its pull the part p = k²|X0| is constant, and q, in proportion to the radius, turns with it. Once a turn they
-    add up to g + δ, from which the pull falls like B·(ωt)²/2 before and after, B = p·q/(p + q). With
-    K = k² − ω² the slip that this sets off takes 4.5·K·δ²/(B·ω²) from δ: less than all of it, so that δ never
-    comes to zero. Nor does it where c² >= 4K, however far the slip goes: see ``pin.slip.creeps_steadily``.
+    Its pull has a constant part p = k²|X0| and a part q, proportional to the radius, that turns with the pin. Once
+    per turn they add up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the
+    resulting slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >=
+    4K, however far the slip goes: see ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)

@@ -1,18 +1,18 @@
-"""Units in which a motion is of order one, and what is rounding in them."""
+"""Units that make a motion of order one, and its rounding error in them."""
 
 from __future__ import annotations
 
 from reference_model.ensemble.core.jit import scalar
 
 ROUNDING = 4.0 * 2.220446049250313e-16
-"""Relative slip that counts as none: what turns with the disc as closely as floats can say."""
+"""Relative slip that counts as none: a body that moves with the disc to rounding error sticks."""
 
 
 @scalar
 def units(
     k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float
 ) -> tuple[float, float]:
-    """Return the unit of length in m and one over that of time in 1/s, as ``units.Units.of`` a pin."""
+    """Return the unit of length in m and the inverse unit of time in 1/s, as ``units.Units.of`` for a pin."""
     rate = max(k, abs(omega))
     if rate == 0.0:
         rate = c

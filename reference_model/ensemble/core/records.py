@@ -1,10 +1,9 @@
-"""Records: what a lane knows, by name.
+"""Records: the data of a lane, by name.
 
-A record is declared as a class whose annotations say what it holds, and laid out from them: so code reads
-``memory.level`` and ``lanes.now.state.x[lane]``, and a type checker knows these names. For the compiler a record is
-a single address and all of its fields stand at constant distances from it. That is why loops over lanes can be
-vectorised: it sees that no two rows overlap. (In an array of rows, or a tuple of arrays, it would not: such loops
-take four times as long.)
+A record is declared as a class with annotations and laid out from them. So code reads ``memory.level`` and
+``lanes.now.state.x[lane]``, and a type checker knows these names. For the compiler a record is a single address, and
+all fields have constant offsets from it. So the compiler sees that no two rows overlap and can vectorise loops over
+lanes. With an array of rows or a tuple of arrays it could not, and such loops would take four times as long.
 """
 
 from __future__ import annotations
@@ -21,36 +20,38 @@ from reference_model.ensemble.core.jit import INLINED, PART
 from reference_model.systems import FloatArray
 
 LANES = 16
-"""Trajectories side by side. Two vectors of eight: while one waits for a square root the other goes on (measured: 25
-ns a step, with eight 29)."""
+"""Number of trajectories side by side.
+
+Two vectors of eight overlap their square roots: a step takes 25 ns, compared with 29 ns for eight lanes.
+"""
 
 Row = Annotated[FloatArray, LANES]
-"""A field that is a number of each lane."""
+"""A field with one number per lane."""
 
 Numbers = TypeVar("Numbers")
 
 
 class Record:
-    """What declares a record: fields are numbers, rows or arrays of them, named tuples of numbers, and records."""
+    """Base class of records, whose fields are numbers, arrays of them, named tuples of numbers, or records."""
 
 
 class Rows(Generic[Numbers]):
-    """A field that is the numbers of a named tuple of each lane: a row for each of them, under its name."""
+    """A field with the numbers of a named tuple per lane: a row for each of them, under its name."""
 
     def __getattr__(self, name: str) -> FloatArray:
-        """Return a row; compiled code only, as all about rows."""
+        """Return a row; compiled code only, like everything about rows."""
         raise NotImplementedError
 
 
 @cache
 def layout(record: type) -> np.dtype[Any]:
-    """Return how a record, or a named tuple as part of one, lies in memory."""
+    """Return the memory layout of a record, or of a named tuple as part of one."""
     hints = get_type_hints(record, include_extras=True)
     return np.dtype([(name, *_placed(hint)) for name, hint in hints.items()], align=True)
 
 
 def _placed(hint: Any) -> tuple[Any, ...]:
-    """Return type and, of an array, shape of a field."""
+    """Return the type and, for an array, the shape of a field."""
     if get_origin(hint) is Annotated:
         return np.float64, (get_args(hint)[1],)
     if get_origin(hint) is Rows:
@@ -65,21 +66,21 @@ def at(rows: Rows[Any], lane: int) -> tuple[float, ...]:
 
 
 def put(rows: Rows[Numbers], lane: int, numbers: Numbers | tuple[float, ...]) -> None:
-    """Put the numbers of a named tuple, or in its order, into one lane; compiled code only."""
+    """Store the numbers of a named tuple, or numbers in its order, in one lane; compiled code only."""
     raise NotImplementedError
 
 
 def fill(record: Any, numbers: Any) -> None:
-    """Put the numbers of a named tuple, or of a record like it, into a record; compiled code only."""
+    """Store the numbers of a named tuple, or of a similar record, in a record; compiled code only."""
     raise NotImplementedError
 
 
 def clear(record: Any) -> None:
-    """Put zeros into all fields; compiled code only."""
+    """Set all fields to zero; compiled code only."""
     raise NotImplementedError
 
 
-# All are written out for the fields of the record: a loop over them would have to know them by number.
+# All are unrolled over the fields of the record, because a loop would need to access fields by number.
 
 
 @overload(at, jit_options=INLINED, strict=False)

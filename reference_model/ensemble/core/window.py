@@ -1,4 +1,4 @@
-"""The window in which what may be the end state is measured, from one place to the next like it."""
+"""The window for measuring a possible end state, from one crossing to the next."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NO_WINDOW = 0
 
 
 class Measures(NamedTuple):
-    """Of an end state: the least and the largest radius, and the mean slip speed."""
+    """Measures of an end state: smallest and largest radius, and mean slip speed."""
 
     least: float
     largest: float
@@ -20,7 +20,7 @@ class Measures(NamedTuple):
 
 
 class Window(Record):
-    """What is measured, since when, the way slipped until then, and the radii so far."""
+    """Kind of the measurement, its start, the slip distance at the start, and the range of the radius so far."""
 
     kind: int
     since: float
@@ -38,11 +38,11 @@ def open_window(window: Window, kind: int, t: float, way: float, radius: float) 
 
 @inlined
 def see_radius(window: Window, radius: float) -> None:
-    """Take a radius into the window."""
+    """Include a radius in the window."""
     window.least, window.largest = min(window.least, radius), max(window.largest, radius)
 
 
 @inlined
 def measured(window: Window, t: float, way: float) -> Measures:
-    """Return what the window measures up to the time ``t``."""
+    """Return the measures of the window up to the time ``t``."""
     return Measures(window.least, window.largest, (way - window.way) / (t - window.since))

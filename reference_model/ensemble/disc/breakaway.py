@@ -1,8 +1,7 @@
-"""How slip of a disc begins from rest, as :mod:`reference_model.motion.slip.breakaway` has it.
+"""Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
 
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff; but the motion is a smooth function of
-time, and an implicit method through all nodes of a step at once
-(:mod:`.core.stepping.implicit`) follows it until an explicit one
+Slip grows like ½κt² with its direction slaved to the pull, which is stiff. But the motion is a smooth function of
+time, and an implicit method for all nodes of a step (:mod:`.core.stepping.implicit`) follows it until an explicit one
 can.
 """
 
@@ -27,18 +26,18 @@ from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
-"""Of what the last terms of the polynomials contribute, in units in which motion is of order one."""
+"""Allowed contribution of the last terms of the polynomials, in the kernel's units."""
 
 
 @scalar
 def grown(
     z: complex, n: complex, turning: float, first: float, longest: float, law: DiscLaw
 ) -> tuple[complex, complex, float, float, float, float]:
-    """Return place, slip, turn, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
+    """Return position, slip, rotation, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
-    Up to where an explicit method can go on, but for no longer than ``longest``. ``first`` is the rate at which slip
-    begins; the turn is that beyond the one of the master disc, times κ; the work that of friction per newton. A
-    duration of zero tells that the motion could not be resolved.
+    It ends where an explicit method can continue, or after ``longest``. ``first`` is the initial rate of slip. The
+    rotation is relative to the master disc and multiplied by κ. The work is that of friction per newton. A duration
+    of zero means that the motion could not be resolved.
     """
     carried = 1j * law.disc_speed
     change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time
@@ -66,7 +65,7 @@ def grown(
         there = place_after(z, w, step, law)
         goes = (complex(w[-1, 0], w[-1, 1]) * there.conjugate()).real
         if goes * outward < 0.0:
-            break  # the largest or the smallest radius is to be seen
+            break  # ends at an extreme of the radius, which must be recorded
         z, outward = there, goes
         for j in range(NODES):
             turn += step * INTEGRAL[-1, j] * w[j, 2]

@@ -1,7 +1,7 @@
-"""An ensemble of discs, and a single one: from parameters to results.
+"""Ensembles of discs and single discs: from parameters to results.
 
-What compiled code does not follow, points of contact that come to rest, it hands over: the plain reference takes such
-a trajectory on until all of them slip, and gives it back.
+Compiled code does not follow contact points that come to rest. The plain reference continues such a trajectory until
+all points slip, and hands it back.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
 LEAST_SLIP = 0.1
-"""Turns of the master disc, or of the free centre, through which all must slip for compiled code to take over."""
+"""Turns of the master disc, or of the free centre; compiled code continues once all points have slipped this long."""
 
 
 def simulate_discs(
@@ -42,7 +42,7 @@ def simulate_discs(
     n: int,
     threads: int,
 ) -> Ensemble:
-    """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` discs."""
+    """Simulate ``n`` discs like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     table = parameter_table(disc, PARAMETERS, varied)
     aims = _aims(disc, tolerance, early_end, no_regions() if varied else known_regions(disc))
     results = Results.empty(n, disc.state_size)
@@ -91,7 +91,7 @@ def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[
 
 
 def _run(task: DiscTask, aims: DiscAims, results: Results, threads: int = 1) -> None:
-    """Run all trajectories as far as compiled code goes."""
+    """Run all trajectories as far as compiled code can follow them."""
     kernel = run_points if aims.around else run_rings
     in_chunks(lambda first, last: kernel(task, aims, results, first, last), len(results.ends), threads)
 
@@ -105,7 +105,7 @@ def _run_through(
     tolerance: float,
     threads: int = 1,
 ) -> None:
-    """Run all trajectories to their ends, those handed over by the plain reference in between."""
+    """Run all trajectories to their ends; the plain reference continues those handed over in between."""
     _run(task, aims, results, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
     handed = np.flatnonzero(results.ends == HANDED_OVER)
@@ -132,7 +132,7 @@ def _run_through(
 def _take_on(
     disc: DiscOnDisc, results: Results, i: int, duration: float, tolerance: float, early_end: bool
 ) -> None:
-    """Take a trajectory on with the plain reference to where all slips again, or to its end."""
+    """Continue a trajectory with the plain reference until all points slip again, or to its end."""
     state, t = results.states[i], float(results.times[i])
     for motion, stuck in _through_rest(disc, state, t, duration, tolerance):
         results.steps[i] += motion.solution.steps
@@ -155,10 +155,10 @@ def _through_rest(
     tolerance: float,
     times: FloatArray | tuple[()] = (),
 ) -> Iterator[tuple[Trajectory, bool]]:
-    """Yield the motion from ``state`` at ``t`` to where all slips again, or to the end, in parts, by the reference.
+    """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
-    Of a part those of ``times`` that lie within, too; and whether the disc is stuck for ever, which it is once it has
-    been for a turn of the master disc.
+    It comes in parts, which include the requested ``times`` they contain, each with whether the disc is permanently
+    stuck. It is if it has been stuck for a turn of the master disc.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration

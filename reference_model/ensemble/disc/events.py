@@ -1,23 +1,22 @@
-"""How the end state of a disc shows itself while it moves.
+"""End states of a disc, detected during its motion.
 
 Self-centred
-    Once in every free period the motion is looked at: the places, velocities and spins of a motion that goes to an
-    equilibrium go to a fixed point. With d the distance from one look to the next and q the larger of its last two
-    ratios, d·q/(1 − q) is what is left to go (:mod:`.core.convergence`). Since a motion may come close to one that is
-    unstable and leave it later (some of Fig. 11 begin so), it must attract, too, and by Newton's method be as near
-    (:mod:`.stability`).
+    The state is checked once per free period. It converges to a fixed point if the motion goes to an equilibrium: if
+    d is the distance between checks and q the larger of its last two ratios, d·q/(1 − q) remains
+    (:mod:`.core.convergence`). A motion may come close to an unstable equilibrium and leave it later, as some of
+    Fig. 11 do. So the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
 
 Whirl
-    The same from one place to the next where x is largest; without an offset the whirl is a circle, on which radius,
-    velocities along it and across it, and spin have a fixed point of their own: from look to look.
+    The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
+    velocities along and across it, and the spin converge from check to check.
 
 Modulated
-    Without an offset, the same from one largest radius to the next, where the radius goes on swinging.
+    Without an offset, the same for the states where the radius is largest, while the radius continues to oscillate.
 
-Stuck, or stick–slip
-    As of a pin, by the radii of a ring at its releases (:mod:`.pin.end_states`).
+Stuck, or stick-slip
+    As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).
 
-What is known of the basins beforehand (:mod:`.trapping`) ends the trajectories that come into it earlier.
+Known trapping regions (:mod:`.trapping`) end trajectories earlier.
 """
 
 from __future__ import annotations
@@ -65,23 +64,23 @@ from reference_model.ensemble.disc.memory import (
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
 Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
-"""Puts an implicit step in the place of the one on trial, if that is worth it."""
+"""Replaces the trial step by an implicit one, if that is worthwhile."""
 
 Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscAims], bool]
-"""Sees to slow slip, or to rest; tells whether the trajectory ends."""
+"""Handles slow slip or rest; returns whether the trajectory ends."""
 
 Shows = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
-"""Tells whether a steady motion near z, v and r attracts, an equilibrium or a circle, as ``stability.attracts``."""
+"""Returns whether a nearby steady motion, an equilibrium or a circle, attracts, as ``stability.attracts``."""
 
 STILL = 1e-2
-"""Share of its radius or of ω times it by which a motion may swing that goes to a point or to a circle."""
+"""Largest oscillation, over the radius or ω times it, of a motion that goes to a point or to a circle."""
 
 
 @written_out
 def attend_with(
     lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims, stride: Stride, slow: Slow, shows: Shows
 ) -> bool:
-    """See to what the flag of a lane says; return whether its trajectory ends here."""
+    """Handle the flag of a lane; return whether its trajectory ends here."""
     law = law_of(lanes, lane, aims.around)
     if int(lanes.flag[lane]) & STIFF:
         stride(lanes, memory, lane, law)
@@ -89,7 +88,7 @@ def attend_with(
     if flag & LOST:
         memory.end = UNDECIDED
         return True
-    passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]  # more than rounding
+    passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]  # by more than rounding
     if flag & IS_DUE and passed and looked(lanes, memory, lane, law, aims, shows):
         return True
     if lanes.trial.state.time[lane] >= lanes.duration[lane] - AT_END:
@@ -104,7 +103,7 @@ def found(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, end: int, t: float, way: float, radius: float,
     law: DiscLaw, aims: DiscAims,
 ) -> bool:  # fmt: skip
-    """Take the measures of an end state from here to the next like place; return whether that is the end."""
+    """Measure an end state from here to the next similar crossing; return whether the trajectory ends."""
     window = memory.window
     if window.kind != kind:
         open_window(window, kind, t, way, radius)
@@ -121,7 +120,7 @@ def found(
 
 @inlined
 def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
-    """Return r within the last step, by the cubic through it and its rate at both ends."""
+    """Return r in the last step, by the cubic through r and its rate at both ends."""
     r0, r1 = lanes.now.state.r[lane], lanes.trial.state.r[lane]
     k0, k1 = lanes.now.rates, lanes.trial.rates
     d0, d1 = span * k0.r[lane] / k0.time[lane], span * k1.r[lane] / k1.time[lane]
@@ -134,7 +133,7 @@ def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
 def extreme_met(
     lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, aims: DiscAims
 ) -> bool:
-    """Take note of where x or the radius is largest, or the latter smallest; return whether that is the end."""
+    """Record where x is largest, or the radius is extreme; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
     step = last_step(lanes, lane)
@@ -162,9 +161,7 @@ def extreme_met(
         met = compared(memory.turns, values, abs(v))
         ended = met and whirls(lanes, memory, lane, OF_TURN, u, abs(z), law, aims)
         if turns <= 1.0:
-            see_radius(
-                memory.window, radius
-            )  # again: what comes after this place belongs to a window that opens here
+            see_radius(memory.window, radius)  # again, because it belongs to a window that opens here
     return ended
 
 
@@ -172,7 +169,7 @@ def extreme_met(
 def whirls(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw, aims: DiscAims
 ) -> bool:  # fmt: skip
-    """Take note of a place in the last step that is as the one before; return whether the trajectory ends there."""
+    """Record a crossing in the last step that repeats the previous one; return whether the trajectory ends there."""
     t0, t1 = lanes.now.state.time[lane], lanes.trial.state.time[lane]
     way0, way1 = lanes.now.state.way[lane], lanes.trial.state.way[lane]
     t, way = t0 + u * (t1 - t0), way0 + u * (way1 - way0)
@@ -183,7 +180,7 @@ def whirls(
 def looked(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims, shows: Shows
 ) -> bool:
-    """Look at the motion, as once in every free period and at the end; return whether the trajectory ends here."""
+    """Check the motion, once per free period and at the end; return whether the trajectory ends here."""
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
     if recorded(aims):
         pass_asked(lanes, lanes.now, memory, lane, t, aims)
@@ -196,7 +193,7 @@ def looked(
         lanes.watch[lane] = UNWATCHED
         return aims.early
     if t < due:
-        return False  # the end
+        return False  # at the end
     lanes.due[lane] = due + memory.tick
     if memory.end != UNDECIDED:
         return False
@@ -227,7 +224,7 @@ def looked(
 
 @scalar
 def in_region(memory: DiscMemory, z: complex, v: complex, r: float, aims: DiscAims) -> bool:
-    """Tell whether the motion is where it is known beforehand what comes of it, and keep that."""
+    """Return whether the motion is in a known trapping region, and store its end state."""
     length, speed = memory.length, memory.length * memory.rate
     for region in aims.regions:
         if region.circle:

@@ -1,4 +1,4 @@
-"""An ensemble of discs: how a lane is loaded and stored, and all of them run, on rings or on points."""
+"""The kernel of discs on rings or points: loading and storing a lane, and running all trajectories."""
 
 from __future__ import annotations
 
@@ -42,23 +42,23 @@ from reference_model.systems import FloatArray
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
 
 Slips = Callable[[DiscLanes, int, DiscLaw], None]
-"""Makes ready a lane that slips."""
+"""Prepares a lane that slips."""
 
 PARAMETERS = (
     "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
     "shaft_damping", "shaft_speed",
 )  # fmt: skip
-"""Of a disc, in the order in which they are taken here."""
+"""Parameters of a disc, in the order of the kernel."""
 
 STRETCHING_TIME = 0.5
 """s₀ over g, in units of time."""
 
 WATCHED_STEP = 1e-3
-"""Step below which the points of a disc are looked at for one that comes to rest."""
+"""Step below which the points of a disc are checked for one that comes to rest."""
 
 
 class DiscTask(NamedTuple):
-    """What is to be done.
+    """Input of the kernel.
 
     ``parameters`` are (1 or n, 10), in the order of PARAMETERS; ``starts`` (1 or n, 6), their ``paces`` (1 or n, 5)
     if they are checkpoints, ``durations`` in s (1 or n,).
@@ -81,9 +81,9 @@ def load_with(
     rest: Slow,
     slip: Slips,
 ) -> bool:
-    """Put the start of a trajectory into the trial of a lane; return whether it ends there.
+    """Write the start of a trajectory to the trial of a lane; return whether it ends there.
 
-    In one piece, because it goes from SI units to the kernel's once: nearly every line takes the units of the first.
+    It is one function because it converts SI units to the kernel's units, which nearly every line uses.
     """
     mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = row_of(
         task.parameters, number
@@ -141,7 +141,7 @@ def load_with(
 
 @scalar
 def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> None:
-    """Write down the result of a lane in SI units."""
+    """Write the result of a lane in SI units."""
     number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
     put_state(results.states[number], lanes, lanes.trial, memory, lane)
     results.times[number] = lanes.trial.state.time[lane] / rate
@@ -155,15 +155,14 @@ def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> 
 
 @scalar
 def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Tell whether the steady motion attracts that a disc on a ring has come to."""
     return attracts(z, v, r, law, circle, near)
 
 
 @scalar
 def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Tell that of a disc on points, whose friction changes with the angle, nothing is known at a single look.
+    """Return whether a motion of a disc on points attracts; known only without friction.
 
-    But without friction all that is damped attracts.
+    Friction of points changes with the angle. Without friction every damped motion on springs attracts.
     """
     return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
 
@@ -178,7 +177,7 @@ def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw
     disc_stride_with(lanes, memory, lane, law, points_rates, no_edge, collocate_points)
 
 
-# The compiler takes functions from globals only: so there are those of rings and of points.
+# The compiler accepts only global functions as arguments, so there is one set for rings and one for points.
 
 
 @written_out
@@ -242,7 +241,7 @@ def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, las
 
 @inlined
 def _run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
-    """Do so. As a function of its own it takes a fifth longer to compile, and runs a sixth faster."""
+    """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
         _load_points, _advance_points, _advance_points_alone, _attend_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, aims.around, task, aims, results,

@@ -1,4 +1,4 @@
-"""The disc in lanes: what stands there, the step of all lanes, and how slip of one of them ends and begins."""
+"""The lanes of discs: their data, the step of all lanes, and the end and beginning of slip in a lane."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from reference_model.ensemble.disc.slip import direction
 
 
 class DiscState(NamedTuple):
-    """Place, slip velocity, r, angle, time and way slipped, the mean over the contact; or the rates of all.
+    """Position, slip velocity, r, angle, time and slip distance (mean over the contact), or their rates.
 
-    All is scaled; rates are by stretched time.
+    All are scaled; rates are by stretched time.
     """
 
     x: float
@@ -33,7 +33,7 @@ class DiscState(NamedTuple):
 
 
 class Moment(Record):
-    """The motion at one time, with its rates, and the step that comes."""
+    """The motion at one time, with its rates, and the next step."""
 
     state: Rows[DiscState]
     rates: Rows[DiscState]
@@ -41,11 +41,11 @@ class Moment(Record):
 
 
 class DiscLanes(Record):
-    """All lanes: the motion now and after the step on trial, and the law.
+    """All lanes: the motion now and after the trial step, and the law.
 
-    The tolerance of a step; the step before the edge was in the way; when the motion ends, and when it wants to be
-    attended before; how closely it is watched; why it wants to be attended; steps so far; how many of the last were
-    short.
+    Further fields are the tolerance of a step; the usual step, before the edge shortened it; the end of the motion
+    (``duration``), and an earlier time that needs attention (``due``); how closely it is watched; why it needs
+    attention (``flag``); the number of steps so far; and the number of successive short steps.
     """
 
     now: Moment
@@ -68,49 +68,55 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""A lane may be attended whenever x is largest, whenever the radius is largest or smallest, or both."""
+"""Degrees of watching: attention when x is largest, when the radius is largest or smallest, or both."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip may be about to end; the time has come; x was largest; so was the radius, or smallest;
-step size or number of steps are beyond what is sensible; an implicit step may be worth its while."""
+"""Flags, which add up: slip may be about to end.
+
+The due time has come; x was largest; the radius was largest or smallest; step size or number of steps are out of
+bounds; an implicit step may be worthwhile.
+"""
 
 SHORT_STEP, MANY = 0.1, 40.0
-"""As of a pin; explicit steps of discs cost more."""
+"""As for a pin; explicit steps of discs cost more."""
 
 MOST_STEPS = 5_000_000.0
 SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
-"""Share of a step within which the edge lies when the step counts as landing on it."""
+"""Share of a step within which the edge must lie for the step to count as ending on it."""
 
 AT_END = 1e-13
-"""Time, in its unit, that is passed over at the end."""
+"""Time, in units, that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
 """Slip speeds, in units of g: below the first the tolerance of slip is relative, below the second slip may end."""
 
 REST_TIME = 1e-12
-"""Error, in units of time and length, up to which the closed form of coming to rest is taken."""
+"""Largest error, in units of time and length, of the closed form for coming to rest."""
 
 LEAST_SLIP = 1e-13
-"""Slip speed, in units, that is none."""
+"""Slip speed, in units, that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Time, in units, for which slip that grows is followed from rest: after that as any slip, with checkpoints."""
+"""Longest time, in units, of slip that is followed from rest.
+
+Later it is ordinary slip with checkpoints.
+"""
 
 SUDDEN = 0.05
-"""Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
+"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time: not stiff."""
 
 
 @written_out
 def advance_with(
     lanes: DiscLanes, around: Tuple, rates: Rates, edge: Edge, small_step: float, count: int
 ) -> None:
-    """Make a trial step in the first ``count`` lanes; where it does not do the trial is the old state.
+    """Make a trial step in the first ``count`` lanes; where it is rejected the trial is the old state.
 
-    Where the step crosses the ``edge`` of friction, an error estimate would tell little: it is to end there. The same
-    at the end. A lane wants to be attended, too, where steps are smaller than ``small_step``.
+    If a step crosses the ``edge`` of friction, its error estimate is unreliable, and it is repeated up to the edge;
+    likewise at the end. A lane also needs attention if its step is smaller than ``small_step``.
     """
     wide_vectors()
     now, trial = lanes.now, lanes.trial
@@ -158,9 +164,9 @@ def advance_with(
 def error_of_slip(
     state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
 ) -> float:
-    """Return the error of a step as a multiple of what is allowed, see :func:`.core.stepping.runge_kutta.error_of`.
+    """Return the error of a step as a multiple of the tolerance, see :func:`.core.stepping.runge_kutta.error_of`.
 
-    Slip counts by its own size once it is small, if there is friction: its direction decides when it ends.
+    With friction the error of small slip is relative, because its direction decides when it ends.
     """
     slip = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     small = (slip + law.free) / (SLOW * law.friction + LEAST)
@@ -175,7 +181,7 @@ def error_of_slip(
 
 @inlined
 def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
-    """Return the share of a step after which the edge is met: the distance from it goes about by a parabola."""
+    """Return the share of a step that leads to the edge, by a parabola for the distance from it."""
     slope = approach * h
     bend = after - before - slope
     root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))
@@ -187,7 +193,7 @@ def share_to_edge(before: float, after: float, approach: float, h: float) -> flo
 def reasons(
     state: DiscState, k: DiscState, new: DiscState, k1: DiscState, nearly: float, due: bool, fine: bool, watch: float
 ) -> float:  # fmt: skip
-    """Return the flags of a step from ``state`` with the rates ``k`` to what is ``new``, with the rates ``k1``."""
+    """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
     s2 = new.ux * new.ux + new.uy * new.uy + new.r * new.r
     turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
     flag = REST if (s2 < nearly * nearly) | fine else 0.0
@@ -199,7 +205,7 @@ def reasons(
 
 @scalar
 def idle(lanes: DiscLanes, lane: int) -> None:
-    """Put into a lane what goes on for ever without being attended."""
+    """Fill a lane with a motion that continues forever without attention."""
     trial = lanes.trial
     put(lanes.law, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -223,13 +229,13 @@ def state_at(moment: Moment, lane: int) -> DiscState:
 
 @inlined
 def rates_at(moment: Moment, lane: int) -> DiscState:
-    """Return its rates."""
+    """Return the rates in a lane."""
     return DiscState(*at(moment.rates, lane))
 
 
 @inlined
 def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> None:
-    """Make ready the lane whose place stands in its trial, with a first step."""
+    """Prepare the lane whose trial contains the position, with a first step."""
     trial = lanes.trial
     put(trial.rates, lane, rates(state_at(trial, lane)[:6], law))
     trial.step[lane] = FIRST_STEP
@@ -238,7 +244,7 @@ def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> Non
 
 @scalar
 def last_step(lanes: DiscLanes, lane: int) -> DenseOutput:
-    """Return the motion of the centre in the last step, of fifth order: by what it is at both ends."""
+    """Return the motion of the centre in the last step, of fifth order, from the motion at both ends."""
     now, trial = lanes.now, lanes.trial
     h, omega = trial.state.time[lane] - now.state.time[lane], lanes.law.disc_speed[lane]
     z0, v0, a0 = _motion(state_at(now, lane), rates_at(now, lane), omega)
@@ -251,28 +257,31 @@ def last_step(lanes: DiscLanes, lane: int) -> DenseOutput:
 
 @inlined
 def _motion(state: DiscState, k: DiscState, omega: float) -> tuple[complex, complex, complex]:
-    """Return place, velocity and acceleration of the centre."""
+    """Return position, velocity and acceleration of the centre."""
     pace, v = 1.0 / k.time, complex(k.x, k.y)
     return complex(state.x, state.y), pace * v, pace * (complex(k.ux, k.uy) + 1j * omega * v)
 
 
 @inlined
 def slowing(state: DiscState, k: DiscState) -> tuple[float, float]:
-    """Return slip speed, and how fast it falls."""
+    """Return the slip speed and its rate of decrease."""
     s = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     return s, -(state.ux * k.ux + state.uy * k.uy + state.r * k.r) / (s * k.time)
 
 
 @inlined
 def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
-    """Return slip speed, and the time that it would last if it went on falling as it does; inf if it does not."""
+    """Return the slip speed and the time to rest at its present rate of decrease; inf if it does not decrease."""
     s, falling = slowing(state_at(lanes.trial, lane), rates_at(lanes.trial, lane))
     return s, (s / falling if falling > 0.0 else math.inf)
 
 
 @scalar
 def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Tell whether slip ends within a moment, and let it: it falls linearly. As slow as rounding, it ends at once."""
+    """Bring slip to rest if it ends within a moment, linearly, or is within rounding of zero.
+
+    Return whether it does.
+    """
     trial = lanes.trial
     state = state_at(trial, lane)
     x, y, ux, uy, r, angle, t, way = state
@@ -302,7 +311,7 @@ def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
 
 @scalar
 def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
-    """Let a disc on a ring slip from rest at ``z``; tell whether the motion could be resolved."""
+    """Begin slip of a disc on a ring from rest at ``z``; return whether the motion could be resolved."""
     trial = lanes.trial
     n, turning, first, taken = direction(z, law)
     way = trial.state.way[lane]

@@ -1,4 +1,4 @@
-"""What scalar code keeps of each lane of discs, and what it must know of the task."""
+"""Data of scalar code for each lane of discs, and its settings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
 from reference_model.systems import FloatArray
 
 OF_TURN, OF_PEAK = 1, 2
-"""Kinds of windows: from one place where x is largest to the next, or from one largest radius to the next."""
+"""Kinds of windows: from one crossing where x is largest to the next, or from one largest radius to the next."""
 
 
 class RegionForm(NamedTuple):
@@ -44,8 +44,8 @@ class RegionForm(NamedTuple):
 class Region(Record):
     """A neighbourhood of a motion that no motion leaves, in m and s: where the form is below its level.
 
-    ``circle`` is 1 about a whirl, in the coordinates that turn with the centre (ρ, v along and across the radius, r,
-    0), and 0 about an equilibrium, in (x, y, vx, vy, r). The measures are those of the motion in its centre.
+    ``circle`` is 1 about a whirl, in coordinates that turn with the centre (ρ, v along and across the radius, r, 0),
+    and 0 about an equilibrium, in (x, y, vx, vy, r). The measures are those of the motion at its centre.
     """
 
     circle: int
@@ -56,7 +56,7 @@ class Region(Record):
 
 
 class Series(Record):
-    """What was seen last of its kind, the last two distances from one to the next, and how many were seen."""
+    """The last values of a kind, the last two distances between successive values, and their number."""
 
     values: Annotated[FloatArray, 5]
     last: float
@@ -65,11 +65,11 @@ class Series(Record):
 
 
 class DiscMemory(Record):
-    """Of a lane: the number of its trajectory, units, end state so far and its measures, the period of looks.
+    """Data of a lane: number of the trajectory, units, end state so far and its measures, the period of checks.
 
-    The motion as it was once in a period, where x was largest and where the radius was; the window in which it may
-    show to be the end state. How long an implicit step may be, how many checkpoints have been taken, and how many of
-    the times asked for are passed.
+    Further fields are the motion once in a period, at the largest x and at the largest radius; the window for
+    measuring an end state; the proposed implicit step, the number of checkpoints taken, and the number of requested
+    times passed.
     """
 
     number: int
@@ -88,10 +88,10 @@ class DiscMemory(Record):
 
 
 class DiscAims(NamedTuple):
-    """What a disc needs to be attended.
+    """Settings for scalar code.
 
-    ``around`` of its law, ``regions`` (m,) that are known beforehand, and room for ``checkpoints`` of a single
-    trajectory, none where they are not asked for.
+    They contain ``around`` of the law, the known ``regions`` (m,), and room for ``checkpoints`` of a single
+    trajectory, empty if not requested.
     """
 
     tolerance: float
@@ -103,7 +103,7 @@ class DiscAims(NamedTuple):
 
 @scalar
 def compared(series: Series, values: Tuple, scale: float) -> bool:
-    """Compare with what was seen before of the same kind; tell whether less than ACCURACY·scale is left to go."""
+    """Compare with earlier values of the same kind; return whether less than ACCURACY·scale remains to converge."""
     square = 0.0
     for i in range(5):
         square += (values[i] - series.values[i]) ** 2
@@ -118,7 +118,7 @@ def compared(series: Series, values: Tuple, scale: float) -> bool:
 def pass_asked(
     lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, aims: DiscAims
 ) -> None:
-    """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
+    """Store a checkpoint of a ``moment`` of a lane if times between it and ``until`` are requested."""
     if passes_asked(lanes, moment, memory, lane, until, aims):
         take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, aims)
 
@@ -127,7 +127,7 @@ def pass_asked(
 def take_checkpoint(
     lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, aims: DiscAims
 ) -> None:
-    """Take a checkpoint of a ``moment`` of a lane, while there is room."""
+    """Store a checkpoint of a ``moment`` of a lane, while there is room."""
     if memory.checkpoints < aims.checkpoints.size:
         checkpoint = aims.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
@@ -137,7 +137,7 @@ def take_checkpoint(
 
 @scalar
 def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int) -> None:
-    """Put x, y, angle, vx, vy and spin of a ``moment`` into ``state`` (6,), in SI units."""
+    """Write x, y, angle, vx, vy and spin of a ``moment`` to ``state`` (6,), in SI units."""
     length, rate = memory.length, memory.rate
     there = state_at(moment, lane)
     omega, curling = lanes.law.disc_speed[lane], lanes.law.curling[lane]

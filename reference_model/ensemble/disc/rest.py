@@ -1,7 +1,7 @@
-"""How a disc comes to rest, rests and begins to slip again; one on points is handed over.
+"""The end of slip, rest, and the beginning of slip of a disc; a disc on points is handed over.
 
-A disc on a ring sticks as a whole, and its centre as a pin with the friction that the moment of the shaft leaves:
-it is stuck for ever if the pull, a constant part and one that turns, never exceeds that (eq. 7). Exact.
+A disc on a ring sticks as a whole, and its centre like a pin with the friction that the shaft's moment leaves. Stick
+is permanent if the pull, a constant part and a turning part, never exceeds this friction (eq. 7), which is exact.
 """
 
 from __future__ import annotations
@@ -40,18 +40,18 @@ from reference_model.ensemble.disc.slip import centre_of, held_friction, points_
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
-"""Time, in units, that slow slip of a disc or of a point lasts at least, at its pace, if it creeps."""
+"""Shortest time to rest, in units, of slow slip of a disc or of a point that creeps."""
 
 SPENT_SHARE = 0.1
-"""Of the tolerance, for what is left of slip that dies out for ever."""
+"""Share of the tolerance for the remaining slip that decays forever."""
 
 SOON = 3e-4
-"""Time, in units, in which a point must come to rest for that to be foreseen."""
+"""Longest time to rest, in units, of a point whose stop can be foreseen."""
 
 
 @scalar
 def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
-    """Bring a disc on a ring to rest if what is left of slip can be told; return whether the trajectory ends."""
+    """Bring a disc on a ring to rest if the end of slip is known; return whether the trajectory ends."""
     if not slip_left(lanes, lane)[0] < NEAR_REST * law.friction:
         return False
     if _creeps_out(lanes, memory, lane, law, aims):
@@ -61,10 +61,10 @@ def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aim
 
 @scalar
 def _creeps_out(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
-    """Tell whether a disc all but rests that slips ever more slowly for ever, and end its trajectory.
+    """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
 
-    That it can only where its pull does nothing but turn with the master disc. As a pin, see
-    ``pin.slip.creeps_steadily``: what is left of speed and way is far below the tolerance.
+    This is possible only if its pull just rotates with the master disc. As for a pin, see
+    ``pin.slip.creeps_steadily``, the remaining speed and distance are far below the tolerance.
     """
     s, left = slip_left(lanes, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
@@ -98,13 +98,13 @@ def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, ai
 
 @scalar
 def ring_slips(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Make ready a disc on a ring that slips."""
+    """Prepare a disc on a ring that slips."""
     put_slipping(lanes, lane, law, ring_rates)
 
 
 @scalar
 def points_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
-    """Hand over a disc on points that is about to rest, or one of whose points is."""
+    """Hand over a disc on points if it or one of its points is about to rest."""
     s, left = slip_left(lanes, lane)
     slow = s < NEAR_REST * law.friction
     if slow and _creeps_out(lanes, memory, lane, law, aims):
@@ -124,18 +124,21 @@ def points_rest(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, a
 
 @scalar
 def points_slip(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Make ready a disc on points that slips."""
+    """Prepare a disc on points that slips."""
     put_slipping(lanes, lane, law, points_rates)
 
 
 @scalar
 def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
-    """Let a disc on a ring rest as long as friction holds it, and begin to slip; return whether that is the end."""
+    """Keep a disc on a ring at rest as long as friction holds it, then begin slip.
+
+    Return whether the trajectory ends.
+    """
     x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:
         return True
-    memory.looks.count = memory.turns.count = 0  # they begin anew
+    memory.looks.count = memory.turns.count = 0  # discard earlier values
     friction = held_friction(law)
     held = stuck_for(z, friction, law)
     if held == math.inf:
@@ -155,7 +158,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     if held > 0.0:
         take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
-        # Its centre slips no farther than a pin that friction holds as firmly, and creeps inward where that does.
+        # Its centre slips no farther than an equally held pin, and creeps inward where such a pin does.
         centre, last = centre_of(law, friction), memory.peaks.values[0]
         if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
             memory.end, radius = STUCK, sticking_radius(centre)
@@ -171,7 +174,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
 
 @scalar
 def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Tell whether a point of contact slips slowly, ever more so, and could be held at rest."""
+    """Return whether a point of contact slips slowly, decelerates, and could be held at rest."""
     _, _, ux, uy, r, angle, _, _ = state_at(lanes.trial, lane)
     k = rates_at(lanes.trial, lane)
     most = law.friction / (len(law.around) // 2)
@@ -181,7 +184,8 @@ def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
         v = complex(ux, uy) + 1j * eta * r * arm
         if 0.0 < abs(v) < SOON * most:
             rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
-            # Without its own friction, and what that must be to hold it: see reference_model.motion.pivot.
+            # Acceleration without its own friction, and the friction that would hold it: see
+            # reference_model.motion.pivot.
             free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
             holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free
             falling = -(v.conjugate() * rate).real / abs(v)

@@ -1,9 +1,9 @@
-"""A disc's slip, for lanes: eq. 19 to 21 in stretched time, and how it comes to rest, rests and begins again.
+"""Slip of a disc in lanes: eq. 19 to 21 in stretched time, and its end, rest and beginning.
 
-Unknowns are x, y, the slip velocity u of the centre, r = κ(φ̇ − ω) with κ = √(J/m), and the angle φ. For (u, r)
-friction is the gradient of −g·P, the mean slip speed P(u, ηr) with η = R/κ, see
-:mod:`reference_model.motion.disc_equations`. In the stretched time dτ = dt·(s + s₀)/s, s² = |u|² + r², the
-equations are smooth and not stiff down to s = 0.
+The unknowns are x, y, the slip velocity u of the centre, r = κ(φ̇ − ω) with κ = √(J/m), and the angle φ. In (u, r)
+friction is the gradient of −g·P with the mean slip speed P(u, ηr), η = R/κ, see
+:mod:`reference_model.motion.disc_equations`. In the stretched time dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations
+are smooth and not stiff down to s = 0.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from reference_model.ensemble.core.laws import (
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 
 HALVINGS = 60
-"""Of an interval of order one: what is left is rounding."""
+"""Number of bisections of an interval of order one, down to rounding."""
 
 ANGLES = 64
-"""Parts of a half turn in which the direction of slip is looked for."""
+"""Number of parts of a half turn in the search for the direction of slip."""
 
 
 @inlined
@@ -45,19 +45,19 @@ def _rates(y: Tuple, law: DiscLaw, friction: tuple[float, float, float, float]) 
 
 @inlined
 def ring_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Return the rates of the unknowns of a disc on a ring by stretched time; then dt/dτ, and P times that."""
+    """Return the rates of the unknowns of a disc on a ring by stretched time, then dt/dτ and P·dt/dτ."""
     return _rates(y, law, ring_friction(y[2], y[3], y[4], y[5], law))
 
 
 @inlined
 def points_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Do as :func:`ring_rates` for points on a ring."""
+    """Return the rates of a disc on points, like :func:`ring_rates`."""
     return _rates(y, law, points_friction(y[2], y[3], y[4], y[5], law))
 
 
 @inlined
 def ring_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
-    """Return U − η|r| and its rate: where it is zero a point of the ring rests, and friction has infinite slopes."""
+    """Return U − η|r| and its rate; at zero a point of the ring rests and friction has infinite slopes."""
     _, _, ux, uy, r, _ = y
     u, w = math.sqrt(ux * ux + uy * uy), abs(r)
     rate = (ux * rates[2] + uy * rates[3]) / max(u, LEAST) - law.leverage * r * rates[4] / max(w, LEAST)
@@ -66,15 +66,15 @@ def ring_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
 
 @inlined
 def no_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
-    """Return what :func:`ring_edge` does where friction is smooth but at rest."""
+    """Return a constant edge, for friction that is smooth except at rest; see :func:`ring_edge`."""
     return 1.0, 0.0
 
 
 @scalar
 def held_friction(law: DiscLaw) -> float:
-    """Return the force that friction of a ring can hold beside the moment of the shaft, < 0 where not even that.
+    """Return the force that friction of a ring can hold together with the shaft's moment; < 0 if not even the moment.
 
-    As ``sticking.stuck_centre``: force and moment of the limit surface are those of slip with all ratios of U and W.
+    As in ``stick.stuck_centre``, the points of the limit surface are force and moment at all ratios of U and W.
     """
     asked = law.shaft_rate * abs(law.lag)
     most = law.friction * law.leverage
@@ -93,7 +93,7 @@ def held_friction(law: DiscLaw) -> float:
 
 @scalar
 def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
-    """Return how long a disc on a ring rests at ``z`` whose centre friction can hold with ``held``."""
+    """Return how long a disc on a ring rests at ``z`` if friction can hold its centre with the force ``held``."""
     if held < 0.0 or abs(pull(z, 0j, law)) > held:
         return 0.0
     return release_delay(z, centre_of(law, held))
@@ -101,15 +101,15 @@ def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
 
 @inlined
 def centre_of(law: DiscLaw, held: float) -> PinLaw:
-    """Return the pin that sticks where a disc on a ring does whose centre friction can hold with ``held``."""
+    """Return the pin that sticks exactly where the disc on a ring does; ``held`` is its friction."""
     return PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0)
 
 
 @scalar
 def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
-    """Return (n_u, n_r), along which slip begins, how fast it does, and what friction takes of that.
+    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction.
 
-    As ``sticking.slip_direction``.
+    As ``stick.slip_direction``.
     """
     towards = pull(z, 0j, law)
     strength = abs(towards)
@@ -135,7 +135,7 @@ def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
 
 @scalar
 def _growth(beta: float, strength: float, law: DiscLaw) -> tuple[float, float, float]:
-    """Return the parts of a − g∇P along n and across it for n = (cos β along the pull, sin β), and g·P(n)."""
+    """Return the components of a − g∇P along and across n = (cos β along the pull, sin β), and g·P(n)."""
     c, s = math.cos(beta), math.sin(beta)
     fx, _, fr, power = ring_friction(c, 0.0, s, 0.0, law)
     force = strength + law.friction * fx

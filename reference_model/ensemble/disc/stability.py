@@ -1,7 +1,8 @@
-"""Whether a steady motion of a disc attracts and is near, told in compiled code without eigenvalues.
+"""Stability of a steady motion of a disc and its distance, in compiled code without eigenvalues.
 
-With the derivative A of the rates f at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane in which eigenvalues decay
-to the inside of the unit circle. So its powers vanish if all do. A⁻¹f is what Newton's method would take off.
+With the derivative A of the rates f at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane of decaying eigenvalues to
+the inside of the unit circle. So its powers vanish exactly if all eigenvalues decay. A⁻¹f is the correction by
+Newton's method, which gives the distance.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ from reference_model.ensemble.core.stepping.linear import length_of, powers_vani
 from reference_model.systems import FloatArray
 
 APART = 1e-5
-"""Differences, in units of the motion, by which rates are differentiated."""
+"""Differences for the derivative of the rates, in units of the motion."""
 
 DIMENSION = 5
 
 
 @scalar
 def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Tell whether an equilibrium or a circle attracts that is no farther than ``near`` from z, v and r of a ring."""
+    """Return whether an equilibrium or a circle of a ring attracts and lies within ``near`` of z, v and r."""
     if circle:
         radius = max(abs(z), LEAST)
         along = (1.0 / radius) * v * z.conjugate()
@@ -67,7 +68,7 @@ def _square() -> FloatArray:
 
 @scalar
 def _rates(y: FloatArray, law: DiscLaw, circle: bool) -> tuple[float, float, float, float, float]:
-    """Return the rates of x, y, vx, vy, r or, as what turns with the centre, of ρ, v along and across, r, and 0."""
+    """Return the rates of x, y, vx, vy, r; for a circle, of ρ, v along and across the radius, r, and 0."""
     if circle:
         z, v, r = complex(y[0]), complex(y[1], y[2]), y[3]
     else:

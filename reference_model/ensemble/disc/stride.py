@@ -1,4 +1,4 @@
-"""Implicit steps of a disc in place of many short ones, in a lane that asks for them."""
+"""Implicit steps of a disc in place of many short ones."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def disc_stride_with(
     edge: Edge,
     collocate: Collocation,
 ) -> None:
-    """Put an implicit step in the place of the one on trial, with its flags, if that brings the disc much further.
+    """Replace the trial step and its flags by an implicit step, if that brings the disc much further.
 
     A step must not cross the ``edge`` of friction.
     """

@@ -1,15 +1,15 @@
-"""Neighbourhoods of a disc's equilibria and whirls that no motion leaves: what comes into one is decided.
+"""Trapping regions of a disc's equilibria and whirls: a motion that enters one is decided.
 
-About a motion at which all eigenvalues λ decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear
-motion. How far out it falls along the motion itself is seen on a fan of directions through the space of (x, y, vx,
-vy, r); about the circle of a whirl without offset, of (ρ, v along and across the radius, r), which turn with the
-centre. Where a sphere of V is crossed inwards everywhere, and so are those inside of it, all motion goes to the
-centre. Because the fan has gaps, half of V is taken.
+Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
+fan of directions shows how far out it falls along the true motion. The fan spans (x, y, vx, vy, r), or (ρ, v along
+and across the radius, r), which turn with the centre, about the circle of a whirl without offset. If all motion
+crosses a sphere of V and every smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is
+used.
 
-Friction of single points depends on the angle: a disc on points goes to and fro about what the ring would do. There
-the spheres must be crossed inwards at all angles from INNER of the size on, so that the motion ends inside of that.
+Friction of single points depends on the angle, so a disc on points oscillates about the motion on a ring. There the
+spheres must be crossed inwards at all angles from INNER of the size on, and the motion ends inside of that.
 
-With an offset a whirl is no circle, and shows itself only.
+With an offset a whirl is not a circle, and no region is known beforehand.
 """
 
 from __future__ import annotations
@@ -32,24 +32,24 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 DIRECTIONS, LEVELS = 4000, 60
 SMALLEST, LARGEST = 1e-4, 30.0
-"""Sizes of deviations that are looked at, in units of the motion."""
+"""Smallest and largest deviations that are tried, in units of the motion."""
 
 APART = 1e-6
-"""Differences by which the motion is linearised, in these units."""
+"""Differences for the linearisation, in these units."""
 
 INNER = 0.3
-"""Share of the size of a region inside of which a disc on points may stay."""
+"""Size of the part of a region where a disc on points finally remains, as a share of the region's size."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Multiples of it are spread evenly over 0..1."""
+"""Golden ratio, whose multiples are spread evenly over [0, 1]."""
 
 SAFE = 0.5
-"""Share of V taken of what the fan shows."""
+"""Share of the V given by the fan that is used."""
 
 
 @lru_cache(maxsize=64)
 def known_regions(disc: DiscOnDisc) -> NDArray[Any]:
-    """Return what is known of the stable motions of ``disc``, ``Region``, shape (m,)."""
+    """Return the known trapping regions of the stable motions of ``disc``, ``Region`` of shape (m,)."""
     ring = replace(disc, contact_points=None)
     regions = []
     try:
@@ -66,13 +66,13 @@ def known_regions(disc: DiscOnDisc) -> NDArray[Any]:
                 centre = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, turning])
                 regions.append(_region(disc, True, centre, whirl.radius, _turning))
     except ValueError:
-        return no_regions()  # a point of the ring rests there, and nothing can be linearised
+        return no_regions()  # a point of the ring rests there, and no linearisation exists
     known = [region for region in regions if region["level"] > 0.0]
     return np.array(known, dtype=layout(Region))
 
 
 def no_regions() -> NDArray[Any]:
-    """Return as much where nothing is known."""
+    """Return an empty array of regions."""
     return np.zeros(0, layout(Region))
 
 
@@ -83,7 +83,7 @@ def _gyration(disc: DiscOnDisc) -> float:
 def _accelerations(
     disc: DiscOnDisc, z: ComplexArray, v: ComplexArray, r: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return v̇, ṙ and the mean slip speed, by eq. 19 and 20, with points at angles that differ from row to row."""
+    """Return v̇, ṙ and the mean slip speed, by eq. 19 and 20, with contact points at angles that differ by row."""
     kappa, g = _gyration(disc), disc.friction_force / disc.mass
     u, w = v - 1j * disc.disc_speed * z, disc.contact_radius / kappa * r
     if disc.contact_points is None:

@@ -1,4 +1,4 @@
-"""An ensemble of pins, and a single one: from parameters to results."""
+"""Ensembles of pins and single pins: from parameters to results."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def simulate_pins(
     n: int,
     threads: int,
 ) -> Ensemble:
-    """Do as :func:`reference_model.ensemble.simulate_ensemble` with checked arguments, for ``n`` pins."""
+    """Simulate ``n`` pins like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     table = parameter_table(pin, PARAMETERS, varied)
-    known = nothing_known()  # an array that may be written to: the kernel is compiled for one kind
+    known = nothing_known()  # a writable array, because the kernel is compiled for one kind only
     if not varied:
         known[:] = known_ends(pin)
     local = tolerance_of_steps(tolerance)

@@ -1,46 +1,43 @@
-"""How a pin's end state is told while it moves, and from what it follows.
+"""Criteria for a pin's end state during its motion, and their justification.
 
-Stuck for ever
-    Turning with the disc, the pull that friction must balance has the constant part k²X₀ and one that turns, of the
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7). Exact. A pin a little beyond that largest radius
-    slips once a turn, for the shorter the closer it is: the pull exceeds g by δ for a time ~√δ, the slip is of the
-    size δ^(3/2), and its way, by which the radius changes, ~δ². That leads inward where k > |ω|, and there is no
-    radius in between that comes back to itself. So a pin of which a turn shows that it moves inward, by less than
-    what is left, creeps on for ever and never beyond that radius: it counts as stuck there
-    (``laws.creeps_by_turns``). Without offset it does not even rest in between, but slips ever more slowly, if it
-    is damped enough not to pass by (``slip.creeps_steadily``); the same is said of it when its time is up earlier, if
-    its slip is along the pull by then (``slip.creeps_slaved``).
+Permanent stick
+    In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside this largest
+    radius slips once per turn, more briefly the closer it is: if the pull exceeds g by δ, then for a time ~√δ, with
+    slip ~δ^(3/2), and the radius changes by ~δ². It decreases if k > |ω|, and no radius in between maps to itself.
+    So a pin that moves inward in a turn by less than the remaining distance creeps forever and never passes that
+    radius. It counts as stuck there (``laws.creeps_by_turns``). Without offset it does not even rest in between, but
+    slips ever more slowly, if damping prevents it from overshooting (``slip.creeps_steadily``). The same holds if the
+    simulation ends earlier, while slip is along the pull (``slip.creeps_slaved``).
 
 Self-centred
-    The motion is inside of a neighbourhood of the equilibrium (3) from which everything goes there: a level of a
-    quadratic form V. Where the parameters of all trajectories are the same, ``trapping`` finds it. Else it follows
-    from an estimate. With the deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
+    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
+    trajectories have the same parameters, ``trapping`` finds it. Otherwise it follows from an estimate. With the
+    deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
 
-    where c = β/m, s* = |ω|ρ*, and R is what the direction of slip has beyond its linear part, |R| <= g·(|δw|/s*)² for
-    |δw| <= s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) of each
-    oscillator but for coupling and R, which :func:`well_of` bounds: a small neighbourhood, reached late.
+    where c = β/m, s* = |ω|ρ*, and R is the nonlinear part of the direction of slip, |R| <= g·(|δw|/s*)² for |δw| <=
+    s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) for each
+    oscillator, except for coupling and R, which :func:`well_of` bounds. The region is small and reached late.
 
 Whirl
-    The places where x is largest make up a section that every closed orbit crosses once a turn. On it a stable orbit
-    is a fixed point, in whose neighbourhood the distance shrinks geometrically. Where the parameters of all
-    trajectories are the same, the orbit is found beforehand, and a neighbourhood that the return map contracts
-    (``trapping``): a trajectory that crosses the section in it stays in it. Else the trajectory itself must show it:
-    with d the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) is what
-    is left to go, and that must be below ACCURACY of the speed at the crossing, which would vanish at an
-    equilibrium. Distances that are nothing but noise count as well, as long as they do not grow. Since a motion may
-    come close to an orbit that is unstable and leave it later, the orbit must attract, too, and be as near by the
-    derivative of the return map (``stability``).
+    The points where x is largest form a section that every closed orbit crosses once per turn. A stable orbit is a
+    fixed point on the section, and the distance from it shrinks geometrically. If all trajectories have the same
+    parameters, the orbit is computed beforehand, with a neighbourhood that the return map contracts (``trapping``): a
+    trajectory that crosses the section there tends to the orbit. Otherwise its crossings must show convergence. If d
+    is the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) remains. This
+    must be below ACCURACY times the speed at the crossing, which would vanish at an equilibrium. Distances that are
+    only noise also count, as long as they do not grow. A motion may come close to an unstable orbit and leave it
+    later. So the orbit must also attract, and be as close by the derivative of the return map (``stability``).
 
-Stick–slip
-    Released pins of one set of parameters differ in a single number, their distance from the axis: from there on the
-    motion is the same. So all is said by how that distance changes from one release to the next, and it is judged as
-    the crossings above are. That it shrinks geometrically already shows that the cycle attracts: there is no other
-    direction in which a motion could leave it.
+Stick-slip
+    The state of a pin at its release is given by one number, its distance from the axis. So the change of that
+    distance from one release to the next is judged like the crossings above. Geometric convergence already shows that
+    the cycle attracts, because a motion cannot leave it in any other direction.
 
-A motion that meets none of these by the end stays undecided: of a pin without damping or without friction it may be
-for ever, and close to the boundary between two basins it may last.
+A motion that meets none of these criteria by the end stays undecided. A pin without damping or friction may never
+meet one, and close to a basin boundary it may take long.
 """
 
 from __future__ import annotations
@@ -68,7 +65,7 @@ class Form(NamedTuple):
 
 
 class Well(NamedTuple):
-    """The self-centred equilibrium z* (3), V, and the level below which all goes there; negative if none is known."""
+    """The self-centred equilibrium z* (3), V, and the level of its trapping region; negative if none is known."""
 
     place: complex
     form: Form
@@ -99,8 +96,8 @@ def well_of(law: PinLaw) -> Well:
         weight * (1.0 + across**2 / 2.0), 0.0, weight * across / 2.0,
         1.0, 0.0, weight,
     )  # fmt: skip
-    # With u² = ξ² + (ξ'/k)² and v² of η, kV falls by half of D·u² + κc·v² and more, but for R; and
-    # |δw| <= (k + |ω|)·√(u² + v²).
+    # With u² = ξ² + (ξ'/k)² and v² likewise for η, kV falls by at least half of D·u² + κc·v², except for R; and |δw|
+    # <= (k + |ω|)·√(u² + v²).
     swing = (k + abs(law.disc_speed)) / slip
     bound = min(along, weight * across) * k2 / (4.0 * g * swing**2)
     least_along, least_across = _least_share(along), _least_share(across)

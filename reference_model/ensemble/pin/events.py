@@ -1,4 +1,4 @@
-"""What is rare in a lane of pins: rest and release, crossings of the section, the end, and what they tell."""
+"""Rare events in a lane of pins: rest and release, crossings of the section, the end, and end states."""
 
 from __future__ import annotations
 
@@ -67,21 +67,21 @@ from reference_model.ensemble.pin.stability import orbit_attracts
 from reference_model.ensemble.pin.stride import stride
 
 SERIES_SHARE = 0.1
-"""Of the tolerance, for the last terms of the series by which slip begins."""
+"""Share of the tolerance for the last terms of the series of beginning slip."""
 
 SPENT_SHARE = 0.1
-"""Of the tolerance, for what is left of the slip, and of the way, of a pin that creeps to its place for ever."""
+"""Share of the tolerance for the remaining slip and distance of a pin that creeps forever."""
 
 REVERSAL_SLIP = 1e-13
-"""Slip, in units, below which slip that friction can't hold counts as turned."""
+"""Slip, in units, below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""In units of time: a crossing before it is the start itself, on the section but for rounding."""
+"""Earliest time of a crossing, in units; an earlier one is the start itself, on the section within rounding."""
 
 
 @written_out
 def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
-    """See to what the flag of a lane says; return whether its trajectory ends here."""
+    """Handle the flag of a lane; return whether its trajectory ends here."""
     law = law_of(lanes, lane)
     if int(lanes.flag[lane]) & STIFF:
         stride(lanes, memory, lane, law)
@@ -123,7 +123,7 @@ def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
 
 @scalar
 def watch_well(lanes: PinLanes, memory: PinMemory, lane: int, later: float, law: PinLaw, aims: Aims) -> bool:
-    """Look whether the motion is captured by the equilibrium, and say when to look again."""
+    """Check whether the motion is in the trapping region of the equilibrium, and set the next check."""
     if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
         lanes.watch[lane] = TURNS
     due = next_asked(memory, aims) if recorded(aims) else later + memory.tick
@@ -139,7 +139,7 @@ def watch_well(lanes: PinLanes, memory: PinMemory, lane: int, later: float, law:
 
 @scalar
 def in_well(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
-    """Tell whether the motion is captured by the equilibrium."""
+    """Return whether the motion is in the trapping region of the equilibrium."""
     level = memory.level
     if level <= 0.0:
         return False
@@ -151,7 +151,7 @@ def in_well(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
 def turn_made(
     lanes: PinLanes, memory: PinMemory, lane: int, step: DenseOutput, u: float, law: PinLaw, aims: Aims
 ) -> bool:
-    """Take note of a crossing of the section at u in a step; return whether the trajectory ends."""
+    """Record a crossing of the section at u in a step; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
     z, speed = place_on(step, u), velocity_on(step, u).imag
@@ -176,7 +176,7 @@ def turn_made(
         return False
     way = lanes.now.state.way[lane] + way_along(step, u, law.disc_speed)
     if memory.window.kind == OF_TURN:
-        # Where little is left the last distance may be small by chance, as noise is.
+        # Near convergence the last distance may be small by chance, like noise.
         share = distance / max(distance, before, first, 1e-300)
         period, near = t - memory.window.since, ACCURACY * abs(speed) * share
         if not orbit_attracts(z, velocity_on(step, u), period, law, came, near):
@@ -192,7 +192,7 @@ def turn_made(
 
 @scalar
 def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aims) -> bool:
-    """Tell whether the motion crosses the section where the known whirl attracts."""
+    """Return whether the motion crosses the section in the trapping region of the known whirl."""
     known, turn, metric, length = aims.known, aims.known.turn, aims.known.metric, memory.length
     if known.reach <= 0.0:
         return False
@@ -212,7 +212,7 @@ def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aim
 
 @written_out
 def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims: Aims) -> bool:
-    """Bring the pin to rest if what is left of slip can be told; return whether the trajectory ends."""
+    """Bring the pin to rest if the end of slip is known; return whether the trajectory ends."""
     z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     t, s = lanes.trial.state.time[lane], abs(w)
     creeps = creeps_steadily(z, w, law)
@@ -244,7 +244,7 @@ def rest(
 ) -> bool:
     """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before.
 
-    One that ``creeps`` slips so slowly that it might as well rest, for ever.
+    A pin that ``creeps`` slips so slowly that it counts as resting permanently.
     """
     end = memory.duration
     w = 0j
@@ -282,12 +282,12 @@ def rest(
         put_place(lanes.trial, lane, z, w)
     else:
         put_slipping(lanes, lane, z, w, law)
-    return t >= end  # one that has just begun to slip at the very end has ended too
+    return t >= end  # a pin that begins to slip at the very end has ended too
 
 
 @inlined
 def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
-    """Begin anew with crossings of the section."""
+    """Discard the crossings of the section so far."""
     memory.turns.count = 0
     if lanes.watch[lane] == RADII and memory.window.kind == OF_TURN:
         memory.window.kind = NO_WINDOW
@@ -296,7 +296,7 @@ def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
 
 @inlined
 def watched(lanes: PinLanes, lane: int) -> bool:
-    """Tell whether a lane is watched."""
+    """Return whether a lane is watched."""
     return bool(lanes.watch[lane] != UNWATCHED)
 
 
@@ -304,13 +304,13 @@ def watched(lanes: PinLanes, lane: int) -> bool:
 def released(
     lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, aims: Aims
 ) -> bool:
-    """Take note of a release at ``z``; return whether the trajectory ends."""
+    """Record a release at ``z``; return whether the trajectory ends."""
     if memory.end == STUCK:
         return False
     if memory.end == UNDECIDED and not watched(lanes, lane) and t < lanes.due[lane]:
         return False
     if not watched(lanes, lane) and memory.end != STICK_SLIP:
-        memory.end = UNDECIDED  # what it was, if anything, was not the end
+        memory.end = UNDECIDED  # the previous end state was not the end
         lanes.watch[lane] = TURNS
     radius, largest = abs(z), sticking_radius(law)
     releases = memory.releases
@@ -335,7 +335,7 @@ def released(
 
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Say at the very end what can be said: also of a pin whose slip is not yet slow enough for a closed form."""
+    """Decide the end state at the very end, also of a pin whose slip is not yet slow enough for a closed form."""
     z = place_at(lanes.trial, lane)
     if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
         radius = sticking_radius(law)

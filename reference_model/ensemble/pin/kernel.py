@@ -1,4 +1,4 @@
-"""An ensemble of pins: how a lane is loaded and stored, and all of them run."""
+"""The kernel of pins: loading and storing a lane, and running all trajectories."""
 
 from __future__ import annotations
 
@@ -45,27 +45,27 @@ from reference_model.systems import FloatArray
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units of time: measured, more makes steps shorter, less makes rest and release stiffer."""
+"""s₀ over g, in units of time. By measurement, more makes steps shorter and less makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
-"""Slip speed, in units of g, below which a pin that friction does not bring to rest starts with implicit steps."""
+"""Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
 
 TICK_TURNS = 4.0
-"""Free periods after which a motion that is never rightmost is looked at nevertheless."""
+"""Number of free periods without a crossing that lead to a check anyway."""
 
 LAST_TICKS = 4.0
-"""So many ticks before its end a motion that is not to be ended early begins to be watched."""
+"""Number of final ticks when a motion without early end is watched."""
 
 
 PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
-"""Of a pin, in the order in which the kernel takes them."""
+"""Parameters of a pin, in the order of the kernel."""
 
 
 class PinTask(NamedTuple):
-    """What is to be done.
+    """Input of the kernel.
 
-    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), their ``paces``
-    (1 or n, 5) if they are checkpoints, ``durations`` in s (1 or n,).
+    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), their ``paces`` (1 or n, 5) if
+    they are checkpoints, ``durations`` in s (1 or n,).
     """
 
     parameters: FloatArray
@@ -76,7 +76,7 @@ class PinTask(NamedTuple):
 
 @written_out
 def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTask, aims: Aims) -> bool:
-    """Put the start of a trajectory into the trial of a lane."""
+    """Write the start of a trajectory to the trial of a lane; return whether it has ended."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
     x, y, vx, vy = row_of(task.starts, number)
     duration = float(row_of(task.durations, number))
@@ -138,7 +138,7 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
 
 @inlined
 def expect_ends(memory: PinMemory, law: PinLaw, aims: Aims) -> None:
-    """Say where all goes to the equilibrium, as far as that is known, and when to look whether it does."""
+    """Store the trapping region of the equilibrium, if known, and the time of the first check."""
     well, known = well_of(law), aims.known
     memory.equilibrium, memory.level = well.place, well.level
     fill(memory.form, well.form)
@@ -150,7 +150,7 @@ def expect_ends(memory: PinMemory, law: PinLaw, aims: Aims) -> None:
 
 @scalar
 def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> None:
-    """Write down the result of a lane in SI units."""
+    """Write the result of a lane in SI units."""
     number, length, found = memory.number, memory.length, memory.found
     z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     put_state(results.states[number], memory, z, w, law_of(lanes, lane))
@@ -172,7 +172,7 @@ def run_pins(task: PinTask, aims: Aims, results: Results, first: int, last: int)
 
 @inlined
 def _run_pins(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
-    """Do so. As a function of its own it takes a fifth longer to compile, and runs a sixth faster."""
+    """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
         load, advance, advance_alone, attend, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, aims, results,

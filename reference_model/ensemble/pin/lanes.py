@@ -1,4 +1,4 @@
-"""The pin in lanes: what stands there, the step of all lanes, and what a single lane does at rest and at its end."""
+"""The lanes of pins: their data, the step of all lanes, and operations on a single lane."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reference_model.ensemble.pin.slip import pin_rates
 
 
 class PinState(NamedTuple):
-    """Place, slip velocity, time and way slipped, scaled as in a unit; or the rates of all by stretched time."""
+    """Position, slip velocity, time and slip distance, scaled; or their rates by stretched time."""
 
     x: float
     y: float
@@ -24,7 +24,7 @@ class PinState(NamedTuple):
 
 
 class Moment(Record):
-    """The motion at one time, with its rates, and the step that comes."""
+    """The motion at one time, with its rates, and the next step."""
 
     state: Rows[PinState]
     rates: Rows[PinState]
@@ -32,11 +32,11 @@ class Moment(Record):
 
 
 class PinLanes(Record):
-    """All lanes: the motion now and after the step on trial, and the law.
+    """All lanes: the motion now and after the trial step, and the law.
 
-    The tolerance of a step; the slip speed below which rest may be near; the time at which the lane wants to be
-    attended; how closely it is watched; why it wants to be attended; steps so far and at most; how many of the last
-    were short.
+    Further fields are the tolerance of a step; the slip speed below which rest may be near; when the lane next needs
+    attention (``due``); how closely it is watched; why it needs attention (``flag``); the number of steps so far and
+    the largest allowed; and the number of successive short steps.
     """
 
     now: Moment
@@ -53,32 +53,37 @@ class PinLanes(Record):
 
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
-"""A lane may be attended whenever x is largest, and also whenever the radius is largest or smallest."""
+"""Degrees of watching: attention also when x is largest, and when the radius is largest or smallest too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip is about to end; the time has come; x was largest; so was the radius, or smallest; step
-size or number of steps are beyond what is sensible; an implicit step may be worth its while."""
+"""Flags, which add up: slip is about to end.
+
+The due time has come; x was largest; the radius was largest or smallest; step size or number of steps are out of
+bounds; an implicit step may be worthwhile.
+"""
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
-"""A motion that takes more steps than these, the second in a unit of time, is given up, undecided."""
+"""Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
-"""Time, in its unit, below which a step is short, and so many of them one after the other are more than coming to
-rest or letting go takes: it is stability that limits them. One implicit step costs as much as some 50 of a single
-trajectory, or a thousand of one among others in lanes."""
+"""Duration, in units of time, of a short step, and number of successive ones that indicates a limit by stability.
+
+Coming to rest or release takes fewer. One implicit step costs as much as some 50 steps of a single trajectory, or a
+thousand of one among others in lanes.
+"""
 
 SMALLEST_STEP = 1e-13
 
 LANDING = 1e-9
-"""Distance from the end, in units of time, that is bridged by the rates: the error is of its square."""
+"""Distance from the end, in units of time, that is bridged by the rates, with an error of its square."""
 
 FIRST_STEP = 0.3
-"""Of a trajectory and after a rest, in units of time where slip is fast."""
+"""First step of a trajectory and after a rest, in units of time, if slip is fast."""
 
 
 @written_out
 def _advance_in(lanes: PinLanes, count: int) -> None:
-    """Make a trial step in the first ``count``; where its error is too large the trial is the old state."""
+    """Make a trial step in the first ``count`` lanes; where its error is too large the trial is the old state."""
     wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):
@@ -124,7 +129,7 @@ def advance_alone(lanes: PinLanes, _: None) -> None:
 def reasons(
     state: PinState, k: PinState, new: PinState, k1: PinState, due: float, slow: float, watch: float
 ) -> float:
-    """Return the flags of a step from ``state`` with the rates ``k`` to what is ``new``, with the rates ``k1``."""
+    """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
     resting = (new.wx * new.wx + new.wy * new.wy < slow * slow) & (new.wx * k1.wx + new.wy * k1.wy < 0.0)
     rightmost = (k.x > 0.0) & (k1.x <= 0.0) & (watch >= TURNS)
     turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
@@ -137,7 +142,7 @@ def reasons(
 
 @scalar
 def idle(lanes: PinLanes, lane: int) -> None:
-    """Put into a lane what goes on for ever without being attended."""
+    """Fill a lane with a motion that continues forever without attention."""
     trial = lanes.trial
     put(lanes.law, lane, PinLaw(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -161,7 +166,7 @@ def state_at(moment: Moment, lane: int) -> PinState:
 
 @inlined
 def rates_at(moment: Moment, lane: int) -> PinState:
-    """Return its rates."""
+    """Return the rates in a lane."""
     return PinState(*at(moment.rates, lane))
 
 
@@ -179,7 +184,7 @@ def slip_at(moment: Moment, lane: int) -> complex:
 
 @scalar
 def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Put a slipping pin into the trial of a lane, with a first step."""
+    """Write a slipping pin to the trial of a lane, with a first step."""
     put_motion(lanes.trial, lane, z, w, law)
     lanes.short[lane] = 0.0
     h = FIRST_STEP
@@ -190,23 +195,23 @@ def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw
 
 @inlined
 def put_motion(moment: Moment, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Put a slipping pin and its rates into a lane."""
+    """Write a slipping pin and its rates to a lane."""
     put_place(moment, lane, z, w)
     put(moment.rates, lane, pin_rates((z.real, z.imag, w.real, w.imag), law))
 
 
 @inlined
 def put_place(moment: Moment, lane: int, z: complex, w: complex) -> None:
-    """Put place and slip velocity into a lane."""
+    """Write position and slip velocity to a lane."""
     state = moment.state
     state.x[lane], state.y[lane], state.wx[lane], state.wy[lane] = z.real, z.imag, w.real, w.imag
 
 
 @scalar
 def landed(lanes: PinLanes, lane: int, end: float) -> bool:
-    """Tell whether the step ends at the time ``end``, and put it there; else take it back, to be done shorter.
+    """Move the trial to the time ``end`` if it is close; otherwise reject it for a shorter step. Return which.
 
-    By Newton's method on the step: its rate of time at the end is known.
+    Both use the known rate of time at the end of the step, as Newton's method does.
     """
     now, trial = lanes.now, lanes.trial
     state, rates = trial.state, trial.rates
@@ -228,7 +233,7 @@ def landed(lanes: PinLanes, lane: int, end: float) -> bool:
 
 @inlined
 def motion(z: complex, w: complex, law: PinLaw) -> Motion:
-    """Return place, velocity, acceleration and jerk of a slipping pin."""
+    """Return position, velocity, acceleration and jerk of a slipping pin."""
     s = size_of(w)
     n = w / s
     turn = complex(0.0, law.disc_speed)

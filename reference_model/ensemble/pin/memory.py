@@ -1,4 +1,4 @@
-"""What scalar code keeps of each lane of pins, and the window that measures an end state."""
+"""Data of scalar code for each lane of pins, and the window that measures an end state."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OF_TURN, OF_RELEASE = 1, 2
 
 
 class Crossing(NamedTuple):
-    """Of the section where x is largest: x, y and ẏ over k."""
+    """A crossing of the section where x is largest: x, y and ẏ/k."""
 
     x: float
     y: float
@@ -32,7 +32,7 @@ class Crossing(NamedTuple):
 
 
 class SectionForm(NamedTuple):
-    """The upper half of a quadratic form in them."""
+    """The upper half of a quadratic form in the components of a crossing."""
 
     xx: float
     xy: float
@@ -43,11 +43,11 @@ class SectionForm(NamedTuple):
 
 
 class KnownEnds(Record):
-    """What is known of end states beforehand, if the parameters are the same for all; in m and s.
+    """Known end states, if all trajectories have the same parameters; in m and s.
 
-    ``level`` and ``form`` of the equilibrium's neighbourhood; ``reach``, the level of that of the whirl, where it
-    crosses the section and the form there, and its ``measures``. Level or reach are 0 where
-    nothing is known.
+    ``level`` and ``form`` describe the trapping region of the equilibrium. ``reach`` is the level of that of the
+    whirl, ``turn`` its crossing of the section, ``metric`` the form there, and ``measures`` its measures. Level or
+    reach are 0 if unknown.
     """
 
     level: float
@@ -59,7 +59,7 @@ class KnownEnds(Record):
 
 
 class Turns(Record):
-    """Crossings of the section: the place of the last one, ẏ there, the last two distances, and how many."""
+    """Crossings of the section: position and ẏ at the last one, the last two distances, and their number."""
 
     place: complex
     speed: float
@@ -69,7 +69,7 @@ class Turns(Record):
 
 
 class Releases(Record):
-    """The radius of the last release, the last two distances, and how many."""
+    """Radius of the last release, the last two distances, and their number."""
 
     radius: float
     last: float
@@ -78,11 +78,11 @@ class Releases(Record):
 
 
 class PinMemory(Record):
-    """Of a lane: the number of its trajectory, units, duration in units, end state so far and its measures.
+    """Data of a lane: number of the trajectory, units, duration in units, end state so far and its measures.
 
-    The self-centred equilibrium with the level of the form below which all goes there, and when to look next;
-    crossings and releases so far, and the window in which one may show to be the end state. How long an implicit step
-    may be, how many checkpoints have been taken, and how many of the times asked for are passed.
+    Further fields are the self-centred equilibrium with its trapping region and the time between checks; crossings
+    and releases so far, and the window for measuring an end state; the proposed implicit step, the number of
+    checkpoints taken, and the number of requested times passed.
     """
 
     number: int
@@ -104,11 +104,11 @@ class PinMemory(Record):
 
 
 class Aims(NamedTuple):
-    """What scalar code must know of the task; few arrays, since each costs time in every call.
+    """Settings for scalar code; few arrays, because each costs time in every call.
 
-    ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section;
-    ``known`` is what is known of end states beforehand; ``series`` is room for how slip begins, and ``checkpoints``
-    for those of a single trajectory, none where they are not asked for.
+    ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section.
+    ``known`` contains the known end states, ``series`` is work space for the start of slip, and ``checkpoints`` is
+    room for those of a single trajectory, empty if not requested.
     """
 
     tolerance: float
@@ -120,25 +120,25 @@ class Aims(NamedTuple):
 
 
 def nothing_known() -> NDArray[Any]:
-    """Return ``KnownEnds`` of which nothing is known, shape (1,)."""
+    """Return ``KnownEnds`` without any known end state, shape (1,)."""
     return np.zeros(1, layout(KnownEnds))
 
 
 def aims_of(tolerance: float, early: bool, once: bool, known: NDArray[Any], checkpoints: Checkpoints) -> Aims:
-    """Return the aims of one call of the kernel, with room for series; ``known``, shape (1,), are ``KnownEnds``."""
+    """Return the aims of one call of the kernel, with work space; ``known``, shape (1,), are ``KnownEnds``."""
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
     return Aims(tolerance, early, once, known[0], series, checkpoints)
 
 
 @inlined
 def keep(memory: PinMemory, least: float, largest: float, slip: float) -> None:
-    """Keep the measures of the end state: radii and mean slip speed."""
+    """Store the measures of the end state: radii and mean slip speed."""
     fill(memory.found, Measures(least, largest, slip))
 
 
 @scalar
 def close_window(memory: PinMemory, end: int, t: float, way: float, radius: float) -> None:
-    """Take the end state as found, with its measures."""
+    """Store the end state and its measures."""
     see_radius(memory.window, radius)
     fill(memory.found, measured(memory.window, t, way))
     memory.end, memory.window.kind = end, NO_WINDOW
@@ -148,7 +148,7 @@ def close_window(memory: PinMemory, end: int, t: float, way: float, radius: floa
 def take_checkpoint(
     memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, aims: Aims
 ) -> None:
-    """Take a checkpoint of where a trajectory is, while there is room."""
+    """Store a checkpoint of a trajectory, while there is room."""
     if memory.checkpoints < aims.checkpoints.size:
         checkpoint = aims.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
@@ -160,7 +160,7 @@ def take_checkpoint(
 def pass_asked(
     lanes: PinLanes, moment: Moment, memory: PinMemory, lane: int, until: float, law: PinLaw, aims: Aims
 ) -> None:
-    """Take a checkpoint of a ``moment`` of a lane if times are asked for from there to the time ``until``."""
+    """Store a checkpoint of a ``moment`` of a lane if times between it and ``until`` are requested."""
     if passes_asked(lanes, moment, memory, lane, until, aims):
         t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
         take_checkpoint(memory, ON_THE_WAY, t, z, w, law, aims)
@@ -168,7 +168,7 @@ def pass_asked(
 
 @scalar
 def put_state(state: FloatArray, memory: PinMemory, z: complex, w: complex, law: PinLaw) -> None:
-    """Put x, y, vx, vy into ``state`` (4,), in SI units."""
+    """Write x, y, vx, vy to ``state`` (4,), in SI units."""
     length, rate = memory.length, memory.rate
     state[0], state[1] = z.real * length, z.imag * length
     state[2] = (w.real - law.disc_speed * z.imag) * length * rate

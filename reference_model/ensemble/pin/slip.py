@@ -1,8 +1,8 @@
-"""A pin's slip, for lanes: eq. 1 in stretched time, how slip comes to rest, how long rest lasts, how slip begins.
+"""Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, the duration of rest, and the start of slip.
 
-As everywhere, z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time
-dτ = dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and far from rest they are as
-they were: one right-hand side serves all lanes, whether they slip fast or are about to rest.
+As elsewhere z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ =
+dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and almost unchanged far from rest.
+So one right-hand side serves all lanes, whether they slip fast or are about to rest.
 """
 
 from __future__ import annotations
@@ -22,26 +22,28 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Terms of the series by which slip begins, usually and where it stays slow: see STIFF.
+"""Number of terms of the series of beginning slip, usually and where it stays slow: see STIFF.
 
-What a short series leaves out is an error of direction, which slip forgets.
+The truncation error of a short series is an error of direction, which slip forgets.
 """
 
 STIFF = 100.0
-"""Time, in units of slip speed over g, in which slip is expected to have grown out of slowness. Where it has not,
-friction exceeds the pull but just, slip is a short excursion, and a longer series goes to its end in place of many
-stiff steps."""
+"""Time, in units of slip speed over g, that slip normally needs to become fast.
+
+Otherwise friction only just exceeds the pull and slip is a short excursion. A longer series then replaces many stiff
+steps.
+"""
 
 SLAVED = 0.02
-"""Share of the rate at which slip is drawn to its direction up to which what turns it is slow."""
+"""Largest slow rotation, as a share of the rate g/s of friction that aligns slip with the pull."""
 
 PLACES = 8
-"""Places at least at which the series is looked at for whether slip ends again."""
+"""Smallest number of points for checking whether the series reaches the end of slip."""
 
 
 @inlined
 def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
-    """Return the rates of x, y and of the slip velocity by stretched time, dt/dτ, and that times the slip speed."""
+    """Return the rates of x, y and the slip velocity by stretched time, dt/dτ, and dt/dτ times the slip speed."""
     x, y_, wx, wy = y
     s = math.sqrt(wx * wx + wy * wy)
     pace = 1.0 / (s + law.stretching)
@@ -56,10 +58,10 @@ def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
 
 @scalar
 def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float:
-    """Return the time after which slip ends, or inf where that can't yet be told to ``tolerance``.
+    """Return the time to the end of slip, or inf if it is not yet known to ``tolerance``.
 
-    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g², whatever the direction of slip: so that what is left of slip
-    lasts for (g·s + Re(ā·w))/(g² − |a|²). That a changes meanwhile adds ȧ·t²/2 to w.
+    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g², whatever the direction of slip. So slip ends after (g·s +
+    Re(ā·w))/(g² − |a|²). The change of a meanwhile adds ȧ·t²/2 to w.
     """
     g, s = law.friction, abs(w)
     a = pull(z, w, law)
@@ -70,23 +72,23 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
     v = w + 1j * law.disc_speed * z
     acceleration = a - g * w / s + 1j * law.disc_speed * v
     change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
-    turn = abs(a) * s  # of the place, if the direction of slip changes altogether
+    turn = abs(a) * s  # rotation of the position if the direction of slip changes completely
     return left if left * left * (change + turn / s) < tolerance else math.inf
 
 
 @scalar
 def turns_steadily(law: PinLaw) -> bool:
-    """Tell whether the pull of a pin at rest does nothing but turn with the disc, so that friction may hold it."""
+    """Return whether the pull of a pin at rest only rotates with the disc, so friction may hold it permanently."""
     return law.offset == 0.0 or law.disc_speed == 0.0
 
 
 @scalar
 def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
-    """Tell whether the slow slip of a pin dies out for ever, without rest: see :func:`turns_steadily`.
+    """Return whether the slow slip of a pin decays forever without rest: see :func:`turns_steadily`.
 
-    Its speed s is along the pull, which turns with it, and e is by how much that would exceed g at rest. They go by
-    s' = e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, on a disc at rest with an offset too. If it is
-    overdamped and e >= c·s/2 the speed never comes to zero.
+    Its speed s is along the pull, which turns with it; e is the excess of the pull at rest over g. They satisfy s' =
+    e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, also on a disc at rest with an offset. If it is
+    overdamped and e >= c·s/2 the speed never reaches zero.
     """
     inward = law.stiffness - law.disc_speed**2
     excess = abs(pull(z, 0j, law)) - law.friction
@@ -96,11 +98,11 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
-    """Tell of slip that need not be slow whether it is along the pull closely enough to do as it will do when slow.
+    """Return whether slip, which need not be slow, follows the pull closely enough to decay like slow slip.
 
-    Friction draws the direction of slip to that of the pull at the rate g/s. What turns either is slower by SLAVED or
-    more, and so are the terms that s' = e − c·s and e' = −K·s of :func:`creeps_steadily` leave out; these leave s > 0
-    for ever if e >= μ·s with μ = (c − √(c² − 4K))/2, and e >= c·s/2 is more than that.
+    Friction draws the direction of slip to that of the pull at the rate g/s. The rotation of either is slower by
+    SLAVED or more, and so are the terms omitted in s' = e − c·s and e' = −K·s of :func:`creeps_steadily`. These
+    equations keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and e >= c·s/2 implies that.
     """
     a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
     across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0
@@ -110,7 +112,7 @@ def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeping_ends(z: complex, law: PinLaw) -> complex:
-    """Return the place on the disc, of a pin that :func:`creeps_steadily` at ``z``, where friction would hold it."""
+    """Return where on the disc friction holds a pin that :func:`creeps_steadily` from ``z``."""
     a = pull(z, 0j, law)
     return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 
@@ -119,10 +121,10 @@ def creeping_ends(z: complex, law: PinLaw) -> complex:
 def begin_slip(
     z: complex, law: PinLaw, tolerance: float, longest: float, work: ComplexArray
 ) -> tuple[complex, complex, float, float]:
-    """Return place, slip velocity, duration and way of slip that begins from rest at ``z``; the slip is 0 if it ends.
+    """Return position, slip velocity, duration and distance of slip from rest at ``z``; the slip is 0 if it ends.
 
-    The series of ``sticking.slip_from_rest``, which says how it comes about, as far as its last terms stay below
-    ``tolerance``, and up to ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
+    It follows the series of ``stick.slip_from_rest`` as long as its last terms stay below ``tolerance``, and up to
+    ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
     """
     terms = TERMS
     duration = _series(z, law, 1, terms, tolerance, longest, work)
@@ -136,7 +138,7 @@ def begin_slip(
 def _series(
     z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: ComplexArray
 ) -> float:
-    """Put terms from ``first`` on into ``work``, which holds those before; return up to when they can be taken."""
+    """Write the terms from ``first`` on to ``work``, which contains the earlier ones; return the valid duration."""
     position, velocity, acceleration, slip, direction = work[0], work[1], work[2], work[3], work[4]
     theta, speed = work[5].real, work[5].imag
     omega = 1j * law.disc_speed
@@ -174,11 +176,11 @@ def _series(
 def _along(
     position: ComplexArray, slip: ComplexArray, speed: FloatArray, terms: int, duration: float
 ) -> tuple[complex, complex, float, float]:
-    """Return place, slip velocity, duration and way at the end of the series, or where slip ends before."""
+    """Return position, slip velocity, duration and distance at the end of the series, or where slip ends earlier."""
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
     a, b, c = speed[1], speed[2], speed[3]
-    if c < 0.0 < b * b - 4.0 * a * c:  # where slip ends by these terms, which holds if that is soon
+    if c < 0.0 < b * b - 4.0 * a * c:  # the end of slip by these terms, which is accurate if it comes soon
         soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
         spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing
     while not last and not ends:
@@ -205,7 +207,7 @@ def _along(
 
 @inlined
 def _sum(coefficients: NDArray[Number], first: int, terms: int, t: float) -> Number:
-    """Return the sum of coefficients·t^(k − first), k from ``first`` on."""
+    """Return the sum of coefficients·t^(k − first), for k from ``first`` on."""
     total: Number = coefficients[terms]
     for k in range(terms - 1, first - 1, -1):
         total = total * t + coefficients[k]

@@ -1,11 +1,12 @@
-"""Whether a closed orbit of a slipping pin attracts, told in compiled code: by the derivative of its return map.
+"""Stability of a closed orbit of a slipping pin in compiled code, by the derivative of its return map.
 
-Small deviations (δz, δv) of a motion go by the linear equations::
+Small deviations (δz, δv) of a motion satisfy the linear equations::
 
     δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
-where w = s·n is the slip velocity: its direction n turns, with what is across it. Three of them, on the section where
-x is largest, are followed for one turn together with the motion itself by the classical method of fourth order.
+where w = s·n is the slip velocity, whose direction n changes with the component of δw across it. Three deviations on
+the section where x is largest are followed for one turn together with the motion, by the classical Runge-Kutta method
+of fourth order.
 """
 
 from __future__ import annotations
@@ -24,27 +25,28 @@ from reference_model.ensemble.core.stepping.linear import (
 from reference_model.systems import FloatArray
 
 STRIDE, STABLE = 0.5, 1.5
-"""Step, in units of time or of that in which the slip velocity changes by itself; and in those in which deviations
-decay by damping and friction, at the rate c + g/s: the method is stable up to 2.8 of them.
+"""Step sizes, in units of time or of the time scale of the slip velocity, and in units of 1/(c + g/s).
 
-The multipliers of Fig. 5's whirls err by 1e-5, and by 1e-3 where slip all but ends in a turn.
+Deviations decay by damping and friction at the rate c + g/s; the method is stable up to 2.8 units of 1/(c + g/s). The
+multipliers of Fig. 5's whirls have errors of 1e-5, and of 1e-3 if slip almost ends in a turn.
 """
 
 MOST_STRIDES = 20_000
-"""In a turn: with more, slip all but ends in it."""
+"""Largest number of steps in a turn; more are needed only if slip almost ends."""
 
 COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0))
-"""Of each stage: how far its rates carry the next, and their weight in the step."""
+"""Per stage, how far its rates carry the next stage, and their weight in the step."""
 
 
 @written_out
 def orbit_attracts(
     z: complex, v: complex, period: float, law: PinLaw, came: tuple[float, float, float], near: float
 ) -> bool:
-    """Tell whether an orbit attracts on which a pin has place z and velocity v where x is largest, and is near.
+    """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
-    ``came`` is by how much x, y and ẏ differ there from the crossing before. With the derivative M of the return map
-    the orbit crosses by (1 − M)⁻¹ times that from the crossing before, and it may be up to ``near`` from this one.
+    ``came`` is the difference of x, y and ẏ from the previous crossing. With the derivative M of the return map, the
+    crossing of the orbit differs from the previous crossing by (1 − M)⁻¹ times ``came``. It may be up to ``near``
+    from this crossing.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):
@@ -61,7 +63,10 @@ def orbit_attracts(
 
 @scalar
 def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: FloatArray) -> bool:
-    """Put the derivative of the return map in (x, y, ẏ) into ``derivative``; tell whether the turn could be made."""
+    """Write the derivative of the return map in (x, y, ẏ) to ``derivative``.
+
+    Return whether the turn was completed.
+    """
     work = complex_zeros(32).reshape(4, 4, 2)
     y, stage, change, rates = work[0], work[1], work[2], work[3]
     y[0, 0], y[0, 1], y[1, 0], y[2, 0], y[3, 1] = z, v, 1.0, 1j, 1j
@@ -98,7 +103,7 @@ def return_derivative(z: complex, v: complex, period: float, law: PinLaw, deriva
 
 @scalar
 def _put_rates(y: ComplexArray, law: PinLaw, rates: ComplexArray) -> None:
-    """Put the rates of the motion, the first row of ``y``, and of deviations from it, the others, into ``rates``."""
+    """Write the rates of the motion, the first row of ``y``, and of its deviations, the other rows, to ``rates``."""
     turn = complex(0.0, law.disc_speed)
     z, v = y[0, 0], y[0, 1]
     w = v - turn * z

@@ -1,4 +1,4 @@
-"""Implicit steps of a pin in place of many short ones, in a lane that asks for them."""
+"""Implicit steps of a pin in place of many short ones."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from reference_model.ensemble.pin.memory import PinMemory
 
 @written_out
 def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Put an implicit step in the place of the one on trial, with its flags, if that brings the pin much further."""
+    """Replace the trial step and its flags by an implicit step, if that brings the pin much further."""
     now, trial = lanes.now, lanes.trial
     t, share = now.state.time[lane], now.rates.time[lane]
     short = now.step[lane] * share
@@ -37,7 +37,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     least = min(WORTH * short, left)
     span = first_try(memory.span, least, left)
     start, guess = np.array((w.real, w.imag)), np.array((w.real, w.imag))
-    if law.friction * span > abs(w):  # drawn to the direction of the pull by far
+    if law.friction * span > abs(w):  # slaved to the direction of the pull
         a = pull(z, w, law)
         guess[0], guess[1] = abs(w) / abs(a) * a.real, abs(w) / abs(a) * a.imag
     z, wx, wy, _, _, took, way, following = stride_with(
@@ -54,7 +54,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
         return
     put_motion(trial, lane, z, complex(wx, wy), law)
     trial.state.time[lane] = t + took if took < left else memory.duration
-    trial.step[lane] = now.step[lane]  # the step on trial tells nothing of it
+    trial.step[lane] = now.step[lane]  # the trial step gives no estimate for it
     trial.state.way[lane] = now.state.way[lane] + way
     lanes.flag[lane] = reasons(
         state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),

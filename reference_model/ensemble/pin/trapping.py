@@ -1,10 +1,10 @@
-"""Neighbourhoods of a pin's equilibrium and whirl from which everything goes there, for one set of parameters.
+"""Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
-Of both, a map is known that the motion repeats: that over a given time, and the return to the section where x is
-largest. Near a stable fixed point the map contracts in the norm xᵀPx with MᵀPM − P = −1, M its derivative. How far
-that goes on is found out by the map itself: it is applied to points all over the surface of larger and larger
-ellipsoids, as far as each comes back to an ellipsoid that is clearly smaller, without stick on a whirl. What lies
-inside of all these is drawn in.
+For both a map is known that the motion repeats: the flow over a given time, and the return to the section where x is
+largest. Near a stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The
+map itself shows how far this extends. It is applied to points on the surface of ever larger ellipsoids, as long as
+each image lies in a clearly smaller ellipsoid, on a whirl without stick. All motions inside these ellipsoids are
+attracted.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from reference_model.formulas.pin import equilibrium_position, whirl_frequency, 
 from reference_model.systems import FloatArray, PinOnDisc
 
 Map = Callable[[FloatArray], FloatArray]
-"""Takes points (n, d) and returns where they are after a turn, NaN where that is not of the kind."""
+"""Takes points (n, d) and returns their images after a turn, NaN if the motion is of another kind."""
 
 TOLERANCE = 1e-10
-"""Of the maps, whatever that of the trajectories: derivatives are taken of them."""
+"""Tolerance of the maps, whatever that of the trajectories, because they are differentiated."""
 
 DIRECTIONS = 128
-"""Points on the surface of an ellipsoid."""
+"""Number of points on the surface of an ellipsoid."""
 
 GROWTH = 1.25
-"""From one ellipsoid to the next, linear; the first is FIRST of the size of the motion."""
+"""Linear growth from one ellipsoid to the next; the first is FIRST of the size of the motion."""
 
 FIRST = 1e-2
 
@@ -47,10 +47,10 @@ ASKED_FOR = 0.25
 MOST_ELLIPSOIDS = 40
 
 TURNS = 2
-"""Free periods that the map about the equilibrium takes: more leave time for larger deviations to come back."""
+"""Free periods of the map about the equilibrium; with more, larger deviations have time to return."""
 
 LONGEST = 100.0
-"""Time in which the whirl must have been reached from the circle without offset, in units of m/β."""
+"""Longest time from the circle without offset to the whirl, in units of m/β."""
 
 NEWTON_STEPS = 3
 
@@ -60,9 +60,9 @@ DIFFERENCE = 1e-4
 
 @lru_cache(maxsize=64)
 def known_ends(pin: PinOnDisc) -> NDArray[Any]:
-    """Return what is known of the end states of ``pin``, ``KnownEnds``, shape (1,); zeros where nothing is.
+    """Return the known ends of ``pin``, ``KnownEnds`` of shape (1,), with zeros where nothing is known.
 
-    It takes some ten milliseconds, which a sweep in many parts should spend once.
+    This takes some ten milliseconds, which a sweep in many parts should spend once.
     """
     known = nothing_known()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
@@ -123,14 +123,13 @@ def _look_about_whirl(pin: PinOnDisc, known: NDArray[Any]) -> None:
         for _ in range(NEWTON_STEPS):
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
-        start = _on_section(turn[np.newaxis], k)  # the measures are those of the orbit itself
+        start = _on_section(turn[np.newaxis], k)  # so that the measures are those of the orbit itself
     known["turn"], known["measures"] = tuple(turn), tuple(found.measures[0])
     known["reach"], metric = _drawn_in(lambda points: crossing_from(turn + points) - turn, 3, radius)
     known["metric"] = tuple(metric)
 
 
 def _on_section(crossings: FloatArray, k: float) -> FloatArray:
-    """Return states (n, 4) for crossings (n, 3)."""
     x, y, v = crossings.T
     return np.column_stack((x, y, np.zeros_like(x), k * v))
 
@@ -147,14 +146,16 @@ def _run(
 
 
 def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:
-    """Return the derivative of a map at zero by central differences."""
     points = DIFFERENCE * size * np.concatenate((np.eye(dimension), -np.eye(dimension)))
     images = flow(points)
     return np.asarray((images[:dimension] - images[dimension:]).T / (2.0 * DIFFERENCE * size))
 
 
 def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray]:
-    """Return the level of xᵀPx up to which the map contracts, and the upper half of P; zeros if it never does."""
+    """Return the largest level of xᵀPx within which the map contracts, and the upper half of P.
+
+    Zeros if it never does.
+    """
     nothing = 0.0, np.zeros(dimension * (dimension + 1) // 2)
     matrix = _derivative(flow, dimension, size)
     if not np.all(np.isfinite(matrix)) or np.max(np.abs(np.linalg.eigvals(matrix))) >= 1.0:
@@ -163,7 +164,7 @@ def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
-    # Of the linear map xᵀPx falls by |x|². That a part of this is asked for leaves room between the points.
+    # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves room between the points.
     allowed = 1.0 - ASKED_FOR * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):

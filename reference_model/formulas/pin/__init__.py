@@ -1,21 +1,20 @@
-"""The closed forms of sections 2 and 3 of the paper, one function an equation.
+"""The closed forms of sections 2 and 3 of the paper, one function per equation.
 
 Signs
 -----
-The paper takes ω > 0 and X0 > 0. Here both may have either sign:
+The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 
-- A disc that turns the other way gives the motion mirrored in the x axis. So a formula of the paper is
-  evaluated for |ω|, and what it says about y, about an angle or about a direction of turning changes its
-  sign where ω < 0: the whirl of ω < −k has the frequency −k.
-- An offset on the other side gives the motion turned by half a revolution: x and y change their signs. So
-  conditions such as (5) and (8) hold with |X0|.
+- If the disc turns the other way the motion is mirrored in the x axis. So a formula is evaluated for |ω|, and y,
+  angles and senses of rotation change sign if ω < 0: the whirl for ω < −k has the frequency −k.
+- If the offset is on the other side, x and y change sign. So conditions such as (5) and (8) hold with |X0|.
 
-Those of the balances of (3) and (11) hold for a support that hardens or has a stop too, with its force in the place
-of that of the spring. The others are for a linear support and refuse any else.
+The balances (3) and (11) also hold for a support that hardens or has a stop, with its force in place of the spring's.
+All other formulas refuse a nonlinear support.
 
-A formula raises ``ValueError`` where what it describes does not exist, and names the condition that fails.
-The exceptions are (12)–(16), which the paper uses for ω < k too: they are statements about a matrix and its
-characteristic equation, and only |ω| = k, where ω/(ω − k) has no value, is refused.
+A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16),
+statements about a matrix that the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where
+ω/(ω − k) is undefined.
+
 """
 
 from reference_model.formulas.pin.rest import (

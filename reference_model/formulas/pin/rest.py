@@ -13,33 +13,33 @@ from reference_model.systems import FloatArray, PinOnDisc
 
 
 def equilibrium_radius(pin: PinOnDisc) -> float:
-    """ρ* of (3), the distance of the pin at rest from the axis, in m.
+    """Return ρ* of (3), the distance of the pin at rest from the axis, in m.
 
-    Friction acts along the circle about the axis, so that springs must pull at a right angle to ρ*, and by μN: their
-    deflection d* = √(X0² − ρ*²) is that of the force μN, μN/C of a linear support.
+    Friction acts along the circle about the axis, so the springs must pull by μN at a right angle to ρ*. Their
+    deflection d* = √(X0² − ρ*²) is that of the force μN, which is μN/C on a linear support.
 
     Raises
     ------
     ValueError
-        If (5) fails, if there are no springs, or if the disc stands still under a pin with friction.
+        If (5) fails, if there are no springs, or if the disc is at rest and there is friction.
 
     """
     _require_equilibrium(pin)
     if pin.linear_support:
         largest, load = largest_load_with_equilibrium(pin), pin.friction_force
-        # As a product: the difference of two nearly equal squares would lose the digits near the limit (5).
+        # A product, because the difference of two nearly equal squares would lose digits near the limit (5).
         return math.sqrt((largest - load) * (largest + load)) / pin.stiffness
     offset, deflection = abs(pin.offset), _equilibrium_deflection(pin)
     return math.sqrt(max((offset - deflection) * (offset + deflection), 0.0))
 
 
 def equilibrium_angle(pin: PinOnDisc) -> float:
-    """ψ* of (3), the angle of the pin at rest, in rad between −π and π.
+    """Return ψ* of (3), the angle of the pin at rest, in rad between −π and π.
 
     Raises
     ------
     ValueError
-        As :func:`equilibrium_radius`, and for an offset of zero, where no direction is distinguished.
+        As :func:`equilibrium_radius`, and if the offset is zero, where no direction is distinguished.
 
     """
     _require_equilibrium(pin)
@@ -52,7 +52,7 @@ def equilibrium_angle(pin: PinOnDisc) -> float:
 
 
 def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
-    """x* and y* of (3), the position of the pin at rest, in m.
+    """Return x* and y* of (3), the position of the pin at rest, in m.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
 
 
 def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Left side minus right side of (4), in m²: zero on the circle through the axis and (X0, 0).
+    """Return left side minus right side of (4), in m²: zero on the circle through the axis and (X0, 0).
 
     ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
     """
@@ -79,12 +79,12 @@ def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArra
 
 
 def largest_load_with_equilibrium(pin: PinOnDisc) -> float:
-    """Return C·|X0| of (5) in N, the pull of the springs on the axis: up to this μN the equilibrium exists."""
+    """Return C·|X0| of (5) in N, the spring force on the axis: the equilibrium exists up to this μN."""
     return Support.of(pin).pull(abs(pin.offset))
 
 
 def largest_load_in_words(pin: PinOnDisc) -> str:
-    """Say what :func:`largest_load_with_equilibrium` is."""
+    """Return a description of :func:`largest_load_with_equilibrium` for messages."""
     return "stiffness·|offset|" if pin.linear_support else "force of the support at |offset|"
 
 
@@ -102,5 +102,4 @@ def _require_equilibrium(pin: PinOnDisc) -> None:
 
 
 def _equilibrium_deflection(pin: PinOnDisc) -> float:
-    """Return the deflection in m of the support that pulls by μN."""
     return Support.of(pin).deflection(pin.friction_force)

@@ -19,11 +19,11 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters.
+        Parameters of the system.
     radius : float or array
         A, the distance of the stuck pin from the axis, in m.
     disc_angle : float or array
-        ωt, the angle at which the stuck pin is, in rad.
+        ωt, the angle of the stuck pin, in rad.
 
     Raises
     ------
@@ -46,26 +46,26 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 
 
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
-    """Angle by which the disc turns until it can't hold the pin: the first root of (7) with equality.
+    """Return the rotation of the disc until release: the first root of (7) with equality.
 
-    The holding force is the third side of a triangle. The first two are the force that carries the pin round
-    on springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset.
-    Only the angle between these two changes in time, and it grows as the disc turns.
+    The holding force is the third side of a triangle. The first two sides are the force that carries the pin round on
+    springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle
+    between these two changes in time, and it grows as the disc turns.
 
     Parameters
     ----------
     pin : PinOnDisc
-        The parameters.
+        Parameters of the system.
     radius : float
         A, the distance of the stuck pin from the axis, in m, >= 0.
     start_angle : float
-        The angle of the pin at the start, in rad.
+        Angle of the pin at the start, in rad.
 
     Returns
     -------
     float
-        In rad, >= 0 for either sense of turning; ``inf`` if the pin stays on the disc for ever, 0 if friction
-        can't hold it at the start.
+        Angle in rad, >= 0 for either sense of rotation; ``inf`` for permanent stick, 0 if friction cannot hold the
+        pin at the start.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     lead = math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
     half_turn = math.pi if pin.offset < 0.0 else 0.0
     start = math.remainder(direction * (start_angle + lead) + half_turn, 2.0 * math.pi)
-    # Law of cosines for half the angle: keeps its digits where the triangle is flat, which an arccos loses.
+    # The law of cosines for half the angle is accurate for a flat triangle, where an arccos loses digits.
     opening = 2.0 * math.atan2(
         math.sqrt((friction - excess) * (friction + excess)),
         math.sqrt((carry + pull - friction) * (carry + pull + friction)),
@@ -99,17 +99,13 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
 
 
 def release_time(pin: PinOnDisc, radius: float, start_angle: float) -> float:
-    """Time in s until a pin stuck at ``radius`` (m) and ``start_angle`` (rad) lets go, by (7) with equality.
-
-    ``inf`` if it stays on the disc for ever, 0 if friction can't hold it at the start. Raises ``ValueError``
-    as :func:`turn_until_release`.
-    """
+    """Return the time in s until a pin at ``radius`` (m) and ``start_angle`` (rad) is released, by (7)."""
     turn = turn_until_release(pin, radius, start_angle)
     return turn / abs(pin.disc_speed) if 0.0 < turn < math.inf else turn
 
 
 def sticking_margin(pin: PinOnDisc, radius: float) -> float:
-    """Right side minus left side of (8) in N: >= 0 where a pin at ``radius`` (m) sticks in every position.
+    """Return right side minus left side of (8) in N: >= 0 if a pin at ``radius`` (m) sticks in every position.
 
     Raises ``ValueError`` if the support is not linear.
     """
@@ -117,20 +113,20 @@ def sticking_margin(pin: PinOnDisc, radius: float) -> float:
 
 
 def sticking_radius(pin: PinOnDisc) -> float:
-    """Right side of (9) in m: up to this distance from the axis the pin sticks for ever.
+    """Return the right side of (9) in m: the largest distance from the axis with permanent stick.
 
-    ``inf`` where an undamped pin is carried round at its natural frequency, which takes no force.
+    It is ``inf`` if an undamped pin is carried round at its natural frequency, which takes no force.
 
     Raises
     ------
     ValueError
-        If μN <= C·|X0|: then friction is too weak to hold the pin even on the axis; if the support is not linear.
+        If μN <= C·|X0|, where friction cannot hold the pin even on the axis, or if the support is not linear.
 
     """
     spare = sticking_margin(pin, 0.0)
     if spare <= 0.0:
         raise ValueError(
-            f"friction_force = {pin.friction_force:g} N: the pin sticks for ever only above "
+            f"friction_force = {pin.friction_force:g} N: the pin sticks permanently only above "
             f"stiffness·|offset| = {largest_load_with_equilibrium(pin):g} N (eq. 9)"
         )
     dynamic_stiffness = _dynamic_stiffness(pin)
@@ -138,25 +134,25 @@ def sticking_radius(pin: PinOnDisc) -> float:
 
 
 def resonant_disc_speed(pin: PinOnDisc) -> float:
-    """ω* below (9) in rad/s, the speed at which the sticking domain is largest.
+    """Return ω* below (9) in rad/s, the disc speed with the largest sticking domain.
 
     Raises
     ------
     ValueError
-        If C/m <= β²/2m²: then the domain shrinks from ω = 0 on; if the support is not linear.
+        If C/m <= β²/2m², where the domain shrinks from ω = 0 on, or if the support is not linear.
 
     """
     require_linear_support(pin)
     spring, damper = pin.stiffness / pin.mass, pin.damping**2 / (2.0 * pin.mass**2)
     if spring <= damper:
         raise ValueError(
-            f"damping = {pin.damping:g} N s/m: the sticking domain has a largest size only below "
+            f"damping = {pin.damping:g} N s/m: the sticking domain has a maximum only below "
             f"√(2·mass·stiffness) = {math.sqrt(2.0 * pin.mass * pin.stiffness):g} N s/m"
         )
     return math.sqrt(spring - damper)
 
 
 def _dynamic_stiffness(pin: PinOnDisc) -> float:
-    """√((C − mω²)² + β²ω²) of (8) in N/m: force a metre of radius for carrying the pin round."""
+    """Return √((C − mω²)² + β²ω²) of (8) in N/m: the force per radius that carries the pin round."""
     require_linear_support(pin)
     return math.hypot(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)

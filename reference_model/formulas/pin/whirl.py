@@ -10,17 +10,16 @@ from reference_model.systems import PinOnDisc
 
 
 def whirl_radius(pin: PinOnDisc) -> float:
-    """ρ_c of (11) in m, the radius of the whirl without offset.
+    """Return ρ_c of (11) in m, the radius of the whirl without offset.
 
-    By the balance along the circle the pin moves at the speed v = μN/β, whatever its support; and of the circles on
-    which that carries it round, m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap), there is one, since the right side grows
-    with ρ.
+    By the balance along the circle the pin moves at the speed v = μN/β, whatever its support. The circle follows from
+    m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap). It is unique because the right side grows with ρ.
 
     Raises
     ------
     ValueError
-        If there is no whirl. The paper says "always exists"; by the sense of the friction force in (10) it
-        does only where |ω| > ψ̇ (k on a linear support), and it takes springs, damping and friction.
+        If there is no whirl. The paper says it "always exists", but by the sense of the friction force in (10) it
+        requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
 
     """
     require_whirl(pin)
@@ -28,7 +27,7 @@ def whirl_radius(pin: PinOnDisc) -> float:
 
 
 def whirl_frequency(pin: PinOnDisc) -> float:
-    """ψ̇ of (11) in rad/s: k where ω > k, −k where ω < −k; (μN/β)/ρ_c in general.
+    """Return ψ̇ of (11) in rad/s: k if ω > k, −k if ω < −k, and (μN/β)/ρ_c in general.
 
     Raises
     ------
@@ -41,44 +40,44 @@ def whirl_frequency(pin: PinOnDisc) -> float:
 
 
 def driven_radius(pin: PinOnDisc, drive: float) -> float:
-    """Return the radius in m of the circle on which the support carries a pin of the speed ``drive`` (N) / β."""
+    """Return the radius in m of a pin that the support carries on a circle at the speed ``drive`` (N) / β."""
     if pin.linear_support:
         return drive / (pin.damping * pin.natural_frequency)
     return Support.of(pin).circle(pin.mass * (drive / pin.damping) ** 2)
 
 
 def circling_speed(pin: PinOnDisc, radius: float) -> float:
-    """Return the speed of turning in rad/s at which the support carries the pin on a circle about (X0, 0)."""
+    """Return the angular velocity in rad/s of a free circle about (X0, 0)."""
     return math.sqrt(Support.of(pin).secant(radius) / pin.mass)
 
 
 def require_drive(pin: PinOnDisc) -> None:
-    """Raise ``ValueError`` unless there are springs, damping and friction, which every whirl takes."""
+    """Raise ``ValueError`` unless there are springs, damping and friction, which every whirl requires."""
     if pin.linear_support:
         require_positive(pin, "stiffness")
     elif pin.damping == 0.0 < pin.friction_force:
         raise ValueError(
-            "damping = 0: it must be > 0 for a whirl to exist; without it the circle grows until the support turns "
-            "the pin as fast as the disc turns, and then it sticks"
+            "damping = 0: it must be > 0 for a whirl to exist; without it the circle grows until the support "
+            "carries the pin as fast as the disc turns, and the pin sticks"
         )
     require_positive(pin, "damping", "friction_force")
 
 
 def require_whirl(pin: PinOnDisc) -> None:
-    """Raise ``ValueError`` unless there is a whirl, see :func:`whirl_radius`."""
+    """Raise ``ValueError`` unless a whirl exists, see :func:`whirl_radius`."""
     require_drive(pin)
     if not pin.linear_support:
         radius = driven_radius(pin, pin.friction_force)
         frequency = circling_speed(pin, radius)
         if abs(pin.disc_speed) <= frequency:
             raise ValueError(
-                f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only where the disc turns faster than the "
-                f"{frequency:g} rad/s at which the support would turn the pin, on a circle of {radius:g} m; here the "
+                f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than the "
+                f"{frequency:g} rad/s at which the support carries the pin on a circle of {radius:g} m; here the "
                 "pin ends by sticking"
             )
         return
     if abs(pin.disc_speed) <= pin.natural_frequency:
         raise ValueError(
-            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only where the disc turns faster than "
-            f"the natural frequency {pin.natural_frequency:g} rad/s, in either sense"
+            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than "
+            f"the natural frequency {pin.natural_frequency:g} rad/s in either sense"
         )

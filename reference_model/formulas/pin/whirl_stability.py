@@ -11,10 +11,9 @@ from reference_model.systems import FloatArray, PinOnDisc
 
 
 def variational_matrix(pin: PinOnDisc) -> FloatArray:
-    """Matrix of (12), shape (3, 3): its product with (ξ, ξ̇, η) is the time derivative of that.
+    """Return the matrix of (12), shape (3, 3): its product with (ξ, ξ̇, η) is the time derivative of (ξ, ξ̇, η).
 
-    ξ and η are the deviations of the radius in m and of the speed of turning, counted in the sense of ω, in
-    rad/s.
+    ξ is the deviation of the radius in m, and η the deviation of the angular velocity in the sense of ω, in rad/s.
 
     Raises
     ------
@@ -35,26 +34,26 @@ def variational_matrix(pin: PinOnDisc) -> FloatArray:
 
 
 def characteristic_coefficients(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Coefficients of λ³, λ², λ and 1 of the characteristic equation of (12): (13) corrected.
+    """Return the coefficients of λ³, λ², λ and 1 of the characteristic equation of (12): (13) corrected.
 
-    In units of 1, 1/s, 1/s² and 1/s³. Raises ``ValueError`` if |ω| = k.
+    Their units are 1, 1/s, 1/s² and 1/s³. Raises ``ValueError`` if |ω| = k.
     """
     rate, k, ratio = pin.damping / pin.mass, pin.natural_frequency, speed_ratio(pin)
     return 1.0, rate * (1.0 + ratio), rate**2 * ratio + 4.0 * k**2, 2.0 * k**2 * rate
 
 
 def characteristic_coefficients_as_printed(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Coefficients of (13) as the paper prints them; wrong, and kept to show it.
+    """Return the coefficients of (13) as printed, which are wrong, for comparison.
 
-    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate. The determinant of
-    (12) has (β/m)·(1 + ω/(ω − k)), see :func:`characteristic_coefficients`. Raises ``ValueError`` if |ω| = k.
+    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate. The determinant of (12)
+    gives (β/m)·(1 + ω/(ω − k)), see :func:`characteristic_coefficients`. Raises ``ValueError`` if |ω| = k.
     """
     _, _, linear, constant = characteristic_coefficients(pin)
     return 1.0, 1.0 + pin.damping / pin.mass * speed_ratio(pin), linear, constant
 
 
 def coefficient_margins(pin: PinOnDisc) -> tuple[float, float]:
-    """Left side minus right side of the two conditions (14): both > 0 where the coefficients of (13) are.
+    """Return left side minus right side of the two conditions (14): both > 0 if the coefficients of (13) are.
 
     Raises ``ValueError`` if |ω| = k or if the damping is zero.
     """
@@ -63,7 +62,7 @@ def coefficient_margins(pin: PinOnDisc) -> tuple[float, float]:
 
 
 def lower_branch_margin(pin: PinOnDisc) -> float:
-    """Right side minus left side of (15): > 0 where it holds, which excludes (14).
+    """Return right side minus left side of (15): > 0 if it holds, which excludes (14).
 
     Raises ``ValueError`` if |ω| = k or if the damping is zero.
     """
@@ -72,17 +71,16 @@ def lower_branch_margin(pin: PinOnDisc) -> float:
 
 
 def upper_branch_margin(pin: PinOnDisc) -> float:
-    """Left side minus right side of (16): > 0 exactly where all roots of (13) have negative real parts.
+    """Return left side minus right side of (16): > 0 exactly if all roots of (13) have negative real parts.
 
     Raises ``ValueError`` if |ω| = k or if the damping is zero.
     """
     q = _stiffness_to_damping(pin)
-    # q − √(1 + q²) without the cancellation that would leave nothing of it for weak damping.
+    # q − √(1 + q²) without cancellation for weak damping
     return speed_ratio(pin) + 0.5 * (1.0 - 1.0 / (q + math.hypot(1.0, q)))
 
 
 def _stiffness_to_damping(pin: PinOnDisc) -> float:
-    """4k²m²/β² of (14)–(16)."""
     require_positive(pin, "damping")
     ratio = 2.0 * pin.natural_frequency * pin.mass / pin.damping
     return ratio * ratio

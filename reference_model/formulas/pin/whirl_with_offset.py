@@ -1,4 +1,4 @@
-"""Section 3 of the paper: the whirl with a small offset, (18), and what is exact in its order of X0."""
+"""Section 3 of the paper: the whirl with a small offset, (18), and the exact first and third orders in X0."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from reference_model.systems import PinOnDisc
 class WhirlResponse(NamedTuple):
     """First-order response of the whirl to an offset, with z = x + iy and frequency κ = ±k.
 
-    z(t) = ρ_c·exp(iκt) + ``mean`` + ``second_harmonic``·exp(2iκt), all in m; t = 0 is chosen such that the
-    first harmonic is real.
+    z(t) = ρ_c·exp(iκt) + ``mean`` + ``second_harmonic``·exp(2iκt), all in m; the first harmonic is real at t = 0.
     """
 
     mean: complex
@@ -21,10 +20,10 @@ class WhirlResponse(NamedTuple):
 
 
 def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
-    """x_s and y_s of (18) in m, the paper's approximation of the time mean of the whirl with an offset.
+    """Return x_s and y_s of (18) in m, the paper's approximation of the time mean of the whirl with an offset.
 
-    It balances the first harmonic only. The second harmonic that the offset excites is of the same order in
-    X0 and changes the mean, see :func:`first_order_whirl_shift`.
+    It balances only the first harmonic. The second harmonic that the offset excites is of the same order in X0 and
+    changes the mean, see :func:`first_order_whirl_shift`.
 
     Raises
     ------
@@ -39,15 +38,15 @@ def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
 
 
 def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
-    """Exact response of the whirl to the offset in first order of X0; the mean's error is of order X0³.
+    """Return the exact first-order response of the whirl to the offset; the mean's error is of order X0³.
 
     (10) linearised about (11), with ρ = ρ_c + Re(Ξ·exp(ikt)) and ψ = kt + Re(U·exp(ikt))/ρ_c, is::
 
         (−k² + ik(β/m)ω/(ω−k))·Ξ −          2ik²·U =  k²X0
                 (2ik² + kβ/m)·Ξ + (−k² + ikβ/m)·U = ik²X0
 
-    In x + iy = ρ·exp(iψ) these amplitudes give the mean (conj Ξ + i·conj U)/2 and, at 2k, (Ξ + iU)/2. Solved
-    for these two, with d = β/(mk) and w = ω/(ω − k)::
+    In x + iy = ρ·exp(iψ) these amplitudes give the mean (conj Ξ + i·conj U)/2 and, at 2k, (Ξ + iU)/2. Solved for
+    these two, with d = β/(mk) and w = ω/(ω − k)::
 
         mean            = X0·conj((6 − id(w + 2))/(2(3 + d²w + id(w − 1))))
         second harmonic = X0·idw/(2(3 + d²w + id(w − 1)))
@@ -69,7 +68,7 @@ def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
 
 
 def first_order_whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
-    """Time mean of x and y in m of the whirl with a small offset, exact in first order of X0.
+    """Return the time mean of x and y in m of the whirl with a small offset, exact to first order in X0.
 
     Raises
     ------
@@ -82,11 +81,10 @@ def first_order_whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
 
 
 def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
-    """Limit of the relative error of (18) as X0 → 0: z of (18) over the exact z, minus 1, with z = x + iy.
+    """Return the limit of the relative error of (18) for X0 → 0: z of (18) over the exact z, minus 1, z = x + iy.
 
-    With d and w of :func:`first_order_whirl_response` it is the complex conjugate of
-    d²w(2 − w)/((2 + idw)(6 − id(w + 2))): zero at |ω| = 2k, and −1 as |ω| → k. It does not depend on the
-    offset, which may be zero.
+    With d and w of :func:`first_order_whirl_response` it is the complex conjugate of d²w(2 − w)/((2 + idw)(6 − id(w +
+    2))): zero at |ω| = 2k, and −1 as |ω| → k. It does not depend on the offset, which may be zero.
 
     Raises
     ------
@@ -101,18 +99,18 @@ def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
 
 
 def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
-    """Third order in X0 of the whirl's mean over its first order, to leading order in d = β/(mk): its imaginary part.
+    """Return the imaginary part of the whirl's mean at third order in X0 over first order, to leading order in d.
 
-    With lengths in units of ρ_c and τ = kt, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ). Damping
-    and friction, both of order d, choose ρ and σ, and add −d times the mean direction of slip to the mean. Slip has
-    the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and
-    b = (2w − 1)σ/ρ, of which these harmonics are left, to third order::
+    With d = β/(mk), lengths in units of ρ_c and τ = kt, (1) without damping has the motions X0 + ρ·exp(iτ) +
+    σ·exp(−iτ). Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to
+    the mean. Slip has the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a =
+    wX0/ρ and b = (2w − 1)σ/ρ. Its harmonics to third order give::
 
         exp(iτ)   1 − a²/4           = ρ
         exp(−iτ)  b/2 − a²/8         = −σ
         mean      a/2 + a³/16 − ab/4
 
-    so that σ = a²/(4(2w + 1)), and the mean is X0·(1 + ½idw) to first order and, relative to it, to third::
+    So σ = a²/(4(2w + 1)). The mean is X0·(1 + ½idw) to first order, and the third order relative to it is::
 
         i·d·w(w + 1)/(4(2w + 1))·(wX0/ρ_c)²
 
@@ -129,10 +127,9 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
 
 
 def _mirrored(pin: PinOnDisc, amplitude: complex) -> complex:
-    """Return an amplitude of x + iy, found for |ω|, as it is for ω."""
+    """Return an amplitude of x + iy for ω, given its value for |ω|."""
     return amplitude.conjugate() if pin.disc_speed < 0.0 else amplitude
 
 
 def _relative_damping(pin: PinOnDisc) -> float:
-    """β/(mk)."""
     return pin.damping / (pin.mass * pin.natural_frequency)

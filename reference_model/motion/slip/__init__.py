@@ -1,1 +1,1 @@
-"""Slip: its coordinates, steps of it, creep and stiff motions, and how it begins."""
+"""Slip phases: coordinates, explicit and implicit steps, creep, and breakaway."""

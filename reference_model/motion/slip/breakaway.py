@@ -1,10 +1,10 @@
-"""How slip begins from rest, for any law.
+"""The beginning of slip from rest, for any law.
 
-If the pull is well above what friction can hold, slip grows like time and an explicit method follows it from next to
-nothing. But slip that begins at the limit of what friction can hold grows like ½κt², with its direction slaved to the
-pull: stiff for an explicit method. Yet the motion is a smooth function of time from the first moment on, so that a
-polynomial fits it, and an implicit method that goes through all its nodes at once (Radau IIA; Hairer and Wanner,
-Solving Ordinary Differential Equations II, IV.5) needs a few steps, until the slip is fast enough.
+If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
+that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
+motion is a smooth function of time, and an implicit method that solves for all nodes of a polynomial at once (Radau
+IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5) needs only a few steps until slip is fast
+enough.
 """
 
 from __future__ import annotations
@@ -32,25 +32,25 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 FIRST_STEP = 0.01
-"""In units of time. It is made smaller until the motion is resolved."""
+"""First step in units of time; it shrinks until the motion is resolved."""
 
 LEAST_STEP = 1e-12
-"""In units of time."""
+"""Smallest step in units of time."""
 
 MOMENT = 1e-6
-"""Time, in its unit, by which the growth of the pull is measured."""
+"""Time, in units, for the difference quotient of the pull."""
 
 TURN = 1e-7
-"""Change of the direction of slip by which that of friction is measured."""
+"""Change of direction for the difference quotient of friction."""
 
 SUDDEN = 0.05
-"""Share of friction that the pull must have left over for slip that grows like time and is not stiff."""
+"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time."""
 
 STIFF = 10.0
-"""Stiffness of a step, rate times length, below which an explicit method is as good."""
+"""Stiffness of a step (rate times length) below which an explicit method is as good."""
 
 FASTER = 0.01
-"""Change of the slip speed, as a share, by which the derivative along the slip is found."""
+"""Relative change of the slip speed for the derivative along the slip."""
 
 MOST_ITERATIONS = 12
 
@@ -64,29 +64,29 @@ def begin_slip(
     direction: FloatArray,
     leave: Leave,
 ) -> Outcome:
-    """Follow slip that begins from rest, to where an explicit method in standard unknowns can go on, or to the end.
+    """Follow slip from rest until an explicit method in standard unknowns can continue.
 
     Parameters
     ----------
     run : Run
         The simulation.
     motion : Coordinates
-        Those of the slip that begins.
+        Coordinates of the slip.
     t : float
-        When it begins.
+        Initial time.
     y : sequence
-        Its unknowns then but for the slip, which is zero.
+        Initial unknowns without the slip.
     drift : sequence
         Their rates at rest.
     direction : array of shape (slip,)
-        Unit vector along which slip begins.
+        Unit vector of the incipient slip.
     leave : callable
-        Tells whether the motion is to be described in another way, as when one of several points comes to rest.
+        Returns whether the motion needs another description, for example because a point comes to rest.
 
     Raises
     ------
     SimulationError
-        If the motion can't be resolved.
+        If the motion cannot be resolved.
 
     """
     rest = _Rest(motion, np.array(y), np.array(drift), direction)
@@ -97,12 +97,10 @@ def begin_slip(
 
 
 Beginning = Callable[[FloatArray], FloatArray]
-"""Takes times (n,) since slip begins and returns about what the unknowns are then, shape (n, unknowns)."""
+"""Takes times (n,) since slip began and returns approximate unknowns, shape (n, unknowns)."""
 
 
 class _Rest:
-    """Slip that is about to begin, and how it does."""
-
     def __init__(
         self, motion: Coordinates, others: FloatArray, carried: FloatArray, direction: FloatArray
     ) -> None:
@@ -112,15 +110,15 @@ class _Rest:
 
     @property
     def sudden(self) -> bool:
-        """Whether the pull is well above what friction can hold."""
+        """True if the pull is well above friction."""
         against = float(self._growth(0.0, -self._direction) @ self._direction)
         return self._first > SUDDEN * 0.5 * (against - self._first)
 
     def leading_order(self) -> Beginning:
-        """Return the unknowns to the leading order in time.
+        """Return the unknowns to leading order in time.
 
-        Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first +
-        t·(change − J·turning). J need not be symmetric, so that gain is not what the change has along the direction.
+        Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change
+        − J·turning). J need not be symmetric, so gain is not the component of change along the direction.
         """
         others, carried, direction, first = self._others, self._carried, self._direction, self._first
         axes, along = np.eye(len(direction)), np.outer(direction, direction)
@@ -139,25 +137,24 @@ class _Rest:
         return begun
 
     def _growth(self, delay: float, towards: FloatArray) -> FloatArray:
-        """Return the rates of a slip that is next to none."""
         rates = self._motion.rates([*(self._others + delay * self._carried), *(LEAST_SLIP * towards)])
         return np.array(rates[len(self._others) :])
 
 
 def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Leave) -> Outcome:
-    """Follow slip that is ``begun`` at ``t`` by collocation, as long as no explicit method is as good."""
+    """Follow slip that began at ``t`` by collocation until an explicit method is as good."""
     start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
     while t < run.end:
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
         if piece is None and t > since:
-            break  # no beginning any more: friction bends within a step, as where one of several points hardly slips
+            break  # friction changes sharply within a step, as where one of several points hardly slips
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:
                 raise SimulationError(
-                    f"slip that begins at t = {run.seconds(t):g} s could not be followed: the force is too near to "
-                    "the limit of what friction can hold"
+                    f"slip that begins at t = {run.seconds(t):g} s could not be resolved: the force is too close to "
+                    "the friction limit; change the parameters slightly"
                 )
             continue
         stop = min(t + step, run.end)
@@ -174,19 +171,19 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
 class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
-    It goes through the values at the nodes. To integrate the rates there would be worse: stiffness makes noise of the
-    rates from what Newton's method leaves of the values.
+    It interpolates the values at the nodes. An integral of the rates would be less accurate, because stiffness
+    amplifies the residual of Newton's method in the rates.
 
     Parameters
     ----------
     values : Polynomial
-        The unknowns over the time since it began.
+        Unknowns as functions of the time since the step began.
     rates : array of shape (NODES, unknowns)
-        At the nodes.
+        Rates at the nodes.
     stiffness : float
-        How fast slip is drawn to the direction of the pull at its end, in 1/T.
+        Relaxation rate of the direction of slip at the end, in 1/T.
     falling : bool
-        Whether slip becomes slower at its end.
+        Whether slip decelerates at the end.
 
     """
 
@@ -197,9 +194,9 @@ class _Piece:
 
     @property
     def error(self) -> float:
-        """What the last terms of the series contribute, of the values or of the rates, whichever has less noise.
+        """Contribution of the last terms of the series of values or rates, whichever contains less noise.
 
-        As a share of the unknowns where these are large.
+        It is relative where the unknowns are large.
         """
         sizes = 1.0 + abs(self.values.coefficients[0])
         by_values = abs(self.values.coefficients[-2:]) / sizes
@@ -207,22 +204,20 @@ class _Piece:
         return float(min(np.max(by_values), np.max(by_rates)))
 
     def change_of_step(self, tolerance: float) -> float:
-        """Return the factor by which the step may change for an error of ``tolerance``."""
+        """Return the factor for the step to reach an error of ``tolerance``."""
         return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
 
     def at(self, delays: FloatArray) -> FloatArray:
-        """Return the unknowns at ``delays`` (n,) after the start, even beyond its end, shape (n, unknowns)."""
+        """Return the unknowns at ``delays`` (n,) after the start, even beyond the end, shape (n, unknowns)."""
         return self.values.beyond(delays, np.zeros(1))
 
     def beyond(self, delays: FloatArray) -> FloatArray:
-        """Return the continuation to ``delays`` after its end."""
+        """Return the extrapolation to ``delays`` after the end."""
         return self.at(self.values.t + delays)
 
 
 @dataclass(frozen=True, eq=False)
 class _Sample:
-    """The motion at times of a piece that begins at ``t``, for the record."""
-
     motion: Coordinates
     piece: _Piece
     t: float
@@ -231,11 +226,11 @@ class _Sample:
         return self.motion.standard(self.piece.at(times - self.t).T)
 
 
-@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # of a trial, which is given up for that
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
 def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
-    """Solve for the unknowns at the nodes by Newton's method, from ``values``; None if it does not converge."""
+    """Solve for the unknowns at the nodes by Newton's method from ``values``; None without convergence."""
     others = len(start) - motion.slip
 
     def rates_at(unknowns: FloatArray) -> FloatArray:
@@ -268,10 +263,10 @@ def _collocate(
 
 
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the derivatives of the rates by the unknowns at the nodes, shape (NODES, n, n).
+    """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    By the slip they are found on its own scale. Friction bends with its direction, but hardly depends on its speed,
-    which Newton's method has to know far better than differences by components tell.
+    Differences by the slip are on its own scale. Friction hardly changes with the slip speed, and Newton's method
+    needs that derivative more accurately than component-wise differences give it.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

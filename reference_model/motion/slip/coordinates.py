@@ -1,4 +1,4 @@
-"""Unknowns in which a motion is written, and what all descriptions of slip share: how it ends."""
+"""Unknowns of a motion, and the end of slip, which all descriptions of slip share."""
 
 from __future__ import annotations
 
@@ -19,53 +19,51 @@ from reference_model.systems import FloatArray
 Rates = Callable[[Sequence[float]], Sequence[float]]
 
 LEAST_SLIP = 1e-100
-"""A slip speed that stands for none, but gives friction a direction."""
+"""A negligible slip speed that still gives friction a direction."""
 
 DIFFERENCE = 1e-7
-"""Change of unknowns of order one by which derivatives are found."""
+"""Change of unknowns of order one for numerical derivatives."""
 
 TIGHTEST_IMPLICIT = 3e-13
-"""Error of a step, on unknowns of order one, below which rounding is felt in the solution of implicit equations."""
+"""Smallest error of an implicit step, on unknowns of order one, above rounding noise."""
 
 LOOSEST_IMPLICIT = 0.03
-"""The largest error of an implicit step in ln s."""
+"""Largest error of an implicit step in ln s."""
 
 SHARE = 1e-5
-"""Change of a relative velocity, as a share of it, by which derivatives are found if that is less."""
+"""Relative change of a relative velocity for numerical derivatives, if smaller than ``DIFFERENCE``."""
 
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Unknowns in which a motion is written, and what it takes to follow it in them.
+    """The unknowns of a motion and the functions that describe it.
 
-    The last ``slip`` of the unknowns are a relative velocity that friction may bring to rest.
+    The last ``slip`` unknowns are a relative velocity that friction may bring to rest.
 
     Parameters
     ----------
     rates : callable
-        Takes the unknowns and returns their rates in 1/T, friction included; it is asked neither where the slip is
-        zero.
+        Takes the unknowns and returns their rates in 1/T, including friction; never evaluated at zero slip.
     many : callable
-        The same for arrays of shape (k,) in place of numbers.
+        The vectorised ``rates``, for arrays of shape (k,).
     slip : int
         Number of components of the slip.
     slow : callable
-        Takes the unknowns and returns the slip speed below which slip is slow.
+        Takes the unknowns and returns the speed limit of slow slip.
     pace : float
-        The largest rate at which anything but the slip changes, in 1/T.
+        Largest rate of everything except the slip, in 1/T.
     standard : callable
         Takes unknowns of shape (k, n) and returns the standard unknowns of the body, (unknowns, n).
     angle : int or None
-        Which unknown is an angle, if one is: it counts by its absolute error.
+        Index of an angle, which has an absolute tolerance.
     turning : int or None
-        Which unknown besides the slip is a relative velocity, if one is: friction may change with it at its own size,
-        however small that is.
+        Index of a relative velocity apart from the slip. Friction may change on its scale, however small it is.
     leverage : float
-        By how much the velocity of the centre changes with the slip.
+        Derivative of the velocity of the centre by the slip.
     grip : callable or None
-        How much more could be held of what friction holds in this motion, which ends when that falls to zero.
+        Returns the margin of a held friction force; the motion ends where it falls to zero.
     surfaces : tuple of SwitchingSurface
-        Where friction or support are continuous but not smooth.
+        Surfaces of continuous but not smooth friction or support.
 
     """
 
@@ -82,7 +80,7 @@ class Coordinates:
     surfaces: tuple[SwitchingSurface, ...] = ()
 
     def rates_at(self, unknowns: FloatArray) -> FloatArray:
-        """Return the rates at many ``unknowns``, shape (unknowns, k)."""
+        """Return the rates for many ``unknowns``, shape (unknowns, k)."""
         return np.array(self.many(unknowns))
 
     def speed(self, y: Sequence[float]) -> float:
@@ -90,7 +88,10 @@ class Coordinates:
         return math.hypot(*y[-self.slip :])
 
     def differences(self, unknowns: FloatArray) -> FloatArray:
-        """Return changes of ``unknowns`` (k, n), of which the first are these, by which derivatives are found."""
+        """Return the changes of ``unknowns`` for numerical derivatives, both of shape (k, n).
+
+        ``unknowns`` may have further columns at the end.
+        """
         changes = np.full(unknowns.shape, DIFFERENCE)
         if self.turning is not None:
             own = SHARE * abs(unknowns[:, self.turning]) + LEAST_SLIP
@@ -98,12 +99,12 @@ class Coordinates:
         return changes
 
     def tolerated(self, run: Run, unknowns: int, polar: int = 0, implicit: bool = False) -> Tolerated:
-        """Return a function for the error that a step may have in each of the first ``unknowns``.
+        """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
-        ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on. They count by
-        their absolute error. In an implicit step the error of s counts instead of that of ln s, because slip that
-        decays for a long time would need many steps otherwise. Explicit steps keep the tighter bound: at each
-        reversal they would add the tolerance once more to the error of the run.
+        ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
+        tolerances. An implicit step bounds the error of s instead of ln s, because slip that decays for a long time
+        would need many steps otherwise. Explicit steps keep the tighter bound: without it each reversal would add the
+        tolerance to the error of the run.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
@@ -125,7 +126,10 @@ class Coordinates:
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
-    """Return where the stop of a support begins, for unknowns of which x and y are the first; none without one."""
+    """Return the surface where the stop of a support begins, or () without a stop.
+
+    The unknowns start with x and y.
+    """
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
 
@@ -139,7 +143,7 @@ def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
 
 
 class Outcome(NamedTuple):
-    """When and where one description of the motion ended; ``let_go`` if that is because the grip was lost."""
+    """Time and unknowns where a description of the motion ended; ``let_go`` if the grip was lost."""
 
     t: float
     y: list[float]
@@ -147,26 +151,26 @@ class Outcome(NamedTuple):
 
 
 Leave = Callable[[list[float]], bool]
-"""Tells of some unknowns whether the motion is to be described in another way from there on."""
+"""Takes unknowns and returns whether the motion needs another description."""
 
 
 def never(_: list[float]) -> bool:
-    """Leave a description in its own time only."""
+    """Return False: a description is never left early."""
     return False
 
 
 FAST_AGAIN = 1.2
-"""Slip speed over that below which slip is slow, from which it is so no more."""
+"""Ratio to the slow slip speed above which slip is fast again."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
-"""Way that lingering slip may have left, as a share of the local tolerance and in units, for it to count as over."""
+"""Largest remaining distance of lingering slip that has ended: as a share of the local tolerance, and in units."""
 
 LONG = 0.01
-"""Time that slip takes to vanish, in units, from which it lingers."""
+"""Smallest time to rest, in units, of lingering slip."""
 
 
 def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcome | None:
-    """Return where slow slip ends if that is next, followed up to there; None if not."""
+    """Follow slow slip to its end if that comes next; return None if not."""
     others, s = len(y) - motion.slip, motion.speed(y)
     n = [part / s for part in y[others:]]
     growth = motion.rates(y)[others:]
@@ -180,15 +184,15 @@ def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcom
     way = s * max(1.0, min(left, run.end - t))
     lingers = left > LONG and way < max(NO_WAY * run.local_tolerance, LEAST_WAY)
     if s < run.thresholds.reversal_slip or lingers:
-        # Head-on, or at the limit of what friction holds: over within rounding.
+        # Head-on, or at the friction limit: over to rounding error.
         return Outcome(t, [*y[:others], *[0.0] * motion.slip])
     return None
 
 
 def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[float]) -> list[float]:
-    """Follow the last ``left`` of slip, which falls linearly; return where it ends.
+    """Follow the last ``left`` of slip, which falls linearly; return the final unknowns.
 
-    The other unknowns go by the midpoint rule, whose error is of the order left³.
+    The other unknowns follow by the midpoint rule, with an error of order left³.
     """
     others = len(y) - motion.slip
     first = motion.rates(y)[:others]
@@ -210,9 +214,9 @@ def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[f
 def grip_lost(
     motion: Coordinates, solver: Stepper, unknowns: Callable[[list[float]], list[float]]
 ) -> float | None:
-    """Return where in the last step the grip falls to zero, or None if it holds throughout.
+    """Return where in the last step the grip falls to zero; None if it holds throughout.
 
-    ``unknowns`` turns what the solver integrates into the unknowns of the motion.
+    ``unknowns`` converts the solver's unknowns to those of the motion.
     """
     if motion.grip is None:
         return None
@@ -232,4 +236,4 @@ def grip_lost(
 
 
 CHECKS_OF_GRIP = 8
-"""Places in a step at which the grip is looked at; steps are short against the time in which it changes."""
+"""Checks of the grip per step; steps are short compared with its changes."""

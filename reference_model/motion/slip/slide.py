@@ -1,10 +1,9 @@
-"""Slip, fast and near to rest, by SciPy's eighth-order Runge–Kutta method with the unregularised law.
+"""Fast and slow slip by an explicit Runge-Kutta method of eighth order with the unregularised law.
 
-While slip is fast, or grows, its components are unknowns. While it comes near to zero it is written s·n with a
-unit vector n, and the unknowns are n and ln s, in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends on n
-only, so that there these equations are smooth and not stiff down to s = 0, where n tends to a limit direction of the
-discontinuity (Antali and Stépán 2019; of a pin, the direction of the pull) and the time that is left is s over
-the rate at which s falls. No event has to be located.
+While slip is fast or grows, its components are unknowns. While it approaches zero it is written s·n with a unit
+vector n, and the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so
+these equations are smooth and not stiff down to s = 0. There n tends to a limit direction of the discontinuity
+(Antali and Stépán 2019), and the remaining time is s over its rate of decrease. No event has to be located.
 """
 
 from __future__ import annotations
@@ -26,14 +25,13 @@ from reference_model.motion.slip.coordinates import (
     grip_lost,
     slip_ends,
 )
-from reference_model.motion.slip.landing import Landings
 from reference_model.motion.slip.stiff import slide_stiffly
 from reference_model.motion.stepper import Run, Stepper
 from reference_model.systems import FloatArray
 
 
 def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave) -> Outcome:
-    """Integrate until slip is slow and becomes slower, to the end, or until ``leave`` says so."""
+    """Integrate until slip is slow and decelerates, the run ends, or ``leave`` returns True."""
     solver = Stepper(run, motion.rates, y, (t, run.end), motion.tolerated(run, len(y)), motion.surfaces)
     lost = None
     while t < run.end:
@@ -55,18 +53,15 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
 
 
 def _change(before: list[float], y: list[float]) -> float:
-    """Return by which share of itself slip has changed from ``before`` to that of the unknowns ``y``."""
     after = y[-len(before) :]
     return math.dist(before, after) / max(math.hypot(*after), LEAST_SLIP)
 
 
 def _falling(motion: Coordinates, solver: Stepper) -> bool:
-    """Tell whether slip becomes slower."""
     return float(np.dot(solver.y[-motion.slip :], solver.rates[-motion.slip :])) < 0.0
 
 
 def _standard(motion: Coordinates, dense: DenseOutput, times: FloatArray) -> FloatArray:
-    """Return the standard unknowns in a step."""
     return motion.standard(dense(times))
 
 
@@ -77,11 +72,10 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     s0 = run.thresholds.stretching * motion.slow(y)
 
     def unknowns(stretched: list[float]) -> tuple[list[float], list[float], float]:
-        """Return the unknowns, the direction n and the slip speed s."""
         n = stretched[others : others + d]
         size = math.hypot(*n)
         n = [part / size for part in n]
-        # A trial step may overshoot wildly before it is rejected: exp() must not overflow there.
+        # A trial step may overshoot by far before it is rejected: exp() must not overflow then.
         s = math.exp(min(stretched[-2], 50.0))
         return [*stretched[:others], *[s * part for part in n]], n, s
 
@@ -104,7 +98,6 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
     initial = [*y[:others], *[part / speed for part in y[others:]], math.log(speed), 0.0]
     surfaces = [surface.seen_by(lambda stretched: unknowns(stretched)[0]) for surface in motion.surfaces]
     solver = Stepper(run, rates, initial, (0.0, math.inf), tolerated, surfaces)
-    landings = Landings(run, motion, leave)
     t = start
     while True:
         before, slip = t, y[-motion.slip :]
@@ -117,7 +110,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         y, _, s = unknowns(ending)
         if lost is not None or t >= run.end or s > FAST_AGAIN * motion.slow(y) or leave(y):
             break
-        ended = landings.attempt(t, y) or slip_ends(run, motion, t, y)
+        ended = slip_ends(run, motion, t, y)
         if ended is not None:
             return ended
         if solver.stiff_for_long(_change(slip, y) + t - before):
@@ -128,7 +121,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
 def _stretched(
     motion: Coordinates, start: float, s0: float, dense: DenseOutput, times: FloatArray
 ) -> FloatArray:
-    """Return the standard unknowns in a step in stretched time, which is zero at ``start``."""
+    """Return the standard unknowns in a step in stretched time, which starts at ``start``."""
     d = motion.slip
     stretched = dense(_stretched_times(dense, times - start, s0))
     n = stretched[-2 - d : -2]
@@ -137,10 +130,9 @@ def _stretched(
 
 
 def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:
-    """Return τ at which the last unknown of ``dense``, the time, takes the values ``delays``, by Newton's method.
+    """Return τ for the values ``delays`` of the time, the last unknown of ``dense``, by Newton's method.
 
-    Time grows monotonically with τ inside of a step; where Newton's method would leave the step it is stopped
-    at its end.
+    Time grows monotonically with τ in a step. Newton's method is clipped to the step.
     """
     first, last = dense.t_min, dense.t_max
     t_first, t_last = dense(first)[-1], dense(last)[-1]

@@ -1,10 +1,9 @@
-"""Slip that is stiff, by an implicit method: slip that creeps, slow slip that goes on, strong damping.
+"""Stiff slip by an implicit method: creep, persistently slow slip, and strong damping.
 
-Where slip s is small for long, its direction n is drawn to that of the pull at the rate g/s, and an explicit method
-takes steps of some s/g, however smooth the motion. Slip of a well damped body may even decay for ever: it creeps
-towards where friction can just hold it, s ~ exp(−λt), until little way is left
-(:mod:`reference_model.motion.bodies`). Written as n and ln s over the time, all that is smooth, and collocation
-takes steps as long as the motion allows.
+If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs steps
+of about s/g, however smooth the motion. Slip of a strongly damped body may even decay forever: it creeps towards a
+position where friction just holds it, s ~ exp(−λt) (:mod:`reference_model.motion.bodies`). As functions of time, n
+and ln s are smooth, and collocation takes steps as long as the motion allows.
 """
 
 from __future__ import annotations
@@ -23,28 +22,26 @@ from reference_model.motion.slip.coordinates import (
     grip_lost,
     slip_ends,
 )
-from reference_model.motion.slip.landing import Landings
 from reference_model.motion.stepper import PATIENCE, Run, StepError, Stepper
 from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
 WORTH = 6.0
-"""Length of a step times the largest rate, from which stability forbids it to an explicit method."""
+"""Smallest step times largest rate of an unstable explicit step."""
 
 COST = 4.0
-"""Work of an implicit step over that of an explicit one."""
+"""Work of an implicit step relative to an explicit one."""
 
 
 def slide_stiffly(
     run: Run, motion: Coordinates, start: float, y: list[float], leave: Leave, step: float
 ) -> Outcome:
-    """Integrate by an implicit method as long as that pays, or until slip is zero, or ``leave`` says so.
+    """Integrate by an implicit method as long as it pays, until slip is zero, or until ``leave`` returns True.
 
-    ``step`` is that of an explicit method.
+    ``step`` is the step of the explicit method.
     """
     others = len(y) - motion.slip
     solver = _stepper(run, motion, start, y, 2.0 * step)
-    landings = Landings(run, motion, leave)
     t, taken, first = start, run.steps, motion.speed(y)
     slowly = first < motion.slow(y)
     while t < run.end:
@@ -66,10 +63,11 @@ def slide_stiffly(
         if t >= run.end or leave(y) or (slowly and motion.speed(y) > FAST_AGAIN * motion.slow(y)):
             break
         slow = motion.slow(y) > 0.0
-        ended = (landings.attempt(t, y) or slip_ends(run, motion, t, y)) if slow else None
+        ended = slip_ends(run, motion, t, y) if slow else None
         if ended is not None:
             return ended
-        # Explicit steps in stretched time are in proportion to slow slip, and limited by that rather than stability.
+        # Explicit steps in stretched time are proportional to slow slip, and limited by that rather than by
+        # stability.
         explicit = step * motion.speed(y) / first if slowly else step
         if solver.settled and (t - before < COST * explicit or (solver.stiffness < WORTH and not slowly)):
             run.patience *= 2
@@ -78,7 +76,7 @@ def slide_stiffly(
 
 
 def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_step: float) -> Stepper:
-    """Return the implicit steps from ``y`` on, of unknowns in which the slip is n and ln s."""
+    """Return the implicit stepper from ``y`` on, for unknowns that contain slip as n and ln s."""
     d = motion.slip
     others = len(y) - d
 
@@ -110,21 +108,19 @@ def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_
 
 
 def _standard(motion: Coordinates, others: int, dense: DenseOutput, times: FloatArray) -> FloatArray:
-    """Return the standard unknowns in a step."""
     return motion.standard(_unknowns(others, dense(times))[0])
 
 
 def _one(others: int, polar: list[float]) -> list[float]:
-    """Return the unknowns for ``polar`` ones."""
     return list(_unknowns(others, np.array([polar]).T)[0][:, 0].tolist())
 
 
 def _unknowns(others: int, polar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unknowns, direction n and slip speed s, for ``polar`` ones of shape (n, k)."""
+    """Return unknowns, direction n and slip speed s for ``polar`` unknowns of shape (n, k)."""
     n = polar[others:-1]
     size = np.sqrt((n * n).sum(axis=0))
     n = n / np.where(size > 0.0, size, 1.0)
-    s = np.exp(np.clip(polar[-1], -500.0, 50.0))  # a trial may overshoot wildly
+    s = np.exp(np.clip(polar[-1], -500.0, 50.0))  # a trial step may overshoot by far
     y = polar[:-1].copy()
     y[others:] = s * n
     return y, n, s

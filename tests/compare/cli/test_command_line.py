@@ -316,7 +316,7 @@ BAD = [
         (
             (*DISC, "--set", f"contact_points={points}"),
             f"contact_points = {points}: it must be a whole number from 3 to 1000, or None for the "
-            "continuous ring; a single point is a PinOnDisc",
+            "continuous ring; use PinOnDisc for a single point",
         )
         for points in ("1", "2", "2.5", "-6", "1e6")
     ),

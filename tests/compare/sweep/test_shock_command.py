@@ -36,4 +36,4 @@ def test_a_pin_without_equilibrium_is_refused(capsys):
     assert cli.status(["sweep", "shock", "--set", "offset=0"]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
-    assert err.startswith("no equilibrium to throw the pin out of")
+    assert err.startswith("no equilibrium to start from")

@@ -39,7 +39,7 @@ WRONG = [
     (simulate_fixed_step, FIG5, {"step": 0.0}, "step = 0 s: it must be > 0"),
     (simulate_fixed_step, FIG5, {"step": np.nan}, "step = nan"),
     (simulate_with_native_contact, FIG5, {"tolerance": 0.0}, "tolerance = 0"),
-    (simulate_with_native_contact, FIG11, {}, "contact_points = None: Exudyn's built-in contact has single"),
+    (simulate_with_native_contact, FIG11, {}, "contact_points = None: Exudyn's built-in contact supports"),
 ]
 
 

@@ -53,7 +53,7 @@ def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance)
         f"the power '{name}' jumps by 1.2e+03 W between t = 0.1 s and 0.105 s: the energy"
     )
     assert "may be wrong by 3 J" in message
-    assert message.endswith("breaks=[...]; if none does, take shorter steps")
+    assert message.endswith("breaks=[...]; otherwise use shorter steps")
 
 
 def rise(width):

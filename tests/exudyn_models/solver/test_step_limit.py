@@ -208,8 +208,8 @@ def test_a_step_beyond_the_limit_is_told_before_the_run_and_one_below_is_not(sol
     kind = getattr(SOLVERS, solver)
     assert not warned(row_of_rotors(2)[0], settings(0.9995 * limit, 1000), kind)
     (told,) = warned(row_of_rotors(2)[0], settings(1.0005 * limit, 1000), kind)
-    assert told.startswith(f"{solver} is not stable with steps of {1.0005 * limit:.3g} s where the contacts")
-    assert f"t = 0 s, but below {limit:.3g} s: take numberOfSteps >= 1,001, a larger" in told
+    assert told.startswith(f"{solver} is unstable with steps of {1.0005 * limit:.3g} s while the contacts")
+    assert f"t = 0 s, and stable below {limit:.3g} s: use numberOfSteps >= 1,001, a larger" in told
     assert not warned(row_of_rotors(2)[0], settings(limit * 1000 / 1001, 1001), kind)
 
 
@@ -251,7 +251,7 @@ def test_a_warning_that_is_an_error_ends_the_run_as_what_it_is(load):
     mbs, _, _ = row_of_rotors(2, normal_load=load)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        with pytest.raises(RuntimeWarning, match="RK44 is not stable with steps of"):
+        with pytest.raises(RuntimeWarning, match="RK44 is unstable with steps of"):
             solve_dynamic(mbs, settings(WITHOUT_NEIGHBOURS, 100), SOLVERS.RK44)
 
 

@@ -138,12 +138,12 @@ def test_system_says_which_law_it_has():
         (
             isotropic_contact_of,
             (replace(FIG11, contact_points=6), None, "whirls"),
-            "contact_points = 6: whirls can't be had for a disc on single points",
+            "contact_points = 6: whirls cannot be computed for single points",
         ),
         (
             isotropic_contact_of,
             (FIG11, SIX, "whirls"),
-            r"contact = PointsOnRing\(radius=0\.12, points=6\): whirls can't be had",
+            r"contact = PointsOnRing\(radius=0\.12, points=6\): whirls cannot be computed",
         ),
     ],
 )

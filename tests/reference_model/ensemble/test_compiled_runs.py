@@ -150,14 +150,14 @@ def test_a_single_time_tells_in_which_phase_the_motion_begins():
 @pytest.mark.parametrize(
     ("system", "options", "message"),
     [
-        (replace(FIG5, hardening=2.0), {}, "hardening = 2: a compiled run takes linear supports only"),
+        (replace(FIG5, hardening=2.0), {}, "hardening = 2: compiled runs need a linear support"),
         (
             replace(FIG9, stop_gap=0.1, stop_stiffness=3.0), {},
-            "stop_stiffness = 3: a compiled run takes linear supports only",
+            "stop_stiffness = 3: compiled runs need a linear support",
         ),
-        (replace(FIG9, contact_points=25), {}, "contact_points = 25: a compiled run takes up to 24"),
-        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs know the law of the system's own parameters only"),
-        (FIG5, {"contact": Ring(0.1)}, "a pin touches in one point"),
+        (replace(FIG9, contact_points=25), {}, "contact_points = 25: compiled runs support up to 24"),
+        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs support only the law of the system's parameters"),
+        (FIG5, {"contact": Ring(0.1)}, "a pin has point contact"),
         (FIG5, {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
         (FIG5, {"times": [0.0, -1.0]}, "times must increase"),
         (FIG5, {"initial_state": [0.0]}, "initial_state"),
@@ -173,7 +173,7 @@ def test_what_compiled_code_does_not_know_is_refused_by_name(system, options, me
 
 def test_a_run_that_is_given_up_says_when(monkeypatch):
     monkeypatch.setattr(recording, "ROUNDED", -0.1)  # as if it had not come to its end
-    with pytest.raises(SimulationError, match=r"the compiled run gave up 50 s after its start"):
+    with pytest.raises(SimulationError, match=r"the compiled run failed 50 s after its start"):
         simulate(FIG5, SECOND, [0.0, 50.0], compiled=True)
 
 

@@ -268,7 +268,7 @@ def test_without_friction_and_offset_a_disc_comes_to_the_axis(points):
 
 
 def test_more_points_than_are_written_out_are_refused():
-    with pytest.raises(ValueError, match=r"contact_points = 25: .* takes up to 24"):
+    with pytest.raises(ValueError, match=r"contact_points = 25: .* support up to 24"):
         simulate_ensemble(replace(FIG8, contact_points=25), starts_of(1), duration=1.0)
 
 

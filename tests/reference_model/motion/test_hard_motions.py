@@ -73,6 +73,12 @@ HARD = {
         [-0.00925065063, 0.0187610662, 1.59091343, -0.028034818, -0.013870499, 1.50093659],
         (0.0, 0.1), ["slip", "stick"], 1_000, 1e-11,
     ),
+    # Once a turn the pull exceeds friction, only slightly and only briefly.
+    "a pin is hardly held once a turn": (
+        PinOnDisc(mass=1.0, stiffness=1.0, damping=0.011224733781740163, friction_force=4.177781705193454,
+                  disc_speed=9.397081774781364, offset=0.014432604751170697, hardening=62.05311478353729),
+        [0.0746237, -0.01714718, -0.00907985, 0.09159993], (0.0, 8.0), ["slip", "stick"] * 7, 650, 2e-9,
+    ),
 }  # fmt: skip
 
 

@@ -367,14 +367,14 @@ def test_without_friction_the_disc_turns_with_the_shaft_where_its_springs_relax(
 
 
 NO_EQUILIBRIUM = [
-    ({"friction_force": 0.12}, r"friction_force = 0\.12 N: beside the moment of the shaft, 0\.003 N m, "
-     r"friction holds a force of 0\.1148\d* N, not less than that of the springs, stiffness·\|offset\| = 0\.1 N"),
+    ({"friction_force": 0.12}, r"friction_force = 0\.12 N: together with the shaft's moment of 0\.003 N m friction "
+     r"holds a force of 0\.1148\d* N, at least the spring force stiffness·\|offset\| = 0\.1 N"),
     ({"shaft_speed": 0.8, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
     ({"shaft_damping": 0.0, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
     ({"shaft_damping": 0.0, "offset": 0.0}, r"holds a force of 0\.05 N.*= 0 N"),
     ({"disc_speed": 0.0, "friction_force": 0.05}, r"disc_speed = 0 rad/s.*moment of the shaft, 0\.005 N m"),
     ({"stiffness": 0.0}, r"holds a force"),
-    ({"stiffness": 0.0, "disc_speed": 0.0}, "stiffness = 0 N/m: without springs the disc rests in every place"),
+    ({"stiffness": 0.0, "disc_speed": 0.0}, "stiffness = 0 N/m: without springs the disc may rest at any position"),
     ({"stiffness": 0.0, "friction_force": 0.0}, "stiffness = 0 N/m"),
     ({"shaft_damping": 0.0, "friction_force": 0.0}, "shaft_damping = 0 N m s/rad, friction_force = 0 N"),
 ]  # fmt: skip

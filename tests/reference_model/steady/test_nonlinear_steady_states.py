@@ -178,7 +178,7 @@ def test_where_the_support_would_turn_the_pin_faster_than_the_disc_turns_it_ends
     pin = centred(replace(FIG_5, friction_force=0.3), **support)
     assert whirls(pin) == ()
     reason = why_no_whirl(pin)
-    assert f"{formulas_turning(pin):g} rad/s at which the support would turn the pin" in reason
+    assert f"{formulas_turning(pin):g} rad/s at which the support carries the pin" in reason
     assert formulas_turning(pin) > pin.disc_speed
     trajectory = simulate(pin, [0.5, 0.0, 0.0, 0.5], np.linspace(0.0, 200.0, 201))
     assert trajectory.phases[-1].kind == "stick"

@@ -51,7 +51,7 @@ STEADY = [
         )
     ),
     *(
-        (function, (PIN, Ring(0.1)), "a pin touches in one point")
+        (function, (PIN, Ring(0.1)), "a pin has point contact")
         for function in (self_centred_equilibria, whirls, why_no_equilibrium, why_no_whirl)
     ),
     *(
@@ -66,7 +66,7 @@ STEADY = [
     (onset_load, (replace(FIG11, shaft_speed=1.5),), "disc_speed - shaft_speed = 0 rad/s"),
     (sliding_jacobian, (FIG5, [0.25, 0.0, 0.0, 0.375]), "slip = 0 m/s: the pin is at rest"),
     (sliding_jacobian, (SIX, [0.25, 0.0, 0.0, 0.0, 0.375, 1.5]), "at rest"),
-    (sliding_jacobian, (FIG5, [0.1, 0.0, 0.0, 0.0], Pin()), "a pin touches in one point"),
+    (sliding_jacobian, (FIG5, [0.1, 0.0, 0.0, 0.0], Pin()), "a pin has point contact"),
     *(
         (function, arguments, message)
         for function in (turning_frame_jacobian, whirl_eigenvalues)
@@ -77,7 +77,7 @@ STEADY = [
         )
     ),
     (equilibrium_eigenvalues, (FIG8,), "state = None"),
-    (growth_by_amplitude, near_the_onset(), "no pair is next to the imaginary axis"),
+    (growth_by_amplitude, near_the_onset(), "must be one of a complex pair"),
     (ParameterPlane, (replace(FIG11, offset=0.1), *SPEED_LOAD), r"offset = 0\.1 m"),
     (ParameterPlane, (FIG11, ("disc_speed", "contact_points"), *SPEED_LOAD[1:]), "two of mass"),
     (
@@ -124,16 +124,16 @@ ORBITS = [
         )
         for speed in (1.0, -0.5)
     ),
-    (whirl_orbit, {"system": FIG11, "guess": "near"}, "guess = 'near': it must be of Orbit or Whirl or None"),
+    (whirl_orbit, {"system": FIG11, "guess": "near"}, "guess = 'near': it must be Orbit or Whirl or None"),
     (whirl_orbit, {"system": FIG11, "guess": whirls(PIN)[0]}, r"shape \(4,\): DiscOnDisc takes 6 numbers"),
     (whirl_orbit, {"system": FIG11, "samples": 2.5}, r"samples = 2\.5: it must be a whole number >= 1"),
     (whirl_orbit, {"system": FIG11, "at_crossing": math.nan}, "at_crossing = nan: it must be finite"),
     (whirl_orbit, {"system": FIG11, "at_crossing": "here"}, "at_crossing = 'here': it must be a number"),
-    (modulated_cycle, {"system": FIG11, "guess": None}, "guess = None: it must be of Orbit or Trajectory"),
+    (modulated_cycle, {"system": FIG11, "guess": None}, "guess = None: it must be Orbit or Trajectory"),
     (
         modulated_cycle,
         {"system": FIG11, "guess": short_motion(1.0)},
-        "does not come round by t = 1 s: no two of",
+        "does not recur by t = 1 s: no two of",
     ),
     (modulated_cycle, {"system": SIX, "guess": short_motion(1.0)}, "contact_points = 6: periodic orbits"),
     (
@@ -144,7 +144,7 @@ ORBITS = [
     (
         boundary_point,
         {"orbit": SADDLE, "first": IN_ONE_BASIN[0], "second": IN_ONE_BASIN[1]},
-        "comes to the same motion",
+        "lead to the same motion",
     ),
     (stick_slip_orbits, {"pin": FIG11}, "must be a PinOnDisc"),
     (stick_slip_orbits, {"pin": FIG5, "tolerance": 1.0}, "tolerance = 1: it must lie between"),

@@ -1,1 +1,1 @@
-"""A step of a lane: explicit or by collocation, and the motion inside of it."""
+"""Explicit and implicit steps of a lane, and the motion within a step."""

@@ -1,4 +1,4 @@
-"""The motion inside of a step: a polynomial through place, velocity, acceleration and jerk at both ends."""
+"""The motion in a step: a polynomial through position, velocity, acceleration and jerk at both ends."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ GAUSS = (
     (0.6699905217924281, 0.32607257743127307),
     (0.9305681557970263, 0.17392742256872692),
 )
-"""Places and weights of Gauss's quadrature with four points on (0, 1)."""
+"""Nodes and weights of four-point Gauss quadrature on (0, 1)."""
 
 MOST_STEPS_TO_ROOT, CLOSE = 60, 1e-5
-"""Of the search for a root in a step, and the change of u that is the last one: what it leaves is far smaller."""
+"""Largest number of iterations of a root search, and its tolerance for u; the error is far smaller."""
 
 
 class Polynomial(NamedTuple):
@@ -34,7 +34,7 @@ class Polynomial(NamedTuple):
 
 
 class DenseOutput(NamedTuple):
-    """x and y over a step of length ``span`` in time, u from 0 to 1."""
+    """x and y over a step of the duration ``span``, with u from 0 to 1."""
 
     x: Polynomial
     y: Polynomial
@@ -43,12 +43,12 @@ class DenseOutput(NamedTuple):
 
 @inlined
 def size_of(z: complex) -> float:
-    """Return |z|, faster than ``abs``, which minds overflow."""
+    """Return |z| without the overflow protection of ``abs``, which is slower."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 class Motion(NamedTuple):
-    """Place, velocity, acceleration and jerk at one time."""
+    """Position, velocity, acceleration and jerk at one time."""
 
     place: complex
     velocity: complex
@@ -58,7 +58,7 @@ class Motion(NamedTuple):
 
 @scalar
 def dense_output(span: float, first: Motion, last: Motion) -> DenseOutput:
-    """Return the motion of length ``span`` in time from one end to another."""
+    """Return the motion of the duration ``span`` between two ends."""
     v0, a0, j0 = first.velocity * span, first.acceleration * span**2, first.jerk * span**3
     v1, a1, j1 = last.velocity * span, last.acceleration * span**2, last.jerk * span**3
     z0, z1 = first.place, last.place
@@ -75,7 +75,7 @@ def _between(
 ) -> Polynomial:
     """Return the polynomial with the value f0 and the derivatives f1, f2, f3 at 0 and g0 to g3 at 1."""
     c2, c3 = f2 / 2.0, f3 / 6.0
-    # What Taylor's polynomial at the start leaves over at the end, and its derivatives.
+    # Residuals of the Taylor polynomial at the end, and of its derivatives.
     e0, e1 = g0 - (f0 + f1 + c2 + c3), g1 - (f1 + f2 + 3.0 * c3)
     e2, e3 = g2 - (f2 + f3), g3 - f3
     d2 = (e2 - 8.0 * e1 + 20.0 * e0) / 2.0
@@ -112,25 +112,25 @@ def velocity_on(step: DenseOutput, u: float) -> complex:
 
 @inlined
 def rightward(step: DenseOutput, u: float) -> float:
-    """Return what is zero where x is largest: ẋ(u), times the length of the step."""
+    """Return ẋ(u) times the duration of the step, which is zero where x is largest."""
     return _slope(step.x, u)
 
 
 @inlined
 def outward(step: DenseOutput, u: float) -> float:
-    """Return what is zero where the radius is largest or smallest: ρρ̇, times the length of the step."""
+    """Return ρρ̇ times the duration of the step, which is zero where the radius is largest or smallest."""
     return _value(step.x, u) * _slope(step.x, u) + _value(step.y, u) * _slope(step.y, u)
 
 
 @scalar
 def where_rightmost(step: DenseOutput) -> float:
-    """Return u at which x is largest; its rate changes its sign between the ends."""
+    """Return the u of the largest x; the rate of x changes sign between the ends."""
     return _zero_of(rightward, step)
 
 
 @scalar
 def where_radius_turns(step: DenseOutput) -> float:
-    """Return u at which the radius is largest or smallest, and inf if it only rises or only falls."""
+    """Return the u of the largest or smallest radius; inf if the radius is monotonic."""
     if (outward(step, 0.0) > 0.0) == (outward(step, 1.0) > 0.0):
         return math.inf
     return _zero_of(outward, step)
@@ -138,9 +138,9 @@ def where_radius_turns(step: DenseOutput) -> float:
 
 @inlined
 def _zero_of(measure: Callable[[DenseOutput, float], float], step: DenseOutput) -> float:
-    """Return u at which ``measure`` of the step is zero; it changes its sign between the ends.
+    """Return the u where ``measure`` of the step is zero; it changes sign between the ends.
 
-    By inverse quadratic interpolation, kept inside of the bracket.
+    Uses inverse quadratic interpolation, kept within the bracket.
     """
     low, high = 0.0, 1.0
     at_low, at_high = measure(step, low), measure(step, high)
@@ -165,7 +165,7 @@ def _zero_of(measure: Callable[[DenseOutput, float], float], step: DenseOutput) 
 
 @scalar
 def way_along(step: DenseOutput, u: float, disc_speed: float) -> float:
-    """Return ∫|ż − iωz|dt from the start of the step to u: how far the pin slips over the disc."""
+    """Return the slip distance ∫|ż − iωz|dt from the start of the step to u."""
     total: float = 0.0
     for place, weight in GAUSS:
         at = u * place

@@ -1,13 +1,13 @@
-"""Implicit steps of slip for compiled code: Radau IIA through all nodes of a step at once, as in ``breakaway``.
+"""Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
-Slip that creeps draws its direction to that of the pull at the rate g/s, a strong damper draws the velocity to zero
-at β/m: an explicit step is limited by these rates long after what they rule has died out. This method is not (Hairer
+Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
+β/m. These rates limit an explicit step long after the fast motion has died out. They do not limit this method (Hairer
 and Wanner, Solving Ordinary Differential Equations II, IV.5).
 
-Unknowns of Newton's method are the components of slip at the nodes: (u_x, u_y) of a pin, and r besides of a disc. The
-place of the centre, which goes by slip alone, is linear in them. Friction is the gradient of a mean slip speed P, so
-that its derivative −g·P'' is symmetric and gives nothing along the slip: differences, in which that would be lost in
-rounding, are freed of it.
+The unknowns of Newton's method are the components of slip at the nodes: (u_x, u_y) of a pin, and also r of a disc.
+The position of the centre depends on slip only, and linearly. Friction is the gradient of a mean slip speed P, so its
+derivative −g·P'' is symmetric and zero along the slip. The component along the slip is removed from the differences,
+because rounding would spoil it.
 """
 
 from __future__ import annotations
@@ -29,35 +29,34 @@ from reference_model.systems import FloatArray
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
-"""As in :mod:`reference_model.numerics.collocation`, with the places of the nodes in 0..1."""
+"""As in :mod:`reference_model.numerics.collocation`; PLACES are the nodes in [0, 1]."""
 
 APART = 1e-7
-"""Change of slip, relative to it, by which friction is differentiated."""
+"""Relative change of slip for the derivative of friction."""
 
 SHARE = 1e-3
-"""Error of slip, relative to it, that is allowed at most: it must not change its sense."""
+"""Largest allowed error of slip, relative to it: slip must not reverse."""
 
 ROUNDED = 1e-15
-"""Error of slip, in units, that is rounding."""
+"""Rounding error of slip, in units."""
 
 WORTH = 10.0
-"""So many explicit steps, in time, an implicit one must be worth."""
+"""Number of explicit steps whose total time an implicit step must exceed."""
 
 FIRST_SPAN = 0.1
-"""Of the first one, in units of time, or twice what it must be worth."""
+"""First implicit step, in units of time, unless twice the smallest worthwhile step is longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""So many more short steps are made where no implicit one was worth it, and twice as many after each failure more,
-up to the last."""
+"""Short steps to make after an implicit step failed to pay, doubled with each failure up to a largest number."""
 
 GROWTH, CAUTION = 4.0, 0.8
-"""By how much the next step may differ from this one at most, and below what the error estimate would allow."""
+"""Largest ratio of successive steps, and safety factor of the error estimate."""
 
 
 Collocation = Callable[
     [complex, float, FloatArray, float, DiscLaw, FloatArray, FloatArray, FloatArray], float
 ]
-"""Solves for the slip at the nodes of a step, as :func:`collocate_with` with a friction of its own."""
+"""Solves for the slip at the nodes of a step, as :func:`collocate_with` with a given friction."""
 
 
 @written_out
@@ -74,11 +73,12 @@ def collocate_with(
 ) -> float:
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
-    Also for its rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start`` are where the
-    step begins, ``law`` is that of a disc, and ``friction`` as ``laws.ring_friction``. Return how fast friction
-    draws slip to its direction at the end, or -1 if there is no convergence.
+    It also computes the rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start``
+    describe the start of the step, ``law`` is that of a disc, and ``friction`` is like ``laws.ring_friction``.
+    Returns how fast friction draws slip to its direction at the end, as a rate, or -1 without convergence.
 
-    In one piece, because what is handed a function is written out into its caller, and so each part would have to be.
+    It is one function because functions that take functions are inlined into their callers, so parts of it would be
+    too.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
@@ -128,7 +128,7 @@ def collocate_with(
 
 @scalar
 def _turns(disc_speed: float, step: float) -> ComplexArray:
-    """Return how the master disc has turned up to the nodes, e^(iωt)."""
+    """Return the rotation of the master disc up to the nodes, e^(iωt)."""
     turns = complex_zeros(NODES)
     for j in range(NODES):
         turn = disc_speed * step * PLACES[j]
@@ -138,7 +138,7 @@ def _turns(disc_speed: float, step: float) -> ComplexArray:
 
 @scalar
 def _reach(step: float, by_place: complex, turns: ComplexArray) -> ComplexArray:
-    """Return the derivative of step times the pull at a node by slip at another, through the place."""
+    """Return the derivative of step times the pull at a node by slip at another, through the position."""
     reach = complex_zeros(NODES * NODES).reshape(NODES, NODES)
     for i in range(NODES):
         for k in range(NODES):
@@ -154,9 +154,9 @@ def _linearise(
     w: FloatArray, f: FloatArray, slopes: FloatArray, start: FloatArray, step: float, reach: ComplexArray,
     linear: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
-    """Put by how much the slip at the nodes misses its equations into ``rest`` (NODES, d).
+    """Write the residual of the slip equations at the nodes to ``rest`` (NODES, d).
 
-    And the derivative of this by all slip into ``linear`` (NODES, d, NODES, d).
+    Its derivative by all slip goes to ``linear`` (NODES, d, NODES, d).
     """
     d = len(start)
     for i in range(NODES):
@@ -177,7 +177,7 @@ def _linearise(
 
 @scalar
 def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
-    """Take the change (NODES, d) of Newton's method off the slip; tell whether it was no more than rounding."""
+    """Subtract the Newton correction (NODES, d) from the slip; return whether it was only rounding."""
     converged = True
     for i in range(NODES):
         size = length_of(change[i])
@@ -192,7 +192,7 @@ def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
 def pin_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return what ``laws.ring_friction`` does, of a pin, which does not spin."""
+    """Return the friction of a pin, which does not spin, like ``laws.ring_friction``."""
     s = math.sqrt(ux * ux + uy * uy)
     return -ux / s, -uy / s, 0.0, s
 
@@ -208,7 +208,7 @@ def collocate_pin(
     f: FloatArray,
     power: FloatArray,
 ) -> float:
-    """Do as :func:`collocate_with` of a pin."""
+    """Collocate a pin, see :func:`collocate_with`."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, pin_friction))
 
 
@@ -223,7 +223,7 @@ def collocate_ring(
     f: FloatArray,
     power: FloatArray,
 ) -> float:
-    """Do as :func:`collocate_with` of a disc on a ring."""
+    """Collocate a disc on a ring, see :func:`collocate_with`."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, ring_friction))
 
 
@@ -238,7 +238,7 @@ def collocate_points(
     f: FloatArray,
     power: FloatArray,
 ) -> float:
-    """Do as :func:`collocate_with` of a disc on points."""
+    """Collocate a disc on points, see :func:`collocate_with`."""
     return float(collocate_with(z, angle, start, step, law, w, f, power, points_friction))
 
 
@@ -247,11 +247,11 @@ def stride_with(
     z: complex, angle: float, start: FloatArray, guess: FloatArray, span: float, least: float, tolerance: float,
     law: DiscLaw, collocate: Collocation,
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
-    """Make an implicit step of ``span``, or shorter where its error asks for that, but not shorter than ``least``.
+    """Make an implicit step of ``span``, or a shorter one if its error requires it, but at least ``least``.
 
-    ``start`` (2 or 3,) is the slip at its beginning, and ``guess`` what it may soon be.
-    Return place, the components of slip, angle, how long the step was, the way slipped and how long the next may be.
-    Of no length: not worth it.
+    ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns the position, the
+    components of slip, the angle, the duration of the step, the slip distance and the proposed next step. The
+    duration is zero if the step is not worthwhile.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
@@ -260,7 +260,7 @@ def stride_with(
     while span >= least:
         carried = (
             law.disc_speed if law.friction * span > s else 0.0
-        )  # slow slip turns with the pull, and that does
+        )  # slow slip turns with the pull, which turns with the disc
         for i in range(NODES):
             turn = carried * span * PLACES[i]
             along = complex(math.cos(turn), math.sin(turn)) * complex(guess[0], guess[1])
@@ -290,32 +290,32 @@ def stride_with(
 
 @inlined
 def first_try(planned: float, least: float, left: float) -> float:
-    """Return how long a step is tried, if ``planned``, how long it may be, is known: > 0."""
+    """Return the first step to try, > 0; ``planned`` is the proposed step, if positive."""
     return min(planned if planned > 0.0 else max(FIRST_SPAN, 2.0 * least), left)
 
 
 @inlined
 def failed(planned: float) -> float:
-    """Return what stands for ``planned`` after a failure: minus the number of those in a row."""
+    """Return the code that replaces ``planned`` after a failure: minus the number of successive failures."""
     return max(min(planned, 0.0) - 1.0, -MOST_FAILURES)
 
 
 @inlined
 def patience(planned: float) -> float:
-    """Return how many more short steps are made after failures."""
+    """Return the number of short steps to make after failures."""
     steps: float = PATIENCE * 2.0**-planned
     return steps
 
 
 @scalar
 def place_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
-    """Return where the centre is at the end of a step: in the frame of the master disc it goes by the slip alone."""
+    """Return the position of the centre at the end of a step; relative to the master disc it depends on slip only."""
     return _place(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 
 @inlined
 def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
-    """Return where the centre is at a node; ``turns`` are those of the master disc up to the nodes, e^(iωt)."""
+    """Return the position of the centre at a node; ``turns`` is the rotation of the master disc up to the nodes."""
     way = 0j
     for j in range(NODES):
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])
@@ -325,7 +325,7 @@ def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArra
 
 @inlined
 def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
-    """Take the direction ``along`` out of a symmetric matrix, from both sides; ``size`` is the length of that."""
+    """Project the direction ``along``, of length ``size``, out of a symmetric matrix from both sides."""
     d = len(along)
     for i in range(d):
         part = 0.0
@@ -343,7 +343,6 @@ def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
 
 @scalar
 def _size_of(matrix: FloatArray) -> float:
-    """Return the Frobenius norm."""
     total = 0.0
     for row in matrix:
         for value in row:
@@ -353,7 +352,7 @@ def _size_of(matrix: FloatArray) -> float:
 
 @scalar
 def _turns_back(start: FloatArray, w: FloatArray) -> bool:
-    """Tell whether slip turns by more than a right angle before a node: then it came to rest on the way."""
+    """Return whether slip turns by more than a right angle before a node, so that it came to rest on the way."""
     before = start
     for i in range(NODES):
         along = 0.0
@@ -367,9 +366,9 @@ def _turns_back(start: FloatArray, w: FloatArray) -> bool:
 
 @scalar
 def _last_term(start: FloatArray, w: FloatArray) -> float:
-    """Return the largest of the last coefficients of the polynomials through the slip at the start and the nodes.
+    """Return the largest last coefficient of the polynomials through the slip at the start and the nodes.
 
-    Those through the nodes alone would not see what happens before the first of them.
+    Polynomials through the nodes alone would not resolve the motion before the first node.
     """
     largest = 0.0
     for k in range(len(start)):

@@ -1,4 +1,4 @@
-"""Linear algebra of a few unknowns, compiled: NumPy's would take longer to compile than all that is done with it."""
+"""Compiled linear algebra for a few unknowns, because NumPy's takes longer to compile than all its uses."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from reference_model.systems import FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6
-"""Largest entries of a power at which it is judged."""
+"""Largest entry of a power that has vanished, and of one that has grown."""
 
 
-# Of every kind of shape numba would compile making an array anew.
+# Array creation for each shape would be compiled separately.
 
 
 @scalar
 def zeros(n: int) -> FloatArray:
-    """Return an array of zeros, shape (n,), which may be given another shape."""
+    """Return an array of zeros, shape (n,), which may be reshaped."""
     return np.zeros(n)
 
 
 @scalar
 def complex_zeros(n: int) -> ComplexArray:
-    """Return an array of complex zeros, shape (n,), which may be given another shape."""
+    """Return an array of complex zeros, shape (n,), which may be reshaped."""
     return np.zeros(n, dtype=np.complex128)
 
 
@@ -41,7 +41,7 @@ def length_of(vector: FloatArray) -> float:
 
 @scalar
 def solve(matrix: FloatArray, right: FloatArray) -> bool:
-    """Solve a linear system in place, by elimination with pivots; tell whether that went."""
+    """Solve a linear system in place by elimination with pivoting; return whether it succeeded."""
     n = len(right)
     for k in range(n):
         pivot = k
@@ -67,9 +67,9 @@ def solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 @scalar
 def powers_vanish(matrix: FloatArray) -> bool:
-    """Tell whether the powers of a square matrix vanish: whether all its eigenvalues are below 1 in size.
+    """Return whether the powers of a square matrix vanish, so that all its eigenvalues have a modulus below 1.
 
-    It is squared until they do, or grow.
+    The matrix is squared until its powers vanish or grow.
     """
     n = len(matrix)
     power, square = matrix.copy(), zeros(n * n).reshape(n, n)

@@ -1,7 +1,7 @@
-"""One step of the eighth-order Runge–Kutta method of Dormand and Prince, for any number of unknowns.
+"""One step of Dormand and Prince's eighth-order Runge-Kutta method, for any number of unknowns.
 
-The coefficients are those of Hairer's DOP853, as SciPy has them. The unknowns are a tuple of numbers and the step is
-straight-line code without a branch, so that a loop over lanes that calls it is vectorised as a whole.
+The coefficients are those of Hairer's DOP853, taken from SciPy. The unknowns are a tuple of numbers and the step is
+branch-free code, so a loop over lanes that calls it is vectorised as a whole.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scipy.integrate import DOP853
 from reference_model.ensemble.core.jit import INLINED, inlined
 from reference_model.numerics.explicit import TIGHTEST
 
-intrinsic: Any = numba.extending.intrinsic  # not typed throughout
+intrinsic: Any = numba.extending.intrinsic  # not fully typed
 types: Any = numba.types
 
 Tuple = tuple[float, ...]
@@ -32,36 +32,35 @@ def _without_zeros(row: Sequence[float]) -> Tuple:
 A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12 = (_without_zeros(DOP853.A[i, :i]) for i in range(1, 12))
 B = _without_zeros(DOP853.B)
 E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
-"""Weights of the step, and of its differences from the embedded methods of third and fifth order, at the stages 1, 6
-to 12."""
+"""Weights of the step, and of its differences from the embedded methods of orders 3 and 5, at stages 1, 6 to 12."""
 
 TURNED_BACK = 256.0
-"""Error assigned to a step in which slip turns by more than a right angle, so that the next trial is half as long.
+"""Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
-The error estimate cannot judge such a step, because friction changes its sense between two stages: at a tolerance of
-1e-8 it accepted 65 of 20,000 reversals with errors of more than a hundred times that. In stretched time slip that
-falls to zero never passes through it.
+The error estimate cannot judge such a step, because friction reverses between two stages: at a tolerance of 1e-8 it
+accepted 65 of 20,000 reversals with errors of more than a hundred tolerances. Slip that falls to zero in stretched
+time never reverses.
 """
 
 LOCAL = 0.1
-"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs alike."""
+"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
-"""By how much the next step may differ from this one, and the factor below what the error estimate would allow."""
+"""Bounds on the ratio of successive steps, and safety factor of the error estimate."""
 
 
 def tolerance_of_steps(tolerance: float) -> float:
-    """Return the tolerance of each step of a motion that is to be accurate to ``tolerance``."""
+    """Return the tolerance of each step of a motion with the accuracy ``tolerance``."""
     return max(LOCAL * tolerance, TIGHTEST)
 
 
-# Sums over tuples are written as machine instructions, as many as there are terms: of the same in Python each term
-# would pass through all of numba, and loops over tuples would not become straight-line code.
+# Sums over tuples are written as machine instructions, one per term. In Python each term would pass through all of
+# numba, and loops over tuples would not become branch-free code.
 
 
 @intrinsic  # type: ignore[untyped-decorator]
 def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return Σ weights[j]·rates[j], of every unknown; compiled code only."""
+    """Return Σ weights[j]·rates[j] of every unknown; compiled code only."""
     size = len(rates[0])
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -74,7 +73,7 @@ def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[...,
 
 @intrinsic  # type: ignore[untyped-decorator]
 def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return y + h·Σ weights[j]·rates[j]; rates may be longer than y; compiled code only."""
+    """Return y + h·Σ weights[j]·rates[j], where rates may be longer than y; compiled code only."""
     size = len(y)
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -89,7 +88,7 @@ def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, 
 
 
 def _sums(builder: Any, weights: Any, rates: Any, *, stages: int, size: int) -> list[Any]:
-    """Return Σ weights[j]·rates[j] of the first ``size`` unknowns, added up in order."""
+    """Return Σ weights[j]·rates[j] of the first ``size`` unknowns, added in order."""
     sums = []
     for v in range(size):
         terms = [
@@ -129,10 +128,10 @@ def _written_out(arguments: str, terms: list[str]) -> Callable[..., Any]:
 def step(
     rates: Callable[[Tuple, Constants], Tuple], law: Constants, y: Tuple, k1: Tuple, h: float
 ) -> tuple[Tuple, Tuple, Tuple]:
-    """Return the mean rates over a step of ``h`` from ``y``, and what they differ by from those of lower order.
+    """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
 
-    ``rates(y, law)`` returns the rates of ``y``, and possibly more that no rate depends on; ``k1`` are those at
-    ``y``. The means and differences are tuples as long as what ``rates`` returns.
+    ``rates(y, law)`` returns the rates of ``y``; numbers that do not affect the rates may follow. ``k1`` are the
+    rates at ``y``. Means and differences are tuples of the same length as the result of ``rates``.
     """
     k2 = rates(moved(y, h, A2, (k1,)), law)
     k3 = rates(moved(y, h, A3, (k1, k2)), law)
@@ -151,9 +150,9 @@ def step(
 
 @inlined
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
-    """Return the error of a step as a multiple of what is allowed, as Hairer estimates it from both differences.
+    """Return the error of a step as a multiple of the tolerance, by Hairer's estimate from both differences.
 
-    Of unknowns that are below 1 the absolute error counts and of the others the relative one.
+    The error is absolute for unknowns below 1 and relative for larger ones.
     """
     high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
@@ -161,7 +160,7 @@ def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, toleran
 
 @inlined
 def factor_of(error: float) -> float:
-    """Return by what to multiply the step: error^(−1/8) within bounds; the smallest if the error is no number."""
+    """Return the factor for the next step: error^(−1/8) within bounds; the smallest if the error is not a number."""
     root = math.sqrt(math.sqrt(math.sqrt(max(error, 1e-30))))
     factor = min(max(CAUTION / root, SMALLEST_FACTOR), LARGEST_FACTOR)
     return factor if error < 1e300 else SMALLEST_FACTOR
