@@ -20,8 +20,6 @@ def test_an_axis_has_its_ends_and_equal_steps():
     [
         ("vx", "write it as NAME=LOW:HIGH:POINTS"),
         ("vx=1:2", "write it as NAME=LOW:HIGH:POINTS"),
-        ("vz=0:1:5", "unknown component 'vz': did you mean 'vx'?"),
-        ("vx=1:1:5", "vx from 1 to 1: the range must begin below its end"),
         ("vx=0:inf:5", "vx = inf: it must be finite"),
         ("vx=0:a:5", "vx = 'a': it must be a number"),
         ("vx=0:1:1", "vx with 1 points: there must be 2 to 100000"),
