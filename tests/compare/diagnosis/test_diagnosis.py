@@ -13,7 +13,7 @@ from compare.diagnosis import run
 from compare.diagnosis.files import write_picture, write_rows
 from compare.diagnosis.findings import MOTIONS, Motion, creep, friction, lag, motion
 from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
-from compare.diagnosis.laws import CONE, Friction
+from compare.diagnosis.laws import CONE, Friction, fitted
 from compare.diagnosis.recorded import recorded_rows
 from compare.diagnosis.row import Row
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
@@ -86,6 +86,15 @@ def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
 def test_no_force_reads_as_micronewtons(error, misfit, sure):
     (said,) = Row("any", law=Friction(CONE, 1.0, 0.0, error, misfit, sure)).sentences
     assert " times μN" in said
+
+
+def test_a_law_is_open_where_another_fits_as_well():
+    """A pyramid with corners on the axes is the cone for slip along the axes."""
+    slips = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
+    assert not fitted(np.hstack((-slips, slips)), 1e-9).sure
+    slips = np.vstack((slips, [0.6, 0.8]))
+    found = fitted(np.hstack((-slips, slips)), 1e-9)
+    assert (found.shape, found.sure) == (CONE, True)
 
 
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
