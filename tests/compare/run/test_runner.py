@@ -13,11 +13,9 @@ import numpy as np
 import pytest
 from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
 
-from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli.measure.report import store_of
 from compare.run import workers
-from compare.run.drawings import Drawing
 from compare.run.runner import run
 from compare.run.workers import Failure
 
@@ -89,13 +87,6 @@ def test_one_and_two_processes_find_and_draw_the_same(both_ways):
     assert [c.measured.tolist() for c in good[0].claims] == [c.measured.tolist() for c in good[1].claims]
 
 
-def test_a_figure_that_fails_leaves_the_claims(tmp_path):
-    result = run((fake.UNDRAWABLE, fake.AGREEMENT), (fake.GOOD,), folder=tmp_path)
-    assert result.drawings["undrawable"].reason == "KeyError: 'radius'"
-    assert isinstance(result.outcomes["undrawable", "good"], Findings)
-    assert result.drawings["agreement"] == Drawing()
-
-
 def test_what_is_no_result_is_said(tmp_path):
     unsendable = replace(fake.NO_FINDINGS, name="unsendable", provided={"measure": lambda engine: None})
     found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
@@ -106,21 +97,6 @@ def test_what_is_no_result_is_said(tmp_path):
         "it cannot be sent to another process (Can't pickle "
     )
     assert found["unsendable", "good"].reason.endswith("use functions of a module")
-
-
-def evidence():
-    return Evidence("a half", 0.5, 0.4, 0.5)
-
-
-def no_evidence():
-    raise ZeroDivisionError("division by zero")
-
-
-def test_evidence_is_computed_and_its_failure_kept(tmp_path):
-    errata = tuple(Erratum("(1)", "a", "b", "c", function) for function in (evidence, no_evidence))
-    result = run((), (), folder=tmp_path, errata=errata)
-    assert result.evidence == {0: evidence(), 1: result.evidence[1]}
-    assert isinstance(result.evidence[1], Failure)
 
 
 @pytest.fixture
