@@ -14,7 +14,7 @@ from compare.claims.paper_parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
 from compare.sweep.compute.plain import end_of, plain_trajectory
 from compare.sweep.compute.run import run
-from compare.sweep.compute.work import compute, simulate_chunk
+from compare.sweep.compute.work import Plain, compute, simulate_chunk
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.distributions import Uncertain
 from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty
@@ -137,6 +137,18 @@ def test_a_random_sample_agrees_with_the_plain_reference(tmp_path, monkeypatch):
     found = xr.open_zarr(tmp_path / "s", group="round-0", consolidated=False)
     np.testing.assert_array_equal(check["end"], found["end"].values[numbers])
     np.testing.assert_array_equal(check["time"], found["time"].values[numbers])
+
+
+def test_the_check_has_every_trajectory_from_its_own_round(tmp_path, monkeypatch):
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 10**6)
+    same = Plain(end=EndState.WHIRL, state=np.zeros(4))
+    monkeypatch.setattr("compare.sweep.compute.run.recompute", lambda *arguments: same)
+    store = swept(tmp_path / "s", BASIN, 50)
+    check, result = store.get("check"), store.get("result")
+    numbers = check["trajectory"].values
+    np.testing.assert_array_equal(np.sort(numbers), np.flatnonzero(result["simulated"].values))
+    for name in ("time", "end"):
+        np.testing.assert_array_equal(check[name], result[name].values.flat[numbers])
 
 
 def test_a_kernel_that_is_wrong_is_found_by_the_plain_reference(tmp_path, monkeypatch):
