@@ -185,6 +185,12 @@ def measure_agreement_and_count(engine):
     return measure_agreement(engine)
 
 
+def measure_an_asked_motion(engine):
+    engine.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0])
+    return measure_agreement(engine)
+
+
+ASKING = fake("asking", "A claim that holds once a motion is there", "One half.", measure_an_asked_motion)
 AGREEMENT = fake("agreement", "A claim that holds", "One half.", measure_agreement, quick=True)
 COUNTED = fake("counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count)
 
