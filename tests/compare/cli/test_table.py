@@ -35,6 +35,12 @@ HELP = [
 BAD = [
     ("report verdict", "unknown study 'verdict': did you mean 'verdicts'?"),
     ("report --engine exudin", "unknown engine 'exudin': did you mean 'exudyn'?"),
+    ("report --engine exec:./missing", "./missing can't be started: it is not there"),
+    (
+        "report --engine files:.",
+        "…/plan.json can't be read: No such file or directory; friction-discs plan writes it",
+    ),
+    ("report --engine fmu:missing.fmu", "…there is no such file…"),
     ("report --jobs 0", "jobs = 0: it must lie between 1 and 1000"),
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
