@@ -279,7 +279,7 @@ def without_reader(monkeypatch):
     [
         ("list", 0),
         ("--help", 0),
-        ("errata", 0),
+        ("simulate pin --until 1", 0),
         ("report partly --engine fake_studies:straight --jobs 1 --output out", 0),
         ("report verdicts --engine fake_studies:failing --jobs 1 --output out", 1),
     ],

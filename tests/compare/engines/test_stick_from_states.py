@@ -13,7 +13,6 @@ import reference_model
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
-from compare.engines.engine import UnsupportedSystemError
 from reference_model import Phase, Trajectory, plain
 
 TIMES = np.linspace(0.0, 30.0, 7)
@@ -156,11 +155,6 @@ def test_nobody_asks_for_more_states_unless_somebody_asks_for_stick():
     assert (len(calls), run.times[-1]) == (1, TIMES[-1])
     assert run.stick_times.size == 4
     assert len(calls) > 1
-
-
-def test_an_engine_that_does_not_stick_need_not():
-    with pytest.raises(UnsupportedSystemError, match="does not simulate stick"):
-        engine(states_only, phases=False, sticks=False).simulate(FIG5, FIG5_STARTS["equilibrium"], TIMES)
 
 
 def smoothed(pin, start, times, *, tolerance=1e-9):
