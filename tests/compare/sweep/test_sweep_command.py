@@ -15,6 +15,7 @@ from compare.cli.sweep.run import STORE
 from compare.sweep.define.distributions import KINDS
 from compare.sweep.store.files import Files
 from compare.sweep.store.store import SweepStore
+from reference_model.orbits.shock import Shock
 
 SMALL = ["--until", "20"]  # most are undecided then
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
@@ -168,3 +169,15 @@ def test_every_sweep_prints_and_draws_its_results(arguments, tmp_path, capsys):
     for suffix in ("svg", "png"):
         assert (tmp_path / f"{kind}.{suffix}").stat().st_size > 5000
     assert {group for group, _ in content(tmp_path / STORE)} >= {"round-0", "check", "result"}
+
+
+@pytest.mark.parametrize(("bisected", "status"), [(0.1 + 2e-9, 0), (0.1 + 2e-7, 1)])
+def test_the_smallest_shock_is_told_and_whether_both_ways_agree(bisected, status, monkeypatch, capsys):
+    monkeypatch.setattr("reference_model.smallest_shock", lambda pin, tolerance: Shock(pin, 0.06, -0.08))
+    monkeypatch.setattr("reference_model.orbits.shock.by_bisection", lambda shock: bisected)
+    assert cli.status(["sweep", "shock", "--set", "mass=2"]) == status
+    assert capsys.readouterr().out == (
+        "smallest shock that leads to the whirl: 0.2 N s, a change of the velocity by 0.1 m/s, (0.06, -0.08) m/s\n"
+        "  direction: -53.13° from the x-axis\n"
+        f"  by bisection of ends: {bisected:.9g} m/s, relative difference {bisected / 0.1 - 1.0:.0e}\n"
+    )
