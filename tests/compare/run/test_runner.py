@@ -1,3 +1,4 @@
+import itertools
 import json
 import multiprocessing
 import os
@@ -59,17 +60,27 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_way
 
 
 def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
-    """The clock jumps beyond the limit once the measurement runs, however long its process took to start."""
+    """The clock jumps once the measurement runs, first to just before the limit, then beyond it.
+
+    How long its process took to start does not matter.
+    """
     running, limit, wait = tmp_path / "running", 1000.0, workers.wait
     monkeypatch.setenv("RUNNING", str(running))
-    clock = SimpleNamespace(
-        monotonic=lambda: time.monotonic() + (2.0 * limit if running.exists() else 0.0),
-        perf_counter=time.perf_counter,
-        sleep=time.sleep,
-    )
+    looks, given_up = itertools.count(), {}
+
+    def monotonic():
+        jump = 0.0 if not running.exists() else 0.9 if next(looks) < 9 else 2.0
+        return time.monotonic() + jump * limit
+
+    def progress(done, total, name):
+        given_up[name] = next(looks)
+
+    clock = SimpleNamespace(monotonic=monotonic, perf_counter=time.perf_counter, sleep=time.sleep)
     monkeypatch.setattr(workers, "time", clock)
     monkeypatch.setattr(workers, "wait", lambda connections, left: wait(connections, min(left, 0.05)))
-    result = run((fake.UNENDING, fake.AGREEMENT), (fake.ALSO_GOOD,), folder=tmp_path, limit=limit)
+    studies = (fake.UNENDING, fake.AGREEMENT)
+    result = run(studies, (fake.ALSO_GOOD,), folder=tmp_path, limit=limit, progress=progress)
+    assert given_up["unending also-good"] > 9
     assert result.outcomes["unending", "also-good"] == Failure("not finished within 1000 s")
     assert result.seconds["unending", "also-good"] == limit
     assert isinstance(result.outcomes["agreement", "also-good"], Findings)
