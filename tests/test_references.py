@@ -87,14 +87,6 @@ def test_a_dotted_name_in_a_document_can_be_imported():
     assert [(page, name) for page, name in names if not found(name)] == []
 
 
-def test_links_lead_somewhere():
-    links = [
-        (page, link) for page in PAGES for link in re.findall(r"\]\(([^)#:]+)\)", page.read_text("utf-8"))
-    ]
-    assert len(links) > 100
-    assert [(page.name, link) for page, link in links if not (page.parent / link).exists()] == []
-
-
 def options(command):
     """Yield the options of a command and of all its subcommands."""
     for parameter in command.params:
@@ -159,20 +151,6 @@ def floors():
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-def test_every_import_leads_to_a_floor_below(floors):
-    height = {
-        f"{package}.{room}": -i
-        for package, layers in floors.floors().items()
-        for i, rooms in enumerate(layers)
-        for room in rooms
-    }
-    pairs = floors.imports()
-    assert {room for pair in pairs for room in pair} <= set(height)
-    inside = [pair for pair in pairs if pair[0].split(".")[0] == pair[1].split(".")[0]]
-    assert len(inside) > 50
-    assert [(here, there) for here, there in inside if height[here] <= height[there]] == []
 
 
 def test_the_picture_of_the_floors_is_drawn_from_these_imports(floors):

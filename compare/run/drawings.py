@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import zlib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 
@@ -61,7 +60,7 @@ class DrawingStore:
         """Write the drawing; a file that is there is complete."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(self._path(study), "wb") as stream, ZipFile(stream, "w", ZIP_DEFLATED) as archive:
-            archive.comment = stamp.encode()
+            archive.comment = _comment(stamp, len(drawing.figures) + len(drawing.animations))
             for kind, files in vars(drawing).items():
                 for name, content in files.items():
                     archive.writestr(f"{kind}/{name}", content)
@@ -71,16 +70,22 @@ class DrawingStore:
         found: dict[str, dict[str, bytes]] = {"figures": {}, "animations": {}}
         try:
             with ZipFile(self._path(study)) as archive:
-                if archive.comment != stamp.encode():
+                paths = archive.namelist()
+                if archive.comment != _comment(stamp, len(paths)):
                     return None
-                for path in archive.namelist():
+                for path in paths:
                     kind, _, name = path.partition("/")
                     if name not in names:  # it may lead out of the report's folder
                         return None
                     found[kind][name] = archive.read(path)
-        except (OSError, EOFError, BadZipFile, ValueError, KeyError, zlib.error):  # so it is drawn again
+        except Exception:  # whatever the libraries raise for a damaged file: then it is drawn again
             return None
         return Drawing(**found)
 
     def _path(self, study: str) -> Path:
         return self.folder / f"{study}.zip"
+
+
+def _comment(stamp: str, files: int) -> bytes:
+    """Return the archive's comment. A damaged table of contents may list fewer files than were written."""
+    return f"{stamp} {files}".encode()

@@ -11,9 +11,7 @@ import lzma
 import re
 from collections.abc import Collection
 from dataclasses import dataclass
-from lzma import LZMAError
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -51,6 +49,7 @@ class Store:
             "stamp": stamp,
             "seconds": seconds,
             "not_simulated": findings.not_simulated,
+            "arrays": list(findings.data),
             "claims": [claim_as_json(claim) for claim in findings.claims],
         }
         with replacing(self._json(study, engine), "wb") as stream:
@@ -74,16 +73,10 @@ class Store:
                 return None
             with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
                 data = {name: arrays[name] for name in arrays.files}
+            if list(data) != content["arrays"]:  # a damaged table of contents may list fewer
+                return None
             return Findings(claims, data, content["not_simulated"]), float(content["seconds"])
-        except (
-            OSError,
-            EOFError,
-            LZMAError,
-            BadZipFile,
-            ValueError,
-            KeyError,
-            TypeError,
-        ):  # so it is computed again
+        except Exception:  # whatever the libraries raise for a damaged file: then it is computed again
             return None
 
     def _json(self, study: str, engine: str) -> Path:

@@ -1,18 +1,17 @@
-"""The command line as a process, and one report of the fake studies for all tests that look at it."""
+"""Workers in this process, and one report of the fake studies for all tests that look at it."""
 
 from __future__ import annotations
 
 import io
 import math
 import subprocess
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable, Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from types import SimpleNamespace
 
 import fake_studies
 import pytest
-from processes import PATIENCE, REAL, environment
 
 from compare.cli import app as cli
 from compare.engines import registry
@@ -38,24 +37,25 @@ class WorkerHere:
         pass
 
 
+def work_here(patch: pytest.MonkeyPatch) -> None:
+    """Let all workers work in this process, where what a test has changed is changed for them too."""
+    patch.setattr(workers, "_Worker", WorkerHere)
+    patch.setattr(workers, "wait", lambda connections, left: connections)
+    patch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
+
+
 @pytest.fixture
 def in_this_process(monkeypatch) -> None:
-    """Let all workers work in this process, where what a test has changed is changed for them too."""
-    monkeypatch.setattr(workers, "_Worker", WorkerHere)
-    monkeypatch.setattr(workers, "wait", lambda connections, left: connections)
-    monkeypatch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
+    """Let all workers work in this process for a test."""
+    work_here(monkeypatch)
 
 
-@pytest.fixture(scope="session")
-def command() -> Callable[..., Process]:
-    """Run the command line as a process."""
-
-    def call(*arguments: str) -> Process:
-        return subprocess.run(
-            [*REAL, *arguments], env=environment(), capture_output=True, encoding="utf-8", timeout=PATIENCE
-        )
-
-    return call
+@pytest.fixture(scope="module")
+def all_in_this_process() -> Iterator[None]:
+    """Let all workers work in this process for a module."""
+    with pytest.MonkeyPatch.context() as patch:
+        work_here(patch)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,7 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.paper_parameters import FIG5, FIG11
 from compare.claims.prose import Prose
-from compare.claims.study import Findings, Study
+from compare.claims.study import Findings, Recorded, Study
 from compare.engines import Engine
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.report.animation import gif
@@ -80,6 +80,15 @@ def claim(sentence, engine, predicted, measured, numerical, **more):
         budget=ErrorBudget(numerical, resolution=resolution, model=model),
         **values,
     )
+
+
+def recorded(engine, setting, off, *, resolution, own=True, cases=None):
+    """Return what was recorded of a setting: by sentence how far off it is, in m, and its error."""
+    claims = tuple(
+        claim(sentence, f"{engine}, {setting}", 0.0, difference, error, equation="", resolution=resolution)
+        for sentence, (difference, error) in off.items()
+    )
+    return Recorded(engine, setting, "1.2", "2026-01-31", claims, own=own, cases=cases or {})
 
 
 def radius():
@@ -176,6 +185,12 @@ def measure_agreement_and_count(engine):
     return measure_agreement(engine)
 
 
+def measure_an_asked_motion(engine):
+    engine.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0])
+    return measure_agreement(engine)
+
+
+ASKING = fake("asking", "A claim that holds once a motion is there", "One half.", measure_an_asked_motion)
 AGREEMENT = fake("agreement", "A claim that holds", "One half.", measure_agreement, quick=True)
 COUNTED = fake("counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count)
 

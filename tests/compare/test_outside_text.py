@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from compare.cli import app as cli
 from compare.engines import Engine
-from compare.output.outside_text import MOST, all_printable, one_line, printable
+from compare.output.outside_text import FORMULA, MOST, all_printable, one_line, printable
 from compare.report.write import write_report
 from compare.run.runner import run
 
@@ -31,6 +31,7 @@ def test_any_text_can_be_encoded_shown_and_read_from_xml(text):
     assert is_clean(shown)
     assert len(shown) <= MOST
     assert printable(shown) == shown
+    assert not one_line(text).startswith(FORMULA)
     element = ET.Element("text")
     element.text = shown
     assert (ET.fromstring(ET.tostring(element, "utf-8")).text or "") == shown
@@ -57,14 +58,15 @@ def test_an_exception_without_text_is_named():
     assert printable(MuteError()) == "MuteError, whose text raises RuntimeError"
 
 
-@pytest.mark.parametrize("name", ["=cmd|'/C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\n=1", "＝1"])
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_no_cell_of_a_table_is_a_formula(name, tmp_path):
-    engine = Engine(name, fake_studies.straight)
-    assert engine.name == "'" + name.strip() == one_line(engine.name)
-    write_report(run((fake_studies.VERDICTS,), (engine,), folder=tmp_path / "data"), tmp_path)
-    for table in tmp_path.glob("arrays/**/*.csv"):
-        assert {line[0] for line in table.read_text("utf-8").splitlines()[1:]} <= {"'", '"', "t"}
+def test_no_cell_of_a_table_is_a_formula(tmp_path):
+    names = ["=cmd|'/C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\n=2", "＝1"]
+    engines = tuple(Engine(name, fake_studies.straight) for name in names)
+    assert [engine.name for engine in engines] == ["'" + name.strip() for name in names]
+    write_report(run((fake_studies.VERDICTS,), engines, folder=tmp_path / "data"), tmp_path)
+    tables = [table.read_text("utf-8").splitlines()[1:] for table in tmp_path.glob("arrays/**/*.csv")]
+    assert {"'"} <= {line[0] for table in tables for line in table} <= {"'", '"', "t"}
 
 
 @pytest.fixture
@@ -76,7 +78,8 @@ def hostile(tmp_path, monkeypatch):
     return "hostile_engine:simulate"
 
 
-@pytest.mark.parametrize("command", ["report verdicts --jobs 2", "matrix --output out", "simulate pin"])
+@pytest.mark.parametrize("command", ["report verdicts", "matrix --output out", "simulate pin"])
+@pytest.mark.usefixtures("in_this_process")
 def test_a_command_shows_and_writes_what_an_engine_says(command, hostile, tmp_path, capfd):
     assert cli.status([*command.split(), "--engine", hostile], fake_studies.ALL) == 1
     out, err = capfd.readouterr()

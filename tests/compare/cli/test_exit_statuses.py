@@ -1,64 +1,83 @@
 """Exit statuses where an engine has measured nothing, or less than it was asked for."""
 
 import json
-import re
+from dataclasses import replace
 
 import fake_studies
 import pytest
 
 from compare.claims.measured import Measured
 from compare.claims.prose import Prose
-from compare.claims.study import Study
+from compare.claims.study import Findings, Study
 from compare.cli import app as cli
 
-HOSTILE = {
-    "refusing": "raise UnsupportedSystemError('nothing')",
-    "leaving": "sys.exit(0)",
-    "dying": "os._exit(0)",
-    "crashing": "os.kill(os.getpid(), 11)",
-}
+ENGINES = """
+import os, sys
+from compare.engines import UnsupportedSystemError
+def refusing(*arguments, **accuracy):
+    raise UnsupportedSystemError('nothing')
+def leaving(*arguments, **accuracy):
+    sys.exit(0)
+def dying(*arguments, **accuracy):
+    os._exit(0)
+"""
 
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
     """A folder with engines that do not answer, and one that ends the process that imports it."""
-    code = "import os, sys\nfrom compare.engines import UnsupportedSystemError\n"
-    for name, line in HOSTILE.items():
-        code += f"def {name}(*arguments, **accuracy):\n    {line}\n"
-    (tmp_path / "hostile.py").write_text(code)
+    (tmp_path / "hostile.py").write_text(ENGINES)
     (tmp_path / "exiting.py").write_text("import os\nos._exit(0)")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("command", "engine", "expected"),
-    [
-        (("report", "fig03", "--jobs", "1"), "hostile:refusing", 4),
-        (("report", "fig03", "--engine", "reference"), "hostile:refusing", 4),
-        (("report", "drivetrain-momentum"), "reference", 4),
-        (("report", "fig03", "--jobs", "1"), "hostile:dying", 1),
-        (("report", "fig03", "--jobs", "1"), "exiting:simulate", 2),
-        (("matrix", "--jobs", "1"), "exiting:simulate", 2),
-        *((("simulate", "pin"), f"hostile:{name}", 1) for name in HOSTILE),
-        (("simulate", "pin"), "exiting:simulate", 2),
-    ],
-)
+STUDIES = (fake_studies.ASKING, replace(fake_studies.AGREEMENT, name="of-another", only=("exudyn",)))
+RAISING = [
+    ("report asking --engine hostile:refusing", 4),
+    ("report asking --engine reference --engine hostile:refusing", 4),
+    ("report of-another --engine reference", 4),
+    ("simulate pin --engine hostile:refusing", 1),
+    ("simulate pin --engine hostile:leaving", 1),
+]
+ENDING = [
+    ("report asking --jobs 1 --engine hostile:dying", 1),
+    ("report asking --jobs 1 --engine exiting:simulate", 2),
+    ("matrix --engine exiting:simulate", 2),
+    ("simulate pin --engine hostile:dying", 1),
+]
+"""The engine ends the process in which it works."""
+
+
+@pytest.mark.parametrize(("command", "status"), RAISING + ENDING)
 def test_no_command_ends_with_status_0_where_an_engine_has_measured_nothing(
-    command, engine, expected, hostile
+    command, status, hostile, request
 ):
-    assert cli.status([*command, "--engine", engine]) == expected
-    assert (hostile / "report-part" / "index.html").exists() == (command[0] == "report" and expected != 2)
+    if (command, status) in RAISING:
+        request.getfixturevalue("in_this_process")
+    assert cli.status(command.split(), STUDIES) == status
+    written = (hostile / "report-part" / "index.html").exists()
+    assert written == (command.startswith("report") and status != 2)
+
+
+def measure_with_another(engine):
+    """Return an independent claim and one that follows from it."""
+    independent = fake_studies.measure_agreement(engine).claims
+    implied = fake_studies.claim("It follows", engine.name, 0.5, 0.5, 0.0, implied_by=independent[0].sentence)
+    return Findings((*independent, implied))
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_the_theorys_own_algebra_is_not_conclusive(tmp_path, capsys):
-    arguments = ["report", "fig03", "--engine", "reference", "--output", str(tmp_path)]
-    assert cli.status([*arguments, "--min-conclusive", "1000"]) == 3
+@pytest.mark.parametrize(("least", "status"), [("2", 0), ("3", 3)])
+def test_the_theorys_own_algebra_is_not_conclusive(least, status, tmp_path, capsys):
+    theory = {"theory": fake_studies.theory_of_verdicts}
+    study = fake_studies.fake("both", "Both", "Half.", measure_with_another, provided=theory)
+    arguments = ["report", "--engine", "fake_studies:straight", "--output", str(tmp_path)]
+    assert cli.status([*arguments, "--min-conclusive", least], (study,)) == status
     out, err = capsys.readouterr()
-    independent, algebra, implied = map(int, re.findall(r"(\d+) (?:agree|of algebra|implied)", out))
-    assert err.splitlines()[-1] == f"{independent + implied} verdicts are conclusive: 1000 are asked for"
-    assert algebra > 0
+    assert out.startswith("1 agrees on independent evidence, besides 1 of algebra and 1 implied; ")
+    assert err == ("2 verdicts are conclusive: 3 are asked for\n" if status else "")
 
 
 def itself(engine, value):

@@ -11,6 +11,7 @@ import compare.cli.sweep.run
 import compare.run.runner
 import compare.run.workers
 import compare.sweep.store.files
+from compare.claims.errata import ERRATA
 from compare.cli import app as cli
 from compare.engines import INSTALLED, Engine, known_name
 from compare.run.plan import write_plan
@@ -80,6 +81,7 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr("fmu_models.export", stop)
     monkeypatch.setattr("compare.report.machines.results_json.read_results", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
+    monkeypatch.setattr("compare.claims.errata.ERRATA", ERRATA[:1])
 
 
 def at_hand(arguments):

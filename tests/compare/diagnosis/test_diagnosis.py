@@ -12,12 +12,13 @@ from stepping import box, cone, engine, pyramid
 from compare.diagnosis import run
 from compare.diagnosis.files import write_picture, write_rows
 from compare.diagnosis.findings import MOTIONS, Motion, creep, friction, lag, motion
-from compare.diagnosis.ladder import RUNGS, tolerances
-from compare.diagnosis.laws import CONE, Friction
+from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
+from compare.diagnosis.laws import CONE, Friction, fitted
 from compare.diagnosis.recorded import recorded_rows
 from compare.diagnosis.row import Row
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
 from compare.run.workers import Workers
+from reference_model import Trajectory
 
 RIGHT = engine("right")
 
@@ -87,6 +88,15 @@ def test_no_force_reads_as_micronewtons(error, misfit, sure):
     assert " times μN" in said
 
 
+def test_a_law_is_open_where_another_fits_as_well():
+    """A pyramid with corners on the axes is the cone for slip along the axes."""
+    slips = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
+    assert not fitted(np.hstack((-slips, slips)), 1e-9).sure
+    slips = np.vstack((slips, [0.6, 0.8]))
+    found = fitted(np.hstack((-slips, slips)), 1e-9)
+    assert (found.shape, found.sure) == (CONE, True)
+
+
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
     fixed, said = sentences(engine("fixed", smooth=1e-2))
     # What is smoothed acts on the slip before the step, which is larger by what the step takes.
@@ -117,6 +127,22 @@ def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that
     assert found.order == pytest.approx(1.0, abs=0.4)
     assert found.error <= found.estimate
     assert not motion(engine("box", law=box), "release").converges
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
+def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_faster(order):
+    """A smoothed law may converge as slowly as that, and is not another law."""
+    ladder = Ladder.of(RIGHT, lambda tolerance: 1.0 + RIGHT.step_at(tolerance) ** order)
+    off = abs(ladder.finest - 1.0)
+    assert off <= ladder.error <= 50.0 * off
+
+    def shifted(system, start, times, *, step):
+        run = reference.simulate(system, start, times, tolerance=1e-12)
+        return Trajectory(system, run.times, run.states + np.array([[step**order, 0.0, 0.0, 0.0]]))
+
+    found = motion(replace(RIGHT, function=shifted), "slip")
+    assert found.order == pytest.approx(order, abs=0.01)
+    assert found.converges
 
 
 def test_an_engine_that_takes_no_notice_of_the_tolerance_is_told_so():

@@ -13,7 +13,6 @@ import reference_model
 from compare.claims.error_estimates import refined
 from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
-from compare.engines.engine import UnsupportedSystemError
 from reference_model import Phase, Trajectory, plain
 
 TIMES = np.linspace(0.0, 30.0, 7)
@@ -103,6 +102,22 @@ def test_a_block_that_only_creeps_is_held_all_the_time(load):
     np.testing.assert_array_equal(found.stick_times, TIMES[[0, -1]])
 
 
+@pytest.mark.parametrize(("force", "kinds"), [(0.99, ["slip", "stick"]), (1.01, ["slip"])])
+def test_a_body_that_rests_where_friction_cannot_hold_it_does_not_stick(force, kinds):
+    """An engine with too much friction may hold it."""
+    place, stops = force * BLOCK.friction_force / BLOCK.stiffness, 3.0
+
+    def stopping(system, start, times, *, tolerance):
+        left = np.maximum(stops - np.asarray(times), 0.0)
+        states = np.zeros((len(times), 4))
+        states[:, 0], states[:, 2] = place - 0.5 * left**2, left
+        return Trajectory(system, np.array(times), states)
+
+    start = (place - 0.5 * stops**2, 0.0, stops, 0.0)
+    found = engine(stopping, phases=False).simulate(BLOCK, start, TIMES)
+    assert [phase.kind for phase in found.phases] == kinds
+
+
 def test_what_a_law_that_creeps_comes_to_is_nearer_at_a_smaller_tolerance():
     def creeping(pin, start, times, *, tolerance):
         return viscous_near_rest(pin, start, times, tolerance=tolerance)
@@ -156,11 +171,6 @@ def test_nobody_asks_for_more_states_unless_somebody_asks_for_stick():
     assert (len(calls), run.times[-1]) == (1, TIMES[-1])
     assert run.stick_times.size == 4
     assert len(calls) > 1
-
-
-def test_an_engine_that_does_not_stick_need_not():
-    with pytest.raises(UnsupportedSystemError, match="does not simulate stick"):
-        engine(states_only, phases=False, sticks=False).simulate(FIG5, FIG5_STARTS["equilibrium"], TIMES)
 
 
 def smoothed(pin, start, times, *, tolerance=1e-9):

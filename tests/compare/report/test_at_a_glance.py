@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import pytest
-from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS
+from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, recorded
 
-from compare.claims.claim import Claim, ErrorBudget
-from compare.claims.study import Recorded
 from compare.report.at_a_glance import cases, glances
 from compare.report.matrix import matrix
 from compare.run.runner import Run, run
+
+pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 SLIDES, STICKS, TURNS = "A pin slides", "A pin sticks", "A disc turns"
 IN_SHORT = {SLIDES: ("slides", "slip"), STICKS: ("sticks", "stick"), TURNS: ("disc", "slip")}
@@ -18,30 +18,17 @@ RESOLUTION = 0.01
 
 
 def setting(engine, name, own=True, **off):
-    """Return what was recorded of a setting: how far off it is in m, by the motion, and half of that as error bar."""
+    """Return what was recorded of a setting: how far off it is in m, by the motion, and its error."""
     words = {"slides": SLIDES, "sticks": STICKS, "disc": TURNS}
-    claims = tuple(
-        Claim(
-            words[motion],
-            equation="",
-            engine=f"{engine}, {name}",
-            predicted=0.0,
-            measured=difference,
-            budget=ErrorBudget(error, resolution=RESOLUTION),
-            parameters={},
-            source="a test",
-            unit="m",
-        )
-        for motion, (difference, error) in off.items()
-    )
-    return Recorded(engine, name, "1.2", "2026-01-31", claims, own=own, cases=IN_SHORT)
+    by_sentence = {words[motion]: both for motion, both in off.items()}
+    return recorded(engine, name, by_sentence, resolution=RESOLUTION, own=own, cases=IN_SHORT)
 
 
 FINE = {"slides": (1e-6, 2e-6), "sticks": (3e-6, 4e-6), "disc": (1e-6, 1e-6)}
 WRONG = FINE | {"slides": (0.5, 1e-6)}
 
 
-def recorded():
+def settings():
     return (
         setting("ours", "", **dict.fromkeys(FINE, (1e-12, 1e-12))),
         setting("Wrong", "box", **WRONG),
@@ -55,8 +42,8 @@ def recorded():
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory):
-    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": recorded})
+def seen(tmp_path_factory, all_in_this_process):
+    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": settings})
     result = run((study, VERDICTS), (GOOD, FAILING), folder=tmp_path_factory.mktemp("seen"))
     result.versions["good"] = "3"
     return result

@@ -13,7 +13,7 @@ from compare.report.machines.results_json import read_results
 from compare.report.write import write_report
 from compare.run.runner import run
 
-pytestmark = pytest.mark.usefixtures("in_this_process")
+pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 PLACES = "the pin comes to rest at the point of eq. (3)"
 
@@ -46,7 +46,7 @@ def replace_measured(one, measured):
 
 
 @pytest.fixture(scope="module")
-def old(tmp_path_factory):
+def old(tmp_path_factory, all_in_this_process):
     return written(tmp_path_factory.mktemp("old"))
 
 

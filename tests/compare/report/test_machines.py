@@ -15,6 +15,8 @@ from compare.report.machines.results_json import read_results, schema
 from compare.report.write import write_report
 from compare.run.runner import run
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 CHECKED = jsonschema.Draft202012Validator(schema())
 
 

@@ -26,16 +26,9 @@ def page_at(width, browser, reported):
     page.close()
 
 
-@pytest.fixture(scope="module", params=WIDTHS)
-def read(request, browser, reported):
-    """The page as it is opened, which several tests only read."""
-    with page_at(request.param, browser, reported) as opened:
-        yield opened
-
-
 @pytest.fixture(params=WIDTHS)
 def opened(request, browser, reported):
-    """The page for a test of its own."""
+    """The page, and the addresses that it asked for."""
     with page_at(request.param, browser, reported) as opened:
         yield opened
 
@@ -45,16 +38,23 @@ def overhang(page):
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
 
 
-def test_the_page_does_not_scroll_sideways(read):
-    assert overhang(read[0]) <= 0
+TABLES_OUTSIDE = """[...document.querySelectorAll('table')].filter(table =>
+    table.getBoundingClientRect().right > innerWidth && !table.closest('.scroll')).length"""
+SMALLEST = """Math.min(...[...document.querySelectorAll('main *')].filter(e => e.innerText)
+    .map(e => parseFloat(getComputedStyle(e).fontSize)))"""
+NAMED = """[...document.querySelectorAll('table')].every(table => table.caption)
+    && [...document.querySelectorAll('section, nav, input, select')].every(it => it.ariaLabel
+        || document.getElementById(it.getAttribute('aria-labelledby')))"""
 
 
-def test_tables_stay_inside_of_the_page_or_scroll_in_their_own_container(read):
-    outside = read[0].evaluate(
-        """() => [...document.querySelectorAll('table')].filter(table =>
-               table.getBoundingClientRect().right > innerWidth && !table.closest('.scroll')).length"""
-    )
-    assert outside == 0
+def test_the_page_fits_is_legible_has_names_and_asks_nothing_of_the_network(opened):
+    page, asked = opened
+    assert overhang(page) <= 0
+    assert page.evaluate(TABLES_OUTSIDE) == 0  # or they scroll in their own container
+    assert page.evaluate(SMALLEST) >= 11
+    assert page.evaluate(NAMED)
+    assert asked
+    assert all(url.startswith(("file:", "data:")) for url in asked)
 
 
 def test_the_first_screen_shows_totals_what_differs_and_a_grade_for_each_engine(opened):
@@ -76,19 +76,6 @@ def test_all_images_are_decoded_once_they_are_looked_at(opened):
     page.evaluate("[...document.images].forEach(image => { image.loading = 'eager'; })")
     page.wait_for_function("[...document.images].every(image => image.complete)")
     assert page.evaluate("[...document.images].map(image => image.naturalWidth > 0)") == [True, True]
-
-
-def test_nothing_is_asked_of_the_network(read):
-    assert read[1]
-    assert all(url.startswith(("file:", "data:")) for url in read[1])
-
-
-def test_text_is_large_enough_to_read(read):
-    smallest = read[0].evaluate(
-        """() => Math.min(...[...document.querySelectorAll('main *')].filter(e => e.innerText)
-               .map(e => parseFloat(getComputedStyle(e).fontSize)))"""
-    )
-    assert smallest >= 11
 
 
 CLAIM = "verdicts/the-equilibrium-is-lost-at-the-load-of-eq-5"
@@ -219,14 +206,6 @@ def test_text_stands_out_from_its_paper(browser, reported, scheme):
     dark = page.evaluate("getComputedStyle(document.body).backgroundColor") != "rgb(255, 255, 255)"
     assert dark == (scheme == "dark")
     page.close()
-
-
-def test_tables_sections_and_fields_have_names(opened):
-    assert opened[0].evaluate(
-        """() => [...document.querySelectorAll('table')].every(table => table.caption)
-            && [...document.querySelectorAll('section, nav, input, select')].every(it => it.ariaLabel
-                || document.getElementById(it.getAttribute('aria-labelledby')))"""
-    )
 
 
 def test_the_print_fits_on_its_paper(browser, reported):

@@ -6,13 +6,14 @@ from html.parser import HTMLParser
 from itertools import groupby
 from urllib.parse import unquote
 
+import numpy as np
 import pytest
-from fake_studies import AGREEMENT, PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, straight
+from fake_studies import AGREEMENT, PARTLY, PIN, POINTS, RING, RING_ONLY, VERDICTS, fake, recorded, straight
+from fake_studies import claim as made
 from processes import ROOT
 
-from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.errata import Erratum, Evidence
-from compare.claims.study import Recorded
+from compare.claims.study import Findings
 from compare.cli.app import status
 from compare.engines import EVERY_KIND, Engine
 from compare.report.machines.results_json import read_results
@@ -22,6 +23,8 @@ from compare.report.quotes import parts
 from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES
+
+pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 
 class Cells(HTMLParser):
@@ -124,6 +127,22 @@ def test_an_array_shows_its_worst_element(results, cells):
     assert f"no. {worst + 1} of 21" in shown[0][3]
 
 
+def measure_openly(engine):
+    """Return two open claims: in the first the element nearest to failing is not the least certain one."""
+    numbers = ((1e-9, [1e-9, 0.75, 1e-9]), (0.4, [0.5, 0.5, 0.5]))
+    claims = (made("Open", engine.name, np.zeros(3), [off, 0.0, 0.0], errors) for off, errors in numbers)
+    return Findings(tuple(claims))
+
+
+def test_an_inconclusive_claim_shows_its_least_certain_element_and_a_cell_its_least_certain_claim(tmp_path):
+    study = fake("open", "Open", "Any.", measure_openly)
+    write_report(run((study,), (Engine("one", straight),), folder=tmp_path / "data"), tmp_path)
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    shown = [cell[4] for cell in Cells(page).cells if cell[0] == "claims" and cell[2] == "Numerical error"]
+    assert shown == [[0.75], [0.5]]
+    assert claims_of(page) == {"open/open": ["one ? inconclusive ×2 ± 0.75 m"]}
+
+
 def test_each_claim_says_every_verdict_in_a_word_and_a_mark(page):
     said = [text for claim in claims_of(page).values() for text in claim]
     for words in ("theory ✓ agrees", "good ✗ differs", "good ? inconclusive", "failing ! failed"):
@@ -170,20 +189,18 @@ def test_the_page_shows_the_figures_of_the_folder(page, reported):
     assert "Radius of the equilibrium over the load: both engines on the formula (3)." in page
 
 
-def test_each_study_says_how_to_repeat_it(page):
-    assert "friction-discs report verdicts --engine good" in page
-    assert "friction-discs report agreement --engine failing" in page
+SAID = (
+    "friction-discs report verdicts --engine good",  # how to repeat it
+    "friction-discs report agreement --engine failing",
+    "towards the centre of the disc, <code>rest(load) &lt; X₀</code>.</p>",
+    "mass = 1 kg, stiffness = 1 N/m, damping = 0.1 N s/m, disc_speed = 0.7 rad/s, offset = 0.1 m.",
+    "assumption: any set within (5), the paper prints none for Fig. 3",
+)
 
 
-def test_code_in_a_text_is_code(page):
-    assert "towards the centre of the disc, <code>rest(load) &lt; X₀</code>.</p>" in page
-
-
-def test_parameters_and_their_source_are_there(page):
-    assert (
-        "mass = 1 kg, stiffness = 1 N/m, damping = 0.1 N s/m, disc_speed = 0.7 rad/s, offset = 0.1 m." in page
-    )
-    assert "assumption: any set within (5), the paper prints none for Fig. 3" in page
+@pytest.mark.parametrize("words", SAID)
+def test_commands_code_and_parameters_of_claims_are_on_the_page(words, page):
+    assert words in page
 
 
 def test_the_report_does_not_tell_where_it_was_made(page, reported):
@@ -230,8 +247,8 @@ def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
     assert float(root.get("time")) >= 8.0
 
 
-@pytest.fixture(scope="module", params=["first", "resumed"])
-def partly_reported(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def partly_reported(tmp_path_factory, all_in_this_process):
     """Matrix and folder of a report with engines that simulate all, some, and a pin only."""
     folder = tmp_path_factory.mktemp("partly")
     engines = (
@@ -239,8 +256,7 @@ def partly_reported(request, tmp_path_factory):
         Engine("some", straight, ("pin", "points")),
         Engine("pins", straight),
     )
-    for resume in (False, True) if request.param == "resumed" else (False,):
-        result = run((PARTLY, RING_ONLY), engines, folder=folder / "data", resume=resume)
+    result = run((PARTLY, RING_ONLY), engines, folder=folder / "data")
     return result, write_report(result, folder), folder
 
 
@@ -346,36 +362,24 @@ def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
     assert summary(matrix) == "0 agree on independent evidence; 0 differ, 0 inconclusive, 1 not simulated"
 
 
-def recorded():
+def settings():
     """Return what two engines of others made of two claims: one agrees with both, the other with neither."""
-
-    def claims(name, off):
-        budget = ErrorBudget(1e-3, resolution=0.1)
-        about = {
-            "equation": "",
-            "engine": name,
-            "parameters": {},
-            "source": "a test",
-            "unit": "m",
-            "budget": budget,
-        }
-        return (
-            Claim("A pin slides", predicted=0.0, measured=off, **about),
-            Claim("A disc slides", predicted=0.0, measured=1e-4 + off, **about),
+    settings = {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}
+    return [
+        recorded(
+            *name,
+            {"A pin slides": (off, 1e-3), "A disc slides": (1e-4 + off, 1e-3)},
+            resolution=0.1,
         )
-
-    return (
-        Recorded("Kite", "cone", "1.2", "2026-01-31", claims("Kite, cone", 0.0)),
-        Recorded("Kite", "box", "1.2", "2026-01-31", claims("Kite, box", 0.25)),
-        Recorded("ours", "", "0.1", "2026-01-31", claims("ours", 1e-6)),
-    )
+        for name, off in settings.items()
+    ]
 
 
 @pytest.fixture(scope="module")
-def recorded_reported(tmp_path_factory):
+def recorded_reported(tmp_path_factory, all_in_this_process):
     """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
     folder = tmp_path_factory.mktemp("recorded")
-    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": recorded})
+    study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": settings})
     arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]
     return status(arguments, (study,)), folder
 
@@ -387,14 +391,8 @@ def test_what_recorded_engines_get_wrong_is_no_failure_of_this_project(recorded_
     assert (results["totals"]["agrees"], results["totals"]["differs"]) == (1, 0)
     root = ET.parse(folder / "junit.xml").getroot()
     assert (root.get("tests"), root.get("failures")) == ("1", "0")
-    assert [claim["verdict"] for found in results["recorded"] for claim in found["claims"]] == [
-        "agrees",
-        "agrees",
-        "differs",
-        "differs",
-        "agrees",
-        "agrees",
-    ]
+    verdicts = [claim["verdict"] for found in results["recorded"] for claim in found["claims"]]
+    assert verdicts == 2 * ["agrees"] + 2 * ["differs"] + 2 * ["agrees"]
 
 
 def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_reported):
@@ -406,7 +404,7 @@ def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_rep
         "Kite 1.2, 2026-01-31",
         *("cone", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
         *("box", "✗ differs by 0.25 m", "✗ differs by 0.25 m"),
-        *("ours 0.1, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+        *("ours 1.2, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
     ]
     assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
     assert "1 agrees on independent evidence; 0 differ, 0 inconclusive." in page

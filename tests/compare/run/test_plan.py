@@ -4,7 +4,6 @@ import json
 from functools import lru_cache
 
 import numpy as np
-import pytest
 
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
@@ -113,21 +112,10 @@ def _asked_first(path):
     return json.loads(path.read_text())["tolerance"] == 1e-9
 
 
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        (["--kind", "sphere"], "unknown kind of system 'sphere'"),
-        (
-            ["--level", "quick", "planned"],
-            "--level quick chooses the studies: leave out planned, or the level",
-        ),
-        (["--kind", "points"], "no study of these asks for motions that do not depend on the answers"),
-    ],
-)
-def test_a_plan_that_there_is_none_of_is_refused_in_one_sentence(arguments, reason, tmp_path, capsys):
-    assert cli.status(["plan", *arguments, "--jobs", "1", "--output", str(tmp_path)], (STUDY,)) == 2
-    (sentence,) = capsys.readouterr().err.splitlines()
-    assert reason in sentence
+def test_a_plan_of_nothing_is_refused_in_one_sentence(tmp_path, capsys):
+    assert cli.status(["plan", "--kind", "points", "--jobs", "1", "--output", str(tmp_path)], (STUDY,)) == 2
+    sentence = "no study of these asks for motions that do not depend on the answers"
+    assert sentence in capsys.readouterr().err
     assert not (tmp_path / "plan.json").exists()
 
 

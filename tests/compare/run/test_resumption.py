@@ -1,4 +1,4 @@
-"""Findings are resumed while sources, libraries and the engine's own files are the same."""
+"""Findings are resumed while sources, libraries and the engine's own files are the same: what the stamp sees."""
 
 import importlib
 import sys
@@ -7,7 +7,6 @@ from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from shutil import copytree, ignore_patterns
 
-import fake_studies
 import pytest
 
 from compare.engines import ByName, Engine, reference
@@ -17,40 +16,8 @@ from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program
 from compare.run import stamp
 from compare.run.engine_files import PACKAGES
-from compare.run.runner import run
 from compare.run.stamp import engine_stamp
 from compare.studies import STUDIES
-
-HEAD = """
-from dataclasses import replace
-from reference_model import simulate as right
-
-def off(factor, system, start, times, tolerance=1e-9):
-    found = right(system, start, times, tolerance=tolerance)
-    return replace(found, states=factor * found.states)
-"""
-
-ENGINE = """
-def simulate(system, start, times, *, tolerance=1e-9):
-    return off({factor}, system, start, times, tolerance)
-"""
-
-
-@pytest.fixture
-def found(tmp_path, in_this_process):
-    """Return where the pin of an engine is after 1 s, over that of the reference, by a run that resumes.
-
-    Return also whether it was measured and not taken from an earlier run.
-    """
-    exact = fake_studies.measure_motion(reference).data["end"]
-
-    def of(engine):
-        fake_studies.MEASURED.clear()
-        result = run((fake_studies.MOTION,), (engine,), folder=tmp_path / "data", resume=True)
-        ratio = result.outcomes["motion", engine.name].data["end"] / exact
-        return round(float(ratio[0]), 6), bool(fake_studies.MEASURED)
-
-    return of
 
 
 @pytest.fixture
@@ -80,65 +47,45 @@ def code(tmp_path, monkeypatch):
     forget()
 
 
-SAME_AND_CHANGED = ((1.0, True), (1.0, False), (2.0, True))
-"""Factors of the engine, one run after the other, and whether it must be measured."""
+def stamp_of(module, *promises, folder=""):
+    """Return the stamp of the engine that is the function ``simulate`` of a module."""
+    return engine_stamp(Engine("mine", ByName(module, "simulate", str(folder)), *promises))
+
 
 CHANGED = {
-    "the module itself": ("mine", lambda factor: {"mine.py": HEAD + ENGINE.format(factor=factor)}),
-    "a module beside it": (
-        "mine",
-        lambda factor: {
-            "mine.py": f"{HEAD}from settings import FACTOR{ENGINE.format(factor='FACTOR')}",
-            "settings.py": f"FACTOR = {factor}",
-        },
-    ),
-    "a module of a package beside it, imported by name when it runs": (
-        "mine",
-        lambda factor: {
-            "mine.py": f"{HEAD}import importlib{ENGINE.format(factor=BY_NAME)}",
-            "helpers/deep/numbers_of_mine.py": f"FACTOR = {factor}",
-        },
-    ),
-    "another module of its package": (
-        "package.inner.solver",
-        lambda factor: {
-            "package/inner/solver.py": f"{HEAD}from ..deep.settings import FACTOR{ENGINE.format(factor='FACTOR')}",
-            "package/deep/settings.py": f"FACTOR = {factor}",
-        },
-    ),
+    "the module itself": ("mine", "mine.py"),
+    "a module beside it": ("mine", "settings.py"),
+    "a module of a package beside it": ("mine", "helpers/deep/numbers_of_mine.py"),
+    "another module of its package": ("package.inner.solver", "package/deep/settings.py"),
+    "a compiled extension beside it": ("mine", f"kernel{EXTENSION_SUFFIXES[0]}"),
 }
-BY_NAME = "importlib.import_module('helpers.deep.numbers_of_mine').FACTOR"
 
 
-@pytest.mark.parametrize(("module", "sources"), CHANGED.values(), ids=CHANGED)
-def test_an_engine_is_measured_again_when_its_module_or_one_beside_it_changes(module, sources, code, found):
-    for factor, again in SAME_AND_CHANGED:
-        code(sources(factor))
-        assert found(Engine("mine", ByName(module, "simulate"))) == (factor, again)
+@pytest.mark.parametrize(("module", "changed"), CHANGED.values(), ids=CHANGED)
+def test_an_engine_has_another_stamp_when_its_module_or_one_beside_it_changes(module, changed, code):
+    own = f"{module.replace('.', '/')}.py"
+    stamps = []
+    for text in ("FACTOR = 1", "FACTOR = 1", "FACTOR = 2"):
+        code({own: "from settings import FACTOR\ndef simulate(): pass\n"} | {changed: text})
+        stamps.append(stamp_of(module))
+    assert None not in stamps
+    assert stamps[0] == stamps[1] != stamps[2]
 
 
-def test_an_engine_is_measured_again_when_a_compiled_extension_beside_it_changes(code, found):
-    folder = code({"mine.py": HEAD + ENGINE.format(factor=1.0)})
-    for content, again in ((b"one", True), (b"one", False), (b"two", True)):
-        (folder / f"kernel{EXTENSION_SUFFIXES[0]}").write_bytes(content)
-        assert found(Engine("mine", ByName("mine", "simulate"))) == (1.0, again)
+def test_an_engine_has_another_stamp_when_it_promises_something_else(code):
+    code({"mine.py": "def simulate(): pass"})
+    promises = ((("pin",), True), (("pin",), True), (("pin", "ring"), True), (("pin", "ring"), False))
+    one, same, *others = (stamp_of("mine", *each) for each in promises)
+    assert one == same
+    assert len({one, *others}) == 3
 
 
-def test_an_engine_is_measured_again_when_it_promises_something_else(code, found):
-    code({"mine.py": HEAD + ENGINE.format(factor=1.0)})
-    engine = ByName("mine", "simulate")
-    assert [found(Engine("mine", engine, *promises))[1] for promises in PROMISES] == [True, False, True, True]
-
-
-PROMISES = ((("pin",), True), (("pin",), True), (("pin", "ring"), True), (("pin", "ring"), False))
-
-
-def test_an_engine_without_files_is_always_measured_again(found):
+def test_an_engine_without_files_has_no_stamp():
     session = types.ModuleType("session")
-    exec(compile(HEAD + ENGINE.format(factor=1.0), "<stdin>", "exec"), vars(session))
+    exec(compile("def simulate(): pass", "<stdin>", "exec"), vars(session))
     sys.modules["session"] = session
     try:
-        assert [found(Engine("mine", session.simulate)) for _ in range(2)] == [(1.0, True)] * 2
+        assert engine_stamp(Engine("mine", session.simulate)) is None
     finally:
         del sys.modules["session"]
 
@@ -147,7 +94,7 @@ def test_an_engine_without_files_is_always_measured_again(found):
 def test_the_modules_of_an_engine_are_not_imported_for_its_stamp(module, code):
     folder = code({"bad.py": "raise SystemExit", "bad_package/__init__.py": "raise SystemExit"})
     before = list(sys.path)
-    assert engine_stamp(Engine("bad", ByName(module, "simulate", str(folder)))) is not None
+    assert stamp_of(module, folder=folder) is not None
     assert sys.path == before
     assert "bad" not in sys.modules
 
@@ -161,51 +108,37 @@ def test_of_an_installed_module_its_own_file_counts_and_the_versions_of_all_pack
         (site / "installed.py").write_text(own)
         (site / "another.py").write_text(other)
         (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: helper\nVersion: {version}\n")
-        return engine_stamp(Engine("installed", ByName("installed", "simulate")))
+        return stamp_of("installed")
 
     assert now() == now(other="# of another package")
     assert len({now(), now(own="# changed"), now(version="1.1")}) == 3
 
 
-@pytest.fixture
-def outside(tmp_path):
-    """Engines from elsewhere by their kind, with the file that is changed, in the folder of the test."""
-    for name in ("engine.js", "helper.js", "engine.py", "engine", "model.fmu", "plan.json", "0f3a.csv"):
-        (tmp_path / name).write_text("before")
+OUTSIDE = {
+    "a program": (lambda folder: Program(("./engine", "1"), folder), "engine"),
+    "a script": (lambda folder: Program((sys.executable, "engine.py"), folder), "engine.py"),
+    "a package beside a script": (lambda folder: Program(("./engine.py",), folder), "helpers/helper.py"),
+    "a file of its language beside a script": (
+        lambda folder: Program((sys.executable, "-x", "engine.js"), folder),
+        "helper.js",
+    ),
+    "an FMU": (lambda folder: Fmu(f"{folder}/model.fmu"), "model.fmu"),
+    "a motion in a file": (MotionFiles, "0f3a.csv"),
+}
+"""Engines from elsewhere by their kind, with the file that is changed."""
+
+
+@pytest.mark.parametrize(("function", "changed"), OUTSIDE.values(), ids=OUTSIDE)
+def test_a_program_or_model_has_another_stamp_when_a_file_changes(function, changed, tmp_path):
     (tmp_path / "helpers").mkdir()
-    (tmp_path / "helpers" / "helper.py").write_text("before")
-    folder = str(tmp_path)
-    return {
-        "a program": (Program(("./engine", "1"), folder), "engine"),
-        "a script": (Program((sys.executable, "engine.py"), folder), "engine.py"),
-        "a package beside a script": (Program(("./engine.py",), folder), "helpers/helper.py"),
-        "a file of its language beside a script": (
-            Program((sys.executable, "-x", "engine.js"), folder),
-            "helper.js",
-        ),
-        "an FMU": (Fmu(f"{folder}/model.fmu"), "model.fmu"),
-        "a motion in a file": (MotionFiles(folder), "0f3a.csv"),
-    }
-
-
-@pytest.mark.parametrize(
-    "kind",
-    [
-        "a program",
-        "a script",
-        "a package beside a script",
-        "a file of its language beside a script",
-        "an FMU",
-        "a motion in a file",
-    ],
-)
-def test_a_program_or_model_has_another_stamp_when_a_file_changes(kind, outside, tmp_path):
-    function, name = outside[kind]
-    before = engine_stamp(Engine("it", function))
+    for name in ("engine.js", "engine.py", "engine", "plan.json", *(file for _, file in OUTSIDE.values())):
+        (tmp_path / name).write_text("before")
+    engine = Engine("it", function(str(tmp_path)))
+    before = engine_stamp(engine)
     assert before is not None
-    assert engine_stamp(Engine("it", function)) == before
-    (tmp_path / name).write_text("after")
-    assert engine_stamp(Engine("it", function)) != before
+    assert engine_stamp(engine) == before
+    (tmp_path / changed).write_text("after")
+    assert engine_stamp(engine) != before
 
 
 @pytest.mark.parametrize("command", [("python3", "-m", "mine"), ("no-such-program",)])

@@ -57,11 +57,19 @@ POSIX_ENDS = [
 ] * (os.name == "posix")
 
 
-@pytest.mark.parametrize(("function", "argument", "reason"), [*ENDS, *POSIX_ENDS])
-def test_however_work_ends_its_process_that_is_a_sentence_and_no_traceback(function, argument, reason, capfd):
+@pytest.fixture(scope="module")
+def workers():
+    """One process that works for several tests, and another one when it has ended."""
     with Workers() as workers:
-        assert workers.ask(function, argument).reason == reason
-        assert workers.ask(len, "next") == 4
+        yield workers
+
+
+@pytest.mark.parametrize(("function", "argument", "reason"), [*ENDS, *POSIX_ENDS])
+def test_however_work_ends_its_process_that_is_a_sentence_and_no_traceback(
+    function, argument, reason, workers, capfd
+):
+    assert workers.ask(function, argument).reason == reason
+    assert workers.ask(len, "next") == 4
     assert capfd.readouterr().err == ""
 
 
@@ -113,20 +121,20 @@ def test_a_stray_module_does_not_take_the_place_of_one_of_the_library(stray, fol
     assert isinstance(done(tempfile.gettempdir), str)
 
 
-def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(capfd):
-    assert done(last_words, 3) == Failure(
+def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(workers, capfd):
+    assert workers.ask(last_words, 3) == Failure(
         "its process came to a sudden end (exit status 3): the last word: 1 µm"
     )
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
 
 
-def test_nothing_that_a_worker_writes_reaches_the_terminal_as_it_is(capfd):
-    assert done(speak, "\x1b[31m \x9b") is None
+def test_nothing_that_a_worker_writes_reaches_the_terminal_as_it_is(workers, capfd):
+    assert workers.ask(speak, "\x1b[31m \x9b") is None
     assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
 
 
-def test_what_a_worker_writes_to_its_standard_error_is_not_lost(capfd):
-    assert done(warn, "once") == 4
+def test_what_a_worker_writes_to_its_standard_error_is_not_lost(workers, capfd):
+    assert workers.ask(warn, "once") == 4
     assert capfd.readouterr().err == "once\n"
 
 
@@ -135,18 +143,16 @@ def spoil(module):
     return os.getpid()
 
 
-def test_a_process_that_worked_for_one_engine_works_for_no_other():
-    with Workers() as workers:
-        spoilt = workers.ask(spoil, "json", owner="mine")
-        assert workers.ask(os.getpid, owner="mine") == spoilt
-        assert workers.ask(os.getpid) != spoilt
+def test_a_process_that_worked_for_one_engine_works_for_no_other(workers):
+    spoilt = workers.ask(spoil, "json", owner="mine")
+    assert workers.ask(os.getpid, owner="mine") == spoilt
+    assert workers.ask(os.getpid) != spoilt
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-def test_the_copy_of_a_process_does_not_answer_in_its_place():
-    with Workers() as workers:
-        assert isinstance(workers.ask(os.fork), int)
-        assert workers.ask(len, "four") == 4
+def test_the_copy_of_a_process_does_not_answer_in_its_place(workers):
+    assert isinstance(workers.ask(os.fork), int)
+    assert workers.ask(len, "four") == 4
 
 
 @pytest.mark.skipif(os.name != "posix", reason="this system has no process groups")

@@ -16,7 +16,6 @@ pytest.importorskip("fmpy.fmi3")
 
 from compare.claims.claim import Verdict  # noqa: E402
 from compare.claims.paper_parameters import FIG5, FIG11  # noqa: E402
-from compare.cli import app as cli  # noqa: E402
 from compare.engines import UnsupportedSystemError, engines  # noqa: E402
 from compare.engines.outside import fmu  # noqa: E402
 from compare.engines.outside.fmu import FmuError  # noqa: E402
@@ -184,21 +183,22 @@ def test_a_parameter_that_the_model_lacks_is_not_attempted_unless_it_is_nothing(
         engine.simulate(FIG5, START, [0.0, 0.1])
 
 
-def test_what_is_no_model_of_a_system_is_refused_in_one_sentence(packed, tmp_path, capsys):
+def refusal(file):
+    """Return in which sentence a file is refused as an engine."""
+    with pytest.raises(ValueError, match=r"\.fmu") as error:
+        engines([f"fmu:{file}"])
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+def test_what_is_no_model_of_a_system_is_refused_in_one_sentence(packed, tmp_path):
     (tmp_path / "text.fmu").write_text("no archive")
     lacking = packed("lacking", names=tuple(name for name in PARAMETERS + STATES if name != "mass"))
-    for file, reason in (
-        (tmp_path / "missing.fmu", "there is no such file"),
-        (tmp_path / "text.fmu", "text.fmu cannot be used as a model: "),
-        (lacking, "lacking.fmu is no model of a pin: it has no mass"),
-        (
-            packed("exchange", interface="ModelExchange"),
-            "exchange.fmu cannot be used as a model: FMI 2.0, but ",
-        ),
-    ):
-        assert cli.status(["report", "--engine", f"fmu:{file}", "--output", str(tmp_path)]) == 2
-        (sentence,) = capsys.readouterr().err.splitlines()
-        assert reason in sentence
+    exchange = packed("exchange", interface="ModelExchange")
+    assert "there is no such file" in refusal(tmp_path / "missing.fmu")
+    assert "text.fmu cannot be used as a model: " in refusal(tmp_path / "text.fmu")
+    assert "lacking.fmu is no model of a pin: it has no mass" in refusal(lacking)
+    assert "exchange.fmu cannot be used as a model: FMI 2.0, but " in refusal(exchange)
 
 
 BROKEN = {
@@ -214,7 +214,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("kind", BROKEN)
-def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path, monkeypatch, capsys, kind):
+def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path, monkeypatch, kind):
     members, reason = BROKEN[kind]
     monkeypatch.setattr(fmu, "MOST_BYTES", 1e5)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "unpacked"))
@@ -224,8 +224,7 @@ def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path,
             archive.writestr("modelDescription.xml", description(2, PARAMETERS + STATES))
         for name, content in members.items():
             archive.writestr(name, content)
-    assert cli.status(["report", "--engine", f"fmu:{tmp_path}/broken.fmu", "--output", str(tmp_path)]) == 2
-    (sentence,) = capsys.readouterr().err.splitlines()
+    sentence = refusal(tmp_path / "broken.fmu")
     assert "broken.fmu cannot be used as a model: " in sentence
     assert reason in sentence
     assert str(tmp_path / "unpacked") not in sentence

@@ -55,6 +55,14 @@ def test_motions_are_matched_by_where_they_were_going():
     assert branches[1] == {i: up(i) for i in range(6)}
 
 
+@pytest.mark.parametrize("radius", ["least", "largest"])
+def test_motions_that_differ_in_one_radius_only_are_matched_by_that(radius):
+    one, other = (Motion(2, 1, 0.4, 1.0)._replace(**{radius: size}) for size in (0.5, 0.9))
+    found = [[one, other], [other, one], [one, other], [other, one]]
+    first, second = matched(found, lambda motion: motion.end)
+    assert (first, second) == (dict.fromkeys(range(4), one), dict.fromkeys(range(4), other))
+
+
 def test_what_jumps_begins_a_new_branch():
     found = [[Motion(2, 1, 0.0, radius)] for radius in (1.0, 1.0, 0.5, 0.5)]
     assert [sorted(branch) for branch in matched(found, lambda motion: motion.end)] == [[0, 1], [2, 3]]

@@ -19,21 +19,33 @@ def end(system, start, duration, tolerance=1e-9):
     return end_of(plain_trajectory(system, np.array(start), 0.3 * duration, duration, tolerance))
 
 
-def test_both_motions_of_fig_5():
-    assert end(FIG5, FIG5_STARTS["equilibrium"], 300.0) == EndState.SELF_CENTRED
-    assert end(FIG5, FIG5_STARTS["whirl"], 300.0) == EndState.WHIRL
+MIRRORED = tuple(value * sign for value, sign in zip(FIG5_STARTS["whirl"], (1, -1, 1, -1), strict=True))
+HELD = replace(FIG5, friction_force=0.15, disc_speed=0.8)
+RADIUS = 0.9 * sticking_radius(HELD)
+STICKING = replace(FIG5, friction_force=0.124, disc_speed=0.8), (0.1, 0.0, 0.03, 0.0)
+SLIPPING = FIG5, FIG5_STARTS["whirl"]
+
+ENDS = {
+    "at rest in space": (FIG5, FIG5_STARTS["equilibrium"], 300.0, EndState.SELF_CENTRED),
+    "whirl": (*SLIPPING, 300.0, EndState.WHIRL),
+    "not yet a whirl": (*SLIPPING, 100.0, EndState.UNDECIDED),
+    "whirl the other way": (replace(FIG5, disc_speed=-1.5), MIRRORED, 300.0, EndState.WHIRL),
+    "whirl without offset": (CENTRED, whirls(CENTRED)[0].state, 60.0, EndState.WHIRL),
+    "stuck": (HELD, (RADIUS, 0.0, 0.0, 0.8 * RADIUS), 60.0, EndState.STUCK),
+    "stuck the other way": (
+        replace(HELD, disc_speed=-0.8), (RADIUS, 0.0, 0.0, -0.8 * RADIUS), 60.0, EndState.STUCK,
+    ),
+    "sticks beyond the sticking radius": (*STICKING, 300.0, EndState.STICK_SLIP),
+}  # fmt: skip
 
 
-def test_a_whirl_about_an_axis_without_offset():
-    (whirl,) = whirls(CENTRED)
-    assert end(CENTRED, whirl.state, 60.0) == EndState.WHIRL
+@pytest.mark.parametrize(("system", "start", "duration", "expected"), ENDS.values(), ids=ENDS)
+def test_the_end_is_the_one_that_theory_knows(system, start, duration, expected):
+    assert end(system, start, duration) == expected
 
 
-@pytest.mark.parametrize("speed", [0.8, -0.8])
-def test_a_pin_inside_of_the_sticking_radius_is_stuck(speed):
-    pin = replace(FIG5, friction_force=0.15, disc_speed=speed)
-    radius = 0.9 * sticking_radius(pin)
-    assert end(pin, (radius, 0.0, 0.0, speed * radius), 60.0) == EndState.STUCK
+def test_the_modulated_cycle_of_fig_11():
+    assert end(FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), 1500.0, 1e-6) == EndState.MODULATED
 
 
 @pytest.mark.parametrize("duration", [20.0, 200.0])
@@ -43,29 +55,6 @@ def test_a_pin_that_creeps_to_the_sticking_radius_for_ever_is_no_whirl(duration)
     start = (0.12, 0.0, 0.0, 0.06)
     assert end(pin, start, duration) == EndState.STUCK
     assert simulate_ensemble(pin, start, duration=duration).end.tolist() == [EndState.STUCK]
-
-
-def test_a_pin_that_sticks_beyond_the_sticking_radius_slips_and_sticks_again_and_again():
-    pin = replace(FIG5, friction_force=0.124, disc_speed=0.8)
-    assert end(pin, (0.1, 0.0, 0.03, 0.0), 300.0) == EndState.STICK_SLIP
-
-
-def test_the_modulated_cycle_of_fig_11():
-    assert end(FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), 1500.0, 1e-6) == EndState.MODULATED
-
-
-def test_a_transient_is_undecided():
-    assert end(FIG5, FIG5_STARTS["whirl"], 100.0) == EndState.UNDECIDED
-
-
-def test_a_whirl_turning_the_other_way():
-    pin = replace(FIG5, disc_speed=-1.5)
-    x, y, vx, vy = FIG5_STARTS["whirl"]
-    assert end(pin, (x, -y, vx, -vy), 300.0) == EndState.WHIRL
-
-
-STICKING = replace(FIG5, friction_force=0.124, disc_speed=0.8), (0.1, 0.0, 0.03, 0.0)
-SLIPPING = FIG5, FIG5_STARTS["whirl"]
 
 
 @pytest.mark.parametrize(("system", "start"), [STICKING, SLIPPING], ids=["sticking", "slipping"])

@@ -1,4 +1,5 @@
 import json
+import re
 
 import numpy as np
 import pytest
@@ -88,3 +89,26 @@ def test_each_mixture_of_an_uncertainty_has_one_quantity_of_the_second_draw():
         for j, mixture in enumerate(mixtures):
             np.testing.assert_array_equal(mixture, second if i == j else first)
     np.testing.assert_array_equal(states[:, :3], np.tile([0.1, 0.0, 0.03], (35, 1)))
+
+
+def test_an_axis_has_its_ends_and_equal_steps():
+    axis = Axis.parse("vx=-0.4:0.5:10", "component", ("x", "vx"))
+    assert axis == Axis("vx", -0.4, 0.5, 10)
+    assert (axis.values[0], axis.values[-1], len(axis.values)) == (-0.4, 0.5, 10)
+    np.testing.assert_allclose(np.diff(axis.values), 0.1, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("vx", "write it as NAME=LOW:HIGH:POINTS"),
+        ("vx=1:2", "write it as NAME=LOW:HIGH:POINTS"),
+        ("vx=0:inf:5", "vx = inf: it must be finite"),
+        ("vx=0:a:5", "vx = 'a': it must be a number"),
+        ("vx=0:1:1", "vx with 1 points: there must be 2 to 100000"),
+        ("vx=0:1:2.5", "the number of points must be a whole number"),
+    ],
+)
+def test_what_is_no_axis_is_refused(text, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        Axis.parse(text, "component", ("x", "vx"))

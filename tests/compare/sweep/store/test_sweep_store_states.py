@@ -14,6 +14,7 @@ from long_sweeps import assert_same, content
 from compare.claims.paper_parameters import FIG5
 from compare.sweep.compute.executors import InProcess
 from compare.sweep.compute.run import finished, run
+from compare.sweep.compute.work import simulate_chunk
 from compare.sweep.define.axes import Axis
 from compare.sweep.define.plan import Basin
 from compare.sweep.store.store import SweepStore
@@ -27,17 +28,18 @@ PLAN = Basin(
 CHUNK = 3
 
 
-class Killed(InProcess):
-    """Does so many tasks, and then no more."""
+class Counting(InProcess):
+    """Counts the chunks that it simulates, and does so many tasks and then no more."""
 
-    def __init__(self, tasks):
-        self.left = tasks
+    def __init__(self, tasks=10**9):
+        self.left, self.simulated = tasks, 0
 
     def run(self, tasks):
         for task in tasks:
             if self.left == 0:
                 raise KeyboardInterrupt
             self.left -= 1
+            self.simulated += task.function is simulate_chunk
             yield task.key, task.function(*task.arguments)
 
 
@@ -68,7 +70,7 @@ class Store(RuleBasedStateMachine):
     @rule(tasks=st.integers(1, 12))
     def work_and_be_killed(self, tasks):
         with suppress(KeyboardInterrupt):
-            run(SweepStore.open(self.folder / "sweep.zarr"), Killed(tasks), silent)
+            run(SweepStore.open(self.folder / "sweep.zarr"), Counting(tasks), silent)
 
     @rule(data=st.data())
     def lose_a_file(self, data):
@@ -94,7 +96,9 @@ class Store(RuleBasedStateMachine):
 
     @rule()
     def resume(self):
-        run(SweepStore.open(self.folder / "sweep.zarr"), InProcess(), silent)
+        for again in (False, True):
+            run(SweepStore.open(self.folder / "sweep.zarr"), counting := Counting(), silent)
+            assert not (again and counting.simulated)
         assert finished(SweepStore.open(self.folder / "sweep.zarr"))
         assert_same(content(self.folder / "sweep.zarr"), Store.whole)
 
