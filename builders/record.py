@@ -5,7 +5,7 @@
     python builders/record.py mujoco bullet   # or some of them
     python builders/record.py --laws          # what tells the law alone; times and errors stay as they are recorded
 
-Each setting of an engine goes through the cases of ``compare.foreign.cases`` with tolerances that fall by the factor
+Each setting of an engine goes through the cases of ``compare.foreign`` with tolerances that fall by the factor
 of ``compare.claims.error_estimates.COARSENING``, until a run takes ``LONGEST``. An engine that is not installed is
 left out, with a sentence. Times are to be compared within one recording only.
 """
@@ -37,8 +37,7 @@ from compare.diagnosis.findings import PROBES
 from compare.diagnosis.run import measured
 from compare.engines import INSTALLED, Engine, installed_engine
 from compare.engines.live.setting import rate
-from compare.foreign.cases import CASES, Case
-from compare.foreign.records import COLUMNS, DIGITS, FOLDER
+from compare.foreign import CASES, COLUMNS, DIGITS, FOLDER, Case
 from compare.run.workers import Failure, Workers
 from reference_model import SimulationError, Trajectory
 from reference_model.systems import System

@@ -283,8 +283,7 @@ def _measured(study: Study, name: str, parts: tuple[str, ...]) -> Findings:
 def _account(study: Study, claim: Claim, engine: str) -> str:
     """Return a claim with the numbers that decide, and all that is needed to repeat it with the named engine."""
     from compare.claims.claim import Verdict
-    from compare.report.numbers import error_text, value_text
-    from compare.report.worst import answers_text, in_short, worst
+    from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
 
     element = worst(claim)
     repeat = {
@@ -357,7 +356,7 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
     """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
     from compare.diagnosis.run import IN_SHORT, in_short
-    from compare.run.loading import loaded
+    from compare.run.runner import loaded
     from compare.run.workers import Workers
 
     with Workers(1, IN_SHORT) as workers:

@@ -11,8 +11,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from compare.diagnosis.laws import CONE
-from compare.diagnosis.recorded import row_of
-from compare.foreign.records import recordings
+from compare.diagnosis.run import row_of
+from compare.foreign import recordings
 from compare.output.figures import paper_style
 
 PICTURE = Path(__file__).with_name("engines.png")
@@ -24,7 +24,7 @@ COLUMNS = {
     "release": "pin lets go",
     "disc": "disc on six points",
 }
-"""What the motions of ``compare.foreign.cases`` are called here."""
+"""What the motions of ``compare.foreign`` are called here."""
 
 LAW = "law of friction"
 COLOURS = {"✓": "#bfe3cf", "?": "#fff3bf", "✗": "#e0796b", "": "white"}

@@ -12,11 +12,11 @@ import numpy as np
 
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.declared import Declared, takes_engine
+from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table
 from compare.engines import Engine, UnsupportedSystemError
-from compare.engines.finer_steps import decided
 from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 try:
     import typer
 
-    from compare.cli.door.command import (
+    from compare.cli.command import (
         BAD_INPUT,
         FINE,
         INTERRUPTED,
@@ -28,12 +28,12 @@ try:
         printing,
         say,
     )
+    from compare.cli.diff import diff
     from compare.cli.export_fmu import export_fmu
     from compare.cli.listing import errata, list_studies
-    from compare.cli.measure.diff import diff
-    from compare.cli.measure.matrix import matrix
-    from compare.cli.measure.plan import plan
-    from compare.cli.measure.report import report
+    from compare.cli.matrix import matrix
+    from compare.cli.plan import plan
+    from compare.cli.report import report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
 except KeyboardInterrupt:  # which may come before there is anything that could take it

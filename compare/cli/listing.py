@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from compare.cli.door.options import studies_of
+from compare.cli.options import studies_of
 
 
 def list_studies(context: typer.Context) -> None:

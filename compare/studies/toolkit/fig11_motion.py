@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model import plain
 from reference_model.contact.contact_law import contact_of
 from reference_model.systems import DiscOnDisc, FloatArray

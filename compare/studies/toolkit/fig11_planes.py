@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTermRing
 from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 

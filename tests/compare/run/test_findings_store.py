@@ -9,7 +9,7 @@ from processes import environment
 
 from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Findings
-from compare.run.findings_store import Store
+from compare.run.store import Store
 
 NOW = "a stamp"
 

@@ -16,10 +16,10 @@ from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait
 
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
-from compare.cli.measure.report import store_of
+from compare.cli.report import store_of
 from compare.run import workers
-from compare.run.drawings import Drawing
 from compare.run.runner import run
+from compare.run.store import Drawing
 from compare.run.workers import Failure
 
 BOTH = (fake.GOOD, fake.FAILING)

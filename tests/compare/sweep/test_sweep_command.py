@@ -9,14 +9,14 @@ import pytest
 from long_sweeps import content
 from processes import REAL, ROOT, environment
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.cli import app as cli
-from compare.cli.door.command import NOTHING_SHOWN
+from compare.cli.command import NOTHING_SHOWN
 from compare.cli.sweep.commands import MAPS, PLANES
 from compare.cli.sweep.run import STORE
-from compare.sweep.define.distributions import KINDS
-from compare.sweep.store.files import Files
-from compare.sweep.store.store import SweepStore
+from compare.sweep.distributions import KINDS
+from compare.sweep.files import Files
+from compare.sweep.store import SweepStore
 
 SMALL = ["--until", "20"]  # most are undecided then
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
@@ -167,7 +167,7 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(finished, m
 
 def test_a_store_of_other_code_is_refused(finished, monkeypatch, capsys):
     _, arguments = finished
-    monkeypatch.setattr("compare.run.stamp.stamp", lambda: "other")
+    monkeypatch.setattr("compare.run.provenance.stamp", lambda: "other")
     assert cli.status([*arguments, "--resume"]) == 2
     assert "was computed by other code or libraries" in capsys.readouterr().err
 
@@ -241,7 +241,7 @@ def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys)
 
 
 def test_figures_of_an_unfinished_sweep_are_refused(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("compare.sweep.store.store.SMALL", 0)
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)
     assert cli.status([*BASIN, "--output", str(tmp_path)]) == NOTHING_SHOWN
     shutil.rmtree(tmp_path / STORE / "result")
     capsys.readouterr()

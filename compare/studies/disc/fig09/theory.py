@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING
-from compare.claims.paper_parameters import FIG9
+from compare.claims.parameters import FIG9
 from compare.claims.study import Data
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
 from compare.studies.toolkit.sticking import safest_angle, stuck

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import TRUTH
 from compare.claims.linearised_flow import ComplexArray, rotated
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.disc.fig11.parameters import (

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import WORKING
-from compare.claims.paper_parameters import FIG8
+from compare.claims.parameters import FIG8
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.toolkit.free_bodies import NEAR, Slowing

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.disc.simulated_map.study import DAMPING, SHAFT_DAMPING

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from compare.claims.error_estimates import WORKING
 from compare.claims.measured import Measured, answers_of
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from compare.claims.study import Data, Study
 from compare.studies.toolkit.fig11_planes import KINDS, curves_in
 from reference_model import onset_load, whirls

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,

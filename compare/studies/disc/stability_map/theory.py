@@ -15,8 +15,7 @@ from scipy.optimize import brentq
 from compare.claims.error_estimates import WORKING
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG11
-from compare.claims.parameters import at_each
+from compare.claims.parameters import FIG11, at_each
 from compare.claims.study import Data
 from compare.engines import Simulate
 from compare.studies.toolkit.fig11_planes import KINDS, LAWS, PLANES, curves_in

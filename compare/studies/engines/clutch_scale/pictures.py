@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.engines.clutch_scale.study import CLUTCH, SAMPLES, UNTIL

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import TRUTH, WORKING, refined
 from compare.claims.measured import Measured
-from compare.claims.paper_parameters import FIG4, FIG5, FIG8
+from compare.claims.parameters import FIG4, FIG5, FIG8
 from compare.claims.study import Data, Study
 from compare.engines import Engine
 from compare.studies.toolkit.deviations import remaining_transient

@@ -10,8 +10,7 @@ import compare.studies.engines.foreign_engines.theory as ladders
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
 from compare.claims.measured import Measured
 from compare.claims.study import Data, Study
-from compare.foreign.cases import CASES
-from compare.foreign.records import DIGITS, ERROR, SECONDS, STEPS
+from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
 from compare.studies.engines.foreign_engines.theory import (
     BOXES,
     BY_AXIS,

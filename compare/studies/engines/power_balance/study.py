@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.error_estimates import ROUNDING, WORKING, refined
 from compare.claims.measured import Measured
-from compare.claims.paper_parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
 from compare.claims.study import Data, Study
 from compare.engines import Engine, UnsupportedSystemError
 from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG5_STARTS
+from compare.claims.parameters import FIG5_STARTS
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
 from compare.studies.pin.basins.theory import PLANE

@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims.error_estimates import WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.claims.shares import of_grid
 from compare.claims.study import Study
 from compare.engines import Engine

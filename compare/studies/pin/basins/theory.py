@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from compare.claims.error_estimates import TIGHTEST
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.claims.shares import Ends, mixed, of_sample
 from compare.claims.study import Data
 from reference_model import StickSlipOrbit, basin_boundary, self_centred_equilibria, stick_slip_orbits

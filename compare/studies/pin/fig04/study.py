@@ -11,7 +11,7 @@ import numpy as np
 
 from compare.claims.error_estimates import WORKING, Measurement, refined
 from compare.claims.measured import Measured
-from compare.claims.paper_parameters import FIG4
+from compare.claims.parameters import FIG4
 from compare.claims.study import Data, Study
 from compare.engines import Engine
 from compare.studies.toolkit.whirls import whirl_of

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import TRUTH, WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG4
+from compare.claims.parameters import FIG4
 from compare.claims.study import Data, Study
 from compare.engines import Engine
 from compare.studies.toolkit.whirls import extent, whirl_of

@@ -10,7 +10,7 @@ import numpy as np
 
 from compare.claims.error_estimates import TRUTH, WORKING, known, observed_exponent, refined
 from compare.claims.measured import Measured
-from compare.claims.paper_parameters import CENTRED, FIG5_STARTS
+from compare.claims.parameters import CENTRED, FIG5_STARTS
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.nonlinear_support.theory import (

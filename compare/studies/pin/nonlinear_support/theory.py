@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from compare.claims.error_estimates import TRUTH, WORKING
-from compare.claims.paper_parameters import CENTRED, FIG5, FIG9
+from compare.claims.parameters import CENTRED, FIG5, FIG9
 from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.toolkit.whirls import whirl_of

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from compare.claims.error_estimates import WORKING
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
-from compare.claims.paper_parameters import CENTRED
+from compare.claims.parameters import CENTRED
 from compare.claims.study import Data
 from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues

@@ -3,7 +3,7 @@ import re
 import numpy as np
 import pytest
 
-from compare.sweep.define.axes import Axis
+from compare.sweep.quantities import Axis
 
 NAMES = ("x", "vx")
 

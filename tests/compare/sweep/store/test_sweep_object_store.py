@@ -9,8 +9,8 @@ from long_sweeps import LONG, assert_same, content
 
 from compare.cli import app as cli
 from compare.sweep.compute.run import finished
-from compare.sweep.store.files import Files, StoreError
-from compare.sweep.store.store import SweepStore
+from compare.sweep.files import Files, StoreError
+from compare.sweep.store import SweepStore
 
 
 def test_workers_write_into_it_though_one_is_killed(undisturbed, tmp_path, capsys):

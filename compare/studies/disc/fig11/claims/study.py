@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compare.claims.paper_parameters import FIG8
+from compare.claims.parameters import FIG8
 from compare.claims.study import Study
 from compare.studies.disc.fig11.parameters import BOTH_STABLE, FROM_THE_CYCLE
 from compare.studies.disc.fig11.pictures import draw
