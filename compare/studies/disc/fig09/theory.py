@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING
 from compare.claims.parameters import FIG9
-from compare.claims.study import Data
+from compare.claims.study import Data, Study
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
 from compare.studies.toolkit.sticking import safest_angle, stuck
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
@@ -348,3 +348,16 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),
     }
+
+
+# --- The study of Figs. 9 and 10, to which the modules beside this one add its claims.
+
+STUDY = Study.beside(
+    __file__,
+    "fig09",
+    source=SOURCE,
+    system=RING,
+    seconds=7.0,
+    words={"own": f"{RING.offset:g}"},
+)
+STUDY.provides(curves=curves)

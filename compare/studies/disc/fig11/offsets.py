@@ -1,4 +1,4 @@
-"""For which offset the modulated cycle of Fig. 11 exists: between steady whirl and self-centred equilibrium."""
+"""The whirl of Fig. 11 with an offset, and on six points."""
 
 from __future__ import annotations
 
@@ -11,17 +11,21 @@ import numpy as np
 from compare.claims.error_estimates import WORKING, Measurement, known, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import at_each
-from compare.engines import Engine
-from compare.studies.disc.fig11.claims.study import STUDY
+from compare.engines import Engine, StatesOnly, UnsupportedSystemError
 from compare.studies.disc.fig11.parameters import (
     ENDS_TOLERANCE,
     ENDS_UNTIL,
+    EXTREMES,
     KINDS,
     LOOKED_AT,
+    OF_RESTS,
     OFFSETS,
     ORBITS_EXTENT,
+    ROUND,
     SAMPLES_A_TURN,
+    STUDY,
     SWING,
+    TIMES,
     TRIED,
     WITHOUT_ANGLE,
 )
@@ -29,12 +33,16 @@ from compare.studies.disc.fig11.theory import (
     critical_offset,
     disc_at,
     extents,
+    extremes_of,
     multipliers_by_variation,
     pair_modulus,
     rest_offset,
 )
-from compare.studies.toolkit.fig11_motion import RING, SOURCE, START, rates
-from reference_model import Orbit
+from compare.studies.toolkit.fig11_motion import RING, SIX, SOURCE, START, rates
+from reference_model import Orbit, Trajectory, simulate
+from reference_model.systems import FloatArray
+
+# --- For which offset the modulated cycle of Fig. 11 exists: between steady whirl and self-centred equilibrium.
 
 
 @STUDY.claim(
@@ -119,3 +127,75 @@ def end_of(
     swing = np.ptp(averaged[-round(LOOKED_AT / step) :])
     kind = "modulated" if swing > SWING else "whirl" if found[1] - found[0] > ORBITS_EXTENT else "rest"
     return found, kind
+
+
+# --- The modulated motion on six points, of which single ones come to rest.
+
+NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
+
+
+@STUDY.claim(
+    "Single points of six, about which the disc then turns, come to rest when the reference says",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s",
+    resolution=1e-2,
+    note=f"{NOTE} A rest too many or too few shows as a missing number.",
+)
+def points_rest(engine: Engine) -> Measured:
+    """Compare when single points come to rest and let go with when they do in the reference."""
+    if isinstance(_run(engine, OF_RESTS), StatesOnly):
+        raise UnsupportedSystemError(f"{engine.name} does not tell when single points rest")
+    predicted = rests_of_points(_reference())
+
+    def rests(tolerance: float) -> FloatArray:
+        found = rests_of_points(_run(engine, tolerance))
+        return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
+
+    found = refined(rests, OF_RESTS)
+    longer = engine.simulate(SIX, START, TIMES, tolerance=OF_RESTS)
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=float(np.max(known(found.value, found.error))),
+        components=[
+            f"{what} {1 + i}" for i in range(len(predicted) // 2) for what in ("start of rest", "end of rest")
+        ],
+        system=SIX,
+        data={"six points": longer.states, "six points: rests": rests_of_points(longer)},
+    )
+
+
+@STUDY.claim(
+    "Within 300 s the motion on six points has the least and greatest radius and spin that the reference gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-5,
+    note=NOTE,
+)
+def extremes_on_six_points(engine: Engine) -> Measured:
+    """Compare the extremes over one modulation with those of the reference."""
+    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), OF_RESTS, alike=False)
+    return Measured(
+        predicted=extremes_of(_reference()),
+        value=found.value,
+        error=found.largest,
+        components=EXTREMES,
+        system=SIX,
+    )
+
+
+def rests_of_points(trajectory: Trajectory) -> FloatArray:
+    """Return when single points come to rest and let go, in s, one after the other, shape (2·rests,)."""
+    return np.ravel([(phase.start, phase.end) for phase in trajectory.phases if phase.kind == "pivot"])
+
+
+@functools.lru_cache(maxsize=4)
+def _run(engine: Engine, tolerance: float) -> Trajectory:
+    return engine.simulate(SIX, START, ROUND, tolerance=tolerance)
+
+
+@functools.cache
+def _reference() -> Trajectory:
+    return simulate(SIX, START, ROUND, tolerance=1e-11)

@@ -10,13 +10,13 @@ import numpy as np
 
 from compare.claims.error_estimates import extrapolated_order
 from compare.claims.measured import Measured
-from compare.studies.disc.fig09.claims.study import STUDY
 from compare.studies.disc.fig09.theory import (
     CENTRED,
     DAMPINGS,
     PAPER_LAW,
     RING,
     SOURCE,
+    STUDY,
     last_stable_load,
     marginal_ratio,
     orbits,

@@ -20,7 +20,6 @@ from compare.claims.error_estimates import COARSENING, ROUNDING, WORKING, refine
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.claims.measured import Measured
 from compare.engines import Engine
-from compare.studies.drivetrain.frozen.claims.study import STUDY
 from compare.studies.drivetrain.frozen.theory import (
     BETWEEN,
     BORDER_SURPLUS,
@@ -31,6 +30,7 @@ from compare.studies.drivetrain.frozen.theory import (
     MODULATED,
     PUSH,
     ROUGHER,
+    STUDY,
     TIME,
     TOLERANCE,
     UNTIL,

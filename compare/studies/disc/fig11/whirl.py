@@ -8,23 +8,28 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
-from compare.claims.error_estimates import Measurement, refined
+from compare.claims.error_estimates import Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.measured import Measured
 from compare.engines import Engine
-from compare.studies.disc.fig11.claims.study import STUDY
 from compare.studies.disc.fig11.parameters import (
     AMPLITUDE,
     CENTRED,
     COMPONENTS,
     DURATION,
+    EXTREMES,
     FOLLOWED,
+    OF_CYCLE,
     SLIDING,
     SLIDING_START,
+    STUDY,
+    TIMES,
     TOLERANCE,
+    UNTIL,
 )
-from compare.studies.disc.fig11.theory import SteadyWhirl, steady_whirl
-from compare.studies.toolkit.fig11_motion import DISCS, integrated
+from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
+from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated
+from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
@@ -184,3 +189,67 @@ def departure(
     away[:, ANGLE] -= turns * whirl.advance
     sizes = np.abs(away @ whirl.projection) / whirl.radius
     return np.asarray(times, dtype=float), np.asarray(sizes)
+
+
+# --- The modulated cycle itself on the continuous ring: its period, its turn about the axis and its extremes.
+
+CYCLE_NOTE = (
+    f"The last modulation within {UNTIL:g} s, from one maximum of the radius to the next. Predicted: (19) as it "
+    "stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the change from the "
+    "modulation before, of both."
+)
+
+
+@STUDY.claim(
+    "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s, rad",
+    resolution=1e-3,
+    note=CYCLE_NOTE,
+    named={"period of the modulation": 0, "turn in it": 1},
+)
+def period_and_turn(engine: Engine) -> Measured:
+    """Compare period and turn of the last modulation with those of an integration of (19) as it stands."""
+    found = modulation(engine)
+    return Measured(
+        predicted=predicted_modulation()[0][:2],
+        value=found.value[:2],
+        error=found.error[:2],
+        components=("period in s", "turn in rad"),
+        data={"the continuous ring": _run(engine, OF_CYCLE).states},
+    )
+
+
+@STUDY.claim(
+    "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-6,
+    note=CYCLE_NOTE,
+)
+def extremes(engine: Engine) -> Measured:
+    """Compare the extremes of the last modulation with those of an integration of (19) as it stands."""
+    found = modulation(engine)
+    return Measured(
+        predicted=predicted_modulation()[0][2:],
+        value=found.value[2:],
+        error=found.error[2:],
+        components=EXTREMES,
+    )
+
+
+@functools.lru_cache(maxsize=4)
+def modulation(engine: Engine) -> Measurement:
+    """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
+    found = refined(
+        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
+    )
+    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
+    return Measurement(found.value, known(found.value, error))
+
+
+@functools.lru_cache(maxsize=4)
+def _run(engine: Engine, tolerance: float) -> Trajectory:
+    return engine.simulate(RING, START, TIMES, tolerance=tolerance)

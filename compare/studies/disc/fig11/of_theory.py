@@ -6,12 +6,11 @@ import functools
 
 import numpy as np
 
-import compare.studies.disc.fig11.claims.whirl as whirl
+import compare.studies.disc.fig11.whirl as whirl
 from compare.claims.error_estimates import WORKING, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
-from compare.studies.disc.fig11.claims.offsets import end_of, error_of_monodromy
-from compare.studies.disc.fig11.claims.study import STUDY
+from compare.studies.disc.fig11.offsets import end_of, error_of_monodromy
 from compare.studies.disc.fig11.parameters import (
     BOTH_STABLE,
     CENTRED,
@@ -21,6 +20,7 @@ from compare.studies.disc.fig11.parameters import (
     EXTREMES,
     MODULATED_THERE,
     ROUND,
+    STUDY,
     SWING,
     TIMES,
 )
