@@ -147,18 +147,15 @@ def pytest_report_header(config: pytest.Config) -> str | None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
     """Take the modules of the studies, where an engine is to be judged."""
-    if (
-        not file_path.is_relative_to(STUDIES)
-        or file_path.name != "__init__.py"
-        or file_path.parents[2] != STUDIES  # the claims of some studies are packages too
-        or not _engines(parent.config)
-    ):
+    place = file_path.parent if file_path.name == "__init__.py" else file_path.with_suffix("")
+    # a study is a module in the folder of its group, or a package
+    if file_path.suffix != ".py" or STUDIES not in place.parents[1:2] or not _engines(parent.config):
         return None
     from compare.studies import STUDIES as ALL
 
     quick = parent.config.getoption("friction_discs_level") == "quick"
     wanted = parent.config.getoption("friction_discs_studies")
-    module = ".".join((STUDY_MODULES, *file_path.parent.relative_to(STUDIES).parts))
+    module = ".".join((STUDY_MODULES, *place.relative_to(STUDIES).parts))
     study = getattr(import_module(module), "STUDY", None)
     if study not in ALL or (quick and not study.quick) or (wanted and study.name not in wanted):
         return None

@@ -28,7 +28,7 @@ ByEngine = Mapping[str, Data]
 """What figures are drawn from: data by the names of engines, of those that found any, and of "theory"."""
 
 Figures: TypeAlias = "dict[str, Figure]"
-"""Of matplotlib, by the names under which ``study.md`` has their captions."""
+"""Of matplotlib, by the names under which a study's prose has their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
 Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
@@ -128,7 +128,7 @@ class Study:
 
     @classmethod
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
-        """Return the study whose prose is ``study.md`` beside ``file``, or in the folder above it.
+        """Return the study of the module ``file``, whose prose lies beside it, see :meth:`Prose.of`.
 
         ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
         """

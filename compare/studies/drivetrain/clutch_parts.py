@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compare.claims.error_estimates import COARSENING, change_as_error
 from compare.claims.measured import Measured
-from compare.claims.study import Data, Study
+from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
-from compare.studies.drivetrain.clutch_parts.pictures import draw
+from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
 from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 # Judder: a drive drags a clutch disc on a torsional spring, and friction falls with the slip.
 
@@ -225,7 +229,6 @@ STUDY = Study.beside(
     only=("exudyn",),
     seconds=4.0,
 )
-STUDY.provides(figures=draw, curves=curves)
 
 
 @STUDY.claim(
@@ -341,3 +344,41 @@ def balance(engine: Engine) -> Measured:
     return Measured(
         predicted=0.0, value=found[0], error=change_as_error(found, finer)[0] + rounding, size=start
     )
+
+
+# --- Figures of judder and of a clutch that warms up.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw growth over the fall of friction, and slip and temperature over time."""
+    if not data:
+        return {}
+    judder, (growth,) = new_figure(width=5.5, height=3.6)
+    growth.axhline(0.0, color=GREY, linewidth=0.6)
+    _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
+    growth.set(xlabel="fall of μ with the slip, over that of onset", ylabel="growth in 1/s")
+    growth.legend(loc="upper left")
+
+    heat, (slips, temperatures) = new_figure(ncols=2, width=10.0, height=3.6)
+    theory = data.get("theory", {})
+    if "cold t" in theory:
+        slips.plot(theory["cold t"], theory["slips"], color=GREY, linestyle="--", label="cold friction")
+    _both(slips, data, ("t", "slips"), ("engaged t", "engaged slip"))
+    _both(temperatures, data, ("held t", "held"), ("measured t", "measured temperature"))
+    slips.set(xlabel=axis("t", "s"), ylabel="slip in rad/s", title="engagement", ylim=(0.0, None))
+    temperatures.set(xlabel=axis("t", "s"), ylabel="temperature in °C", title="held slip")
+    slips.legend(fontsize=8.5)
+    return {"clutch-parts-judder": judder, "clutch-parts-heat": heat}
+
+
+def _both(panel: Axes, data: ByEngine, closed_form: tuple[str, str], measured: tuple[str, str]) -> None:
+    """Draw the closed form and the results of the engines, by the names of their abscissa and ordinate."""
+    for name in ("theory", *engines_in(data)):
+        x, y = closed_form if name == "theory" else measured
+        found = data.get(name, {})
+        if y in found:
+            style = curve(name, "closed form") if name == "theory" else points(name)
+            panel.plot(found[x], found[y], **style)
+
+
+STUDY.provides(figures=draw, curves=curves)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from compare.claims.error_estimates import WORKING, Measurement, refined
 from compare.claims.measured import Measured
 from compare.claims.parameters import FIG4
-from compare.claims.study import Data, Study
+from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
+from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.whirls import whirl_of
 from reference_model import Orbit, PinOnDisc
 from reference_model.formulas.pin import (
@@ -25,6 +26,10 @@ from reference_model.formulas.pin import (
     whirl_shift_error_limit,
 )
 from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 # --- Speeds and offsets at which the whirl of Fig. 4 is measured.
 
@@ -73,7 +78,6 @@ def error_of_eq18(pin: PinOnDisc) -> float:
 
 
 STUDY = Study.beside(__file__, "fig04", source=SOURCE, seconds=1.5, quick=True)
-STUDY.provides(curves=curves)
 
 AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
 
@@ -241,3 +245,66 @@ def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | N
 
 def _complex(point: FloatArray) -> complex:
     return complex(point[0], point[1])
+
+
+# --- Fig. 4 redrawn, and the errors of both formulas over the offset.
+
+DOTTED = (0.0, (1.0, 1.5))
+FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (
+    (whirl_shift, "-"),
+    (first_order_whirl_shift, DOTTED),
+)
+MARKERS = dict(zip(CLAIM_SPEEDS, "os^", strict=True))
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the mean of the whirl over the speed, and its distance from both formulas over the offset."""
+    figure, (left, right) = new_figure(ncols=2)
+    _draw_shift(left, data)
+    _draw_gaps(right, data)
+    return {"fig04-shift": figure}
+
+
+def _draw_shift(panel: Axes, data: ByEngine) -> None:
+    if "theory" in data:
+        theory = data["theory"]
+        for i, symbol in enumerate(("x_s", "y_s")):
+            style = curve("theory", f"${symbol}$, eq. (18)", linestyle="-" if i == 0 else (0.0, (5.0, 2.0)))
+            panel.plot(theory["speeds"], theory["eq18"][:, i], **style)
+        exact = curve("theory", "exact first order", color=GREY, linestyle=DOTTED, linewidth=1.4)
+        panel.plot(theory["speeds"], theory["first order"], **exact)
+    for engine in engines_in(data):
+        panel.plot(data[engine]["speeds"], data[engine]["means"], **points(engine))
+    handles, labels = panel.get_legend_handles_labels()
+    unique = dict(zip(labels, handles, strict=True))
+    panel.legend(unique.values(), unique.keys())
+    panel.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("x_s,\\ y_s", "m"), ylim=(0.0, None))
+
+
+def _draw_gaps(panel: Axes, data: ByEngine) -> None:
+    for engine in engines_in(data):
+        for speed, marker in MARKERS.items():
+            if f"means at {speed:g}" not in data[engine]:
+                continue
+            means = data[engine][f"means at {speed:g}"]
+            for formula, line in FORMULAS:
+                gap = [
+                    np.hypot(*(mean - formula(pin_at(speed, offset))))
+                    for mean, offset in zip(means, OFFSETS, strict=True)
+                ]
+                size = 7.0 if engine == "reference" else 3.5
+                style = points(engine, "", marker=marker, markersize=size, linestyle=line, linewidth=0.8)
+                panel.loglog(OFFSETS, gap, **style)
+    for speed, marker in MARKERS.items():
+        label = f"$\\omega$ = {speed:g} rad/s"
+        panel.plot([], [], ls="none", marker=marker, mfc="none", color=BLACK, label=label)
+    labels = (r"from (18), $\propto X_0$", r"from the exact first order, $\propto X_0^3$")
+    for (_, line), label in zip(FORMULAS, labels, strict=True):
+        panel.plot([], [], color=BLACK, lw=0.8, ls=line, label=label)
+    panel.set_xticks(OFFSETS, [f"{offset:g}" for offset in OFFSETS])
+    panel.minorticks_off()
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
+    panel.set(xlabel=axis("X_0", "m"), ylabel="distance of the mean in m")
+
+
+STUDY.provides(figures=draw, curves=curves)

@@ -6,15 +6,18 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from compare.claims.error_estimates import TRUTH, WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG4
-from compare.claims.study import Data, Study
+from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
+from compare.output.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.whirls import extent, whirl_of
 from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.formulas.pin import (
@@ -23,6 +26,10 @@ from reference_model.formulas.pin import (
     largest_load_with_equilibrium,
 )
 from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 # --- The pin of Fig. 6 and the friction forces at which it is measured.
 
@@ -124,7 +131,6 @@ STUDY = Study.beside(
     system=FIG6,
     seconds=3.5,
 )
-STUDY.provides(curves=curves)
 
 
 @STUDY.claim(
@@ -324,3 +330,60 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
     (first, last), (first_below, last_below) = ends
     ratio = (last - last_below) / (first - first_below)
     return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
+
+
+# --- The branches of Fig. 6.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the branches over the friction force, and those near the limit (5) enlarged."""
+    figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
+    for panel in (whole, near):
+        if "theory" in data:
+            _draw_theory(panel, data["theory"])
+        for engine in engines_in(data):
+            found = data[engine]
+            panel.plot(found["equilibrium loads"], found["equilibrium radius"], **points(engine))
+            panel.plot(found["whirl loads"], found["whirl extents"], **points(engine, ""))
+            if "cycle load" in found:
+                panel.plot(np.full(2, found["cycle load"]), found["cycle extent"], **points(engine, ""))
+        panel.set(xlabel=axis(r"\mu N", "N"))
+    whole.set(ylabel=axis(r"\rho", "m"), xlim=(0.0, WHIRL_LOADS[-1]), ylim=(0.0, None))
+    near.set(xlim=(0.07, 0.115), ylim=(0.0, 0.4))
+    handles, labels = whole.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return {"fig06-branches": figure}
+
+
+def _draw_theory(panel: Axes, found: Data) -> None:
+    panel.plot(
+        found["equilibrium load"], found["equilibrium radius"], **curve("theory", "equilibrium, eq. (3)")
+    )
+    panel.fill_between(
+        found["sticking load"],
+        found["sticking radius"],
+        color=GREY,
+        alpha=0.4,
+        linewidth=0.0,
+        label="sticks, (9)",
+    )
+    # A smooth curve through the orbits. In a fold a multiplier passes 1, so they are stable where the load falls
+    # from the outermost whirl on, unstable where it rises.
+    number = np.arange(len(found["branch load"]))
+    fine = np.linspace(0.0, number[-1], 20 * number[-1] + 1)
+    load = PchipInterpolator(number, found["branch load"])(fine)
+    extent = PchipInterpolator(number, found["branch extent"])(fine)
+    stable = np.gradient(load) < 0.0
+    sticks = found["branch sticks"][np.rint(fine).astype(int)] > 0.5
+    kinds = (
+        ("whirl, stable", stable & ~sticks, GREEN, "-"),
+        ("unstable", ~stable, GREY, (0.0, (3.0, 1.5))),
+        ("stick–slip cycle, stable", stable & sticks, ORANGE, "-"),
+    )
+    for label, mask, colour, dashes in kinds:
+        shown = np.where(mask[:, np.newaxis], extent, np.nan)
+        panel.plot(load, shown[:, 0], color=colour, linestyle=dashes, linewidth=1.6, label=label)
+        panel.plot(load, shown[:, 1], color=colour, linestyle=dashes, linewidth=1.6)
+
+
+STUDY.provides(figures=draw, curves=curves)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from compare.claims.error_estimates import ROUNDING, WORKING, refined
 from compare.claims.measured import Measured
 from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
-from compare.claims.study import Data, Study
+from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine, UnsupportedSystemError
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
@@ -238,3 +240,34 @@ def _drawn(balance: PowerBalance) -> Data:
         "stored energy": balance.stored_energy,
         "residual": balance.residual / balance.turned_over,
     }
+
+
+# --- Where the energy goes, and what the balance leaves over.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw where the energy goes on the way to the whirl, and what is left over."""
+    figure, (energies, residuals) = new_figure(ncols=2)
+    looks: dict[str, dict[str, Any]] = {
+        "drive work": {"color": BLACK, "linestyle": "-"},
+        "friction heat": {"color": ORANGE, "linestyle": (0.0, (5.0, 1.5))},
+        "damper heat": {"color": GREEN, "linestyle": (0.0, (1.0, 1.0))},
+        "stored energy": {"color": GREY, "linestyle": "-"},
+    }
+    for rank, engine in enumerate(engines_in(data)):
+        found = data[engine]
+        sparse = slice(None, None, 5)
+        if rank == 0:
+            for name, look in looks.items():
+                energies.plot(found["times"][sparse], found[name][sparse], label=name, linewidth=1.3, **look)
+        size = np.maximum(np.abs(found["residual"]), 1e-16)
+        residuals.semilogy(found["times"][sparse], size[sparse], **curve(engine, linewidth=1.0))
+    residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)), label="resolution")
+    energies.set(xlabel=axis("t", "s"), ylabel="energy in J")
+    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-14, 1e-7))
+    energies.legend()
+    residuals.legend(loc="lower right")
+    return {"power-balance": figure}
+
+
+STUDY.provides(figures=draw)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,11 @@ from numpy.typing import NDArray
 from compare.claims.error_estimates import WORKING
 from compare.claims.measured import Measured, answers_of
 from compare.claims.parameters import FIG11
-from compare.claims.study import Data, Study
+from compare.claims.study import ByEngine, Data, Figures, Study
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.toolkit.fig11_planes import KINDS, curves_in
 from reference_model import onset_load, whirls
-from reference_model.systems import DiscOnDisc
+from reference_model.systems import DiscOnDisc, FloatArray
 
 # --- The plane of discs that are simulated, and when their end is asked for.
 
@@ -100,7 +102,6 @@ STUDY = Study.beside(
     seconds=2.0,
     words={"side": f"{SIDE}"},
 )
-STUDY.provides(curves=curves)
 
 
 @STUDY.claim(
@@ -152,3 +153,77 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
         note=f"So it is of {np.count_nonzero(unstable)} of {rates.size} discs, each fifth in both directions: they "
         "have no other whirl.",
     )
+
+
+# --- The ends of a plane of discs, under the curves of the stability map.
+
+DARK = "#3d3d3d"
+
+LOOKS = {
+    "UNDECIDED": ("undecided", "#ffffff"),
+    "SELF_CENTRED": ("rotation about the axis", "#f3ead7"),
+    "WHIRL": ("whirl", SKY),
+    "MODULATED": ("modulated cycle", ORANGE),
+    "STUCK": ("sticks", DARK),
+}
+
+CURVES: dict[str, tuple[str, Any]] = {
+    "onset": (BLACK, "-"),
+    "Hopf": (GREEN, "-"),
+    "fold": (PURPLE, (0.0, (5.0, 2.0))),
+}
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the ends under the curves."""
+    if "theory" not in data:
+        return {}
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    from reference_model.ensemble import EndState
+
+    found = data["theory"]
+    figure, (plane,) = new_figure(width=8.4, height=4.4)
+    plane.imshow(
+        found["ends"],
+        origin="lower",
+        extent=_edges(DAMPING) + _edges(SHAFT_DAMPING),
+        cmap=ListedColormap([colour for _, colour in LOOKS.values()]),
+        vmin=-0.5,
+        vmax=len(LOOKS) - 0.5,
+        interpolation="nearest",
+        aspect="auto",
+    )
+    for name, points in found.items():
+        if name != "ends":
+            colour, dashes = CURVES[name.split("/")[0]]
+            plane.plot(*points.T, color=colour, linestyle=dashes, linewidth=1.6)
+    plane.plot(FIG11.damping, FIG11.shaft_damping, "+", color="white", markersize=10.0, markeredgewidth=1.8)
+    plane.set(
+        xlabel=axis(r"\beta", "N s/m"),
+        ylabel=axis("b", "N m s/rad"),
+        xlim=_edges(DAMPING),
+        ylim=_edges(SHAFT_DAMPING),
+    )
+    shown = [
+        Patch(facecolor=colour, edgecolor=GREY, label=words)
+        for name, (words, colour) in LOOKS.items()
+        if np.any(found["ends"] == EndState[name])
+    ]
+    lines = [
+        Line2D([], [], color=colour, linestyle=dashes, label=kind)
+        for kind, (colour, dashes) in CURVES.items()
+    ]
+    plane.legend(handles=[*shown, *lines], loc="center left", bbox_to_anchor=(1.01, 0.5))
+    return {"simulated-map": figure}
+
+
+def _edges(values: FloatArray) -> tuple[float, float]:
+    """Return from where to where a picture of ``values`` reaches: half a step beyond both ends."""
+    half = 0.5 * (values[1] - values[0])
+    return float(values[0] - half), float(values[-1] + half)
+
+
+STUDY.provides(figures=draw, curves=curves)
