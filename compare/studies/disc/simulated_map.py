@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from compare.claims.error_estimates import WORKING
-from compare.claims.measured import Measured, answers_of
+from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of
 from compare.claims.parameters import FIG11
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.toolkit.fig11_planes import KINDS, curves_in
 from reference_model import onset_load, whirls

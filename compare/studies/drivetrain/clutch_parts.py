@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, change_as_error
-from compare.claims.measured import Measured
-from compare.claims.study import ByEngine, Data, Figures, Study
+from compare.claims import COARSENING, ByEngine, Data, Figures, Measured, Study, change_as_error
 from compare.engines import Engine
 from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
 from reference_model.systems import FloatArray

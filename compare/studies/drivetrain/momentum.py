@@ -12,9 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from compare.claims.error_estimates import ROUNDING
-from compare.claims.measured import Measured
-from compare.claims.study import ByEngine, Data, Figures, Study
+from compare.claims import ROUNDING, ByEngine, Data, Figures, Measured, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, BLUE, GREEN, ORANGE, axis, new_figure
 from reference_model.systems import FloatArray

@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import TRUTH, WORKING, refined
-from compare.claims.measured import Measured
+from compare.claims import TRUTH, WORKING, ByEngine, Data, Figures, Measured, Study, refined
 from compare.claims.parameters import FIG4, FIG5, FIG8
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import remaining_transient

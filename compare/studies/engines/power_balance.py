@@ -8,10 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import ROUNDING, WORKING, refined
-from compare.claims.measured import Measured
+from compare.claims import ROUNDING, WORKING, ByEngine, Data, Figures, Measured, Study, refined
 from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, refined
+from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
-from compare.claims.measured import Measured, answers_of
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import Rates, measured_rates, settled

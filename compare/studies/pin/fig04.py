@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, Measurement, refined
-from compare.claims.measured import Measured
+from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Measurement, Study, refined
 from compare.claims.parameters import FIG4
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.whirls import whirl_of

@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
-from compare.claims.measured import Measured
-from compare.claims.study import ByEngine, Figures, Study
+from compare.claims import ByEngine, Figures, Measured, Study, refined
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from reference_model import simulate

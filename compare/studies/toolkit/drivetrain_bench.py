@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.error_estimates import change_as_error
+from compare.claims import Measured, change_as_error
 from compare.claims.linearised_flow import ComplexArray
-from compare.claims.measured import Measured
 from reference_model import Annulus, DiscOnDisc
 from reference_model.systems import FloatArray
 

@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.error_estimates import extrapolated_order
-from compare.claims.measured import Measured
+from compare.claims import Measured, extrapolated_order
 from compare.studies.disc.fig09.theory import (
     CENTRED,
     DAMPINGS,

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, TIGHTEST, Measurement, refined
+from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement, answers_of, asked, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
-from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
 from compare.studies.disc.fig09.theory import (
     CENTRED,

@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING
+from compare.claims import ROUNDING, TIGHTEST, WORKING, Data, Study
 from compare.claims.parameters import FIG9
-from compare.claims.study import Data, Study
 from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
 from compare.studies.toolkit.sticking import safest_angle, stuck
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit

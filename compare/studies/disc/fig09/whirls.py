@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import TIGHTEST, Measurement, known, refined
-from compare.claims.measured import Measured
+from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09.theory import (
     CENTRED,

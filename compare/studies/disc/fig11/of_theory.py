@@ -7,8 +7,7 @@ import functools
 import numpy as np
 
 import compare.studies.disc.fig11.whirl as whirl
-from compare.claims.error_estimates import WORKING, refined
-from compare.claims.measured import Measured, answers_of, asked
+from compare.claims import WORKING, Measured, answers_of, asked, refined
 from compare.engines import Engine
 from compare.studies.disc.fig11.offsets import end_of, error_of_monodromy
 from compare.studies.disc.fig11.parameters import (

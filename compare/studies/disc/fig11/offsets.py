@@ -8,8 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, Measurement, known, refined
-from compare.claims.measured import Measured, answers_of, asked
+from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine, StatesOnly, UnsupportedSystemError
 from compare.studies.disc.fig11.parameters import (

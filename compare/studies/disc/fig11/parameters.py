@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Study
 from compare.claims.parameters import FIG8, FIG11
-from compare.claims.study import Study
 from compare.studies.toolkit.fig11_motion import RING, SOURCE, START
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.systems import ANGLE

@@ -14,10 +14,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import TRUTH
+from compare.claims import TRUTH, Data
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG11
-from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.disc.fig11.parameters import (
     BRANCH,

@@ -8,9 +8,8 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
-from compare.claims.error_estimates import Measurement, known, refined
+from compare.claims import Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
-from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.disc.fig11.parameters import (
     AMPLITUDE,

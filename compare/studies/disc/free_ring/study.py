@@ -11,10 +11,8 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import Measurement, observed_exponent, refined
-from compare.claims.measured import Measured, answers_of
+from compare.claims import Measured, Measurement, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
-from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.disc.free_ring.theory import (
     CITED,

@@ -10,10 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.claims.error_estimates import refined
+from compare.claims import Data, Measured, answers_of, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
-from compare.claims.measured import Measured, answers_of
-from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.disc.stability_map.theory import (
     ASIDE,

@@ -12,11 +12,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Data, Measured, Study, answers_of, asked
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
-from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG11, at_each
-from compare.claims.study import Data, Study
 from compare.engines import Simulate
 from compare.studies.toolkit.fig11_planes import KINDS, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact

@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.error_estimates import observed_exponent
-from compare.claims.measured import Measured
+from compare.claims import ByEngine, Data, Figures, Measured, Study, observed_exponent
 from compare.claims.parameters import at_each
-from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import (
     BLUE,

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eig, matrix_balance, norm
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import COARSENING, WORKING, Measurement, change_as_error
-from compare.claims.measured import Measured
+from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.theory import (
     ABOVE,

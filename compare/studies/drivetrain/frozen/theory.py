@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Data, Study
 from compare.claims.linearised_flow import ComplexArray
-from compare.claims.study import Data, Study
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,
     RPM,

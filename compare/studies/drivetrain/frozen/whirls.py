@@ -16,9 +16,8 @@ import numpy as np
 from scipy.linalg import matrix_balance
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, WORKING, refined
+from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
-from compare.claims.measured import Measured
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.theory import (
     BETWEEN,

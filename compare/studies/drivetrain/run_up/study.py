@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.error_estimates import COARSENING, change_as_error
-from compare.claims.measured import Measured
-from compare.claims.study import Data, Study
+from compare.claims import COARSENING, Data, Measured, Study, change_as_error
 from compare.engines import Engine
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,

@@ -9,10 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, TRUTH, extrapolated_order, observed_exponent
-from compare.claims.measured import Measured
+from compare.claims import COARSENING, TRUTH, Data, Measured, Study, extrapolated_order, observed_exponent
 from compare.claims.parameters import FIG5, FIG5_STARTS, at_each
-from compare.claims.study import Data, Study
 from compare.engines import Engine
 from compare.studies.engines.engine_convergence.theory import (
     CREEP_REGULARISATIONS,

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
-from compare.claims.measured import Measured
-from compare.claims.study import ByEngine, Figures, Study
+from compare.claims import COARSENING, ROUNDING, SAFETY, ByEngine, Figures, Measured, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, curve, engine_style, engines_in, new_figure, points
 from compare.studies.engines.error_estimates.theory import (

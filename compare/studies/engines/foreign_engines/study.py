@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import compare.studies.engines.foreign_engines.theory as ladders
-from compare.claims.error_estimates import extrapolated_order, observed_exponent
-from compare.claims.measured import Measured
-from compare.claims.study import ByEngine, Data, Figures, Study
+from compare.claims import ByEngine, Data, Figures, Measured, Study, extrapolated_order, observed_exponent
 from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
 from compare.output.figures import BLACK, GREY, PURPLE, SKY, engine_style, new_figure
 from compare.studies.engines.foreign_engines.theory import (

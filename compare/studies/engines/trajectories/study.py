@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, Measurement, open_where_coarse, refined
-from compare.claims.measured import Measured
+from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import components_of
-from compare.claims.study import Findings, Study
 from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import (

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, known, refined
-from compare.claims.measured import Measured, answers_of, asked
+from compare.claims import WORKING, ByEngine, Figures, Measured, Study, answers_of, asked, known, refined
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.claims.shares import of_grid
-from compare.claims.study import ByEngine, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
 from compare.studies.pin.basins.theory import (

@@ -8,9 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING
+from compare.claims import TRUTH, WORKING, Data
 from compare.claims.parameters import CENTRED, FIG5, FIG9
-from compare.claims.study import Data
 from compare.engines import Engine
 from compare.studies.toolkit.whirls import whirl_of
 from reference_model import Orbit, simulate

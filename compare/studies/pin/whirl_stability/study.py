@@ -8,10 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from compare.claims.error_estimates import TIGHTEST, WORKING, Measurement, refined
+from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
-from compare.claims.measured import Measured, answers_of
-from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.pin.whirl_stability.theory import (
     CAUGHT,
