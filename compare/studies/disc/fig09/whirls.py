@@ -12,26 +12,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
-from compare.studies.disc.fig09.theory import (
-    CENTRED,
-    CIRCLES,
-    HALVED_OFFSETS,
-    OFFSET_LOAD,
-    ORBIT_TOLERANCE,
-    ORBITS,
-    ORDERS,
-    PAPER_LAW,
-    RING,
-    SOURCE_CENTRED,
-    STUDY,
-    circle_of,
-    extent,
-    first_order_shift,
-    orbit_of_reference,
-    radius_of_pin,
-    rest_of,
-    spin_of_large_whirl,
-)
+from compare.studies.disc.fig09 import theory
 from compare.studies.toolkit.self_centred import with_load
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion
 from reference_model import Orbit, whirl_orbit
@@ -43,23 +24,23 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 @functools.lru_cache(maxsize=4)
 def circles_of(
-    engine: Engine, disc: DiscOnDisc, circles: tuple[tuple[float, int], ...] = CIRCLES
+    engine: Engine, disc: DiscOnDisc, circles: tuple[tuple[float, int], ...] = theory.CIRCLES
 ) -> Measurement:
     """Return mean radius, frequency and spin of ``circles`` in units of μN/(βk), k and ω, shape (n, 3)."""
     found = refined(
-        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in circles], ORBIT_TOLERANCE
+        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in circles], theory.ORBIT_TOLERANCE
     )
-    return with_tolerance(found, [sharpness(disc, circle_of(*one)) for one in circles])
+    return with_tolerance(found, [sharpness(disc, theory.circle_of(*one)) for one in circles])
 
 
 def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance: float) -> FloatArray:
     """Return the same of one circle, no numbers where none comes back."""
-    motion = steady_motion(engine, with_load(disc, load), circle_of(load, which).state, tolerance)
+    motion = steady_motion(engine, with_load(disc, load), theory.circle_of(load, which).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
     return np.array(
         [
-            float(np.hypot(*motion.mean)) / radius_of_pin(load),
+            float(np.hypot(*motion.mean)) / theory.radius_of_pin(load),
             motion.frequency / disc.natural_frequency,
             motion.spin / disc.disc_speed,
         ]
@@ -69,14 +50,14 @@ def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance:
 def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
     """Return the means of x, y and spin at rest in units of X0 and ω, shape (n, 3)."""
     found = refined(
-        lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], ORBIT_TOLERANCE
+        lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], theory.ORBIT_TOLERANCE
     )
-    return with_tolerance(found, [sharpness(disc, rest_of(load)) for load in loads])
+    return with_tolerance(found, [sharpness(disc, theory.rest_of(load)) for load in loads])
 
 
 def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
     """Return the same at one friction force, no numbers where no rest comes back."""
-    motion = steady_motion(engine, with_load(disc, load), rest_of(load).state, tolerance)
+    motion = steady_motion(engine, with_load(disc, load), theory.rest_of(load).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
     return np.array([*motion.mean / disc.offset, motion.spin / disc.disc_speed])
@@ -88,7 +69,9 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     One number alone may be right by chance, and two flows may be the same to within the tolerance, which the motion
     shows ``amplified``.
     """
-    return Measurement(found.value, found.rows + ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis])
+    return Measurement(
+        found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
+    )
 
 
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
@@ -108,17 +91,17 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
 
 # --- The whirl without offset, which is a circle in axes that turn with it.
 
-LOADS = [load for load, _ in CIRCLES]
+LOADS = [load for load, _ in theory.CIRCLES]
 
 OBSERVED = (
     "Orders of the distance in radius and spin, extrapolated; model error: the extrapolation's own step. The limit "
     "of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
-    f"{spin_of_large_whirl(RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
-    f"{', '.join(f'{load:g}' for load in LOADS[ORDERS])} N."
+    f"{theory.spin_of_large_whirl(theory.RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
+    f"{', '.join(f'{load:g}' for load in LOADS[theory.ORDERS])} N."
 )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Without offset the whirl has radius, frequency and spin of the three balances, stable or not",
     equation="(19), (20)",
     resolution=1e-6,
@@ -130,14 +113,14 @@ OBSERVED = (
 )
 def circles(engine: Engine) -> Measured:
     """Compare the circles that come back with the three balances."""
-    found = circles_of(engine, CENTRED)
-    exact = [(load, circle_of(load, which)) for load, which in CIRCLES]
+    found = circles_of(engine, theory.CENTRED)
+    exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
     return Measured(
         predicted=[
             (
-                one.radius / radius_of_pin(load),
-                one.frequency / RING.natural_frequency,
-                one.spin / RING.disc_speed,
+                one.radius / theory.radius_of_pin(load),
+                one.frequency / theory.RING.natural_frequency,
+                one.spin / theory.RING.disc_speed,
             )
             for load, one in exact
         ],
@@ -145,13 +128,13 @@ def circles(engine: Engine) -> Measured:
         error=found.error,
         at={"μN in N": LOADS},
         components=("radius", "frequency", "spin"),
-        system=CENTRED,
-        source=SOURCE_CENTRED,
+        system=theory.CENTRED,
+        source=theory.SOURCE_CENTRED,
         data={"circle load": LOADS, "circle": found.value},
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The error of (23) falls like (μN)⁻⁴ in the whirl's radius, and like (μN)⁻² in its spin",
     equation="(23)",
     kind="order",
@@ -162,15 +145,17 @@ def circles(engine: Engine) -> Measured:
 )
 def error_of_23(engine: Engine) -> Measured:
     """Observe how the whirl differs from that of (23), at friction forces each twice the one before."""
-    by_23 = [(load, whirls(with_load(CENTRED, load), PAPER_LAW)[0]) for load in LOADS[ORDERS]]
+    by_23 = [
+        (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
+    ]
     return _orders(
         engine,
-        [(one.radius / radius_of_pin(load), one.spin / RING.disc_speed) for load, one in by_23],
+        [(one.radius / theory.radius_of_pin(load), one.spin / theory.RING.disc_speed) for load, one in by_23],
         (-4.0, -2.0),
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The whirl's radius tends to the pin's μN/(βk), its spin to a limit without μN, both like (μN)⁻²",
     equation="(11)",
     kind="order",
@@ -181,35 +166,35 @@ def error_of_23(engine: Engine) -> Measured:
 )
 def limit_of_large_loads(engine: Engine) -> Measured:
     """Observe how the whirl tends to its limit, at friction forces each twice the one before."""
-    limit = (1.0, spin_of_large_whirl(RING) / RING.disc_speed)
-    return _orders(engine, [limit] * len(LOADS[ORDERS]), (-2.0, -2.0))
+    limit = (1.0, theory.spin_of_large_whirl(theory.RING) / theory.RING.disc_speed)
+    return _orders(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
 
 
 def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
     """Compare ``orders`` in the friction force with those in which radius and spin come near to ``others``."""
-    found = circles_of(engine, CENTRED)
-    gaps: FloatArray = np.abs(found.value[ORDERS][:, [0, 2]] - others)
-    observed, numerical, model = extrapolated(gaps, found.error[ORDERS][:, :1])
+    found = circles_of(engine, theory.CENTRED)
+    gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
+    observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])
     return Measured(
         predicted=orders,
         value=-observed,
         error=numerical,
         model=model,
         components=("radius", "spin"),
-        system=CENTRED,
-        source=SOURCE_CENTRED,
+        system=theory.CENTRED,
+        source=theory.SOURCE_CENTRED,
     )
 
 
 # --- Whirls with an offset, which are periodic orbits, and how the offset shifts and changes them.
 
 EXTRAPOLATED = (
-    f"X0 = {', '.join(f'{offset:g}' for offset in HALVED_OFFSETS)} m, extrapolated; model error: the extrapolation's "
-    "own step."
+    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated; model error: the "
+    "extrapolation's own step."
 )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "With the offset the whirls, stable or not, are the periodic orbits of exact Coulomb friction",
     equation="(19), (20)",
     kind="trajectory",
@@ -219,12 +204,13 @@ EXTRAPOLATED = (
     f"the reference at tolerance {TIGHTEST:g}.",
     swept=("friction_force",),
 )
-def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Measured:
+def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
     """Compare the engine's periodic orbits, by μN in N and number, with those of the reference."""
-    exact = [orbit_of_reference(*one) for one in whirls]
+    exact = [theory.orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
-        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls], ORBIT_TOLERANCE
+        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls],
+        theory.ORBIT_TOLERANCE,
     )
     # The multiplier of a shift in time is 1; the one next to it tells by how much an error of the flow is amplified.
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
@@ -247,9 +233,11 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = ORBITS) -> Meas
     )
 
 
-def orbit_of(engine: Engine, load: float, which: int, tolerance: float, offset: float = RING.offset) -> Orbit:
+def orbit_of(
+    engine: Engine, load: float, which: int, tolerance: float, offset: float = theory.RING.offset
+) -> Orbit:
     """Return the same whirl as the engine has it."""
-    guess = orbit_of_reference(load, which, offset)
+    guess = theory.orbit_of_reference(load, which, offset)
     return whirl_orbit(
         guess.system,
         simulate=engine.simulate,
@@ -263,7 +251,7 @@ def orbit_of(engine: Engine, load: float, which: int, tolerance: float, offset: 
 def sizes_of(orbit: Orbit) -> FloatArray:
     """Return period, least and greatest radius, least, greatest and mean spin, in s, m and rad/s."""
     spin = orbit.trajectory.states[:-1, -1]
-    return np.array([orbit.period, *extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
+    return np.array([orbit.period, *theory.extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 
 
 @functools.lru_cache(maxsize=4)
@@ -271,10 +259,12 @@ def parts(engine: Engine) -> Measurement:
     """Return centre, amplitude of the first harmonic, mean spin of whirls with ``HALVED_OFFSETS``, shape (3, 4)."""
 
     def found(tolerance: float) -> FloatArray:
-        whirls = [orbit_of(engine, OFFSET_LOAD, 0, tolerance, offset) for offset in HALVED_OFFSETS]
+        whirls = [
+            orbit_of(engine, theory.OFFSET_LOAD, 0, tolerance, offset) for offset in theory.HALVED_OFFSETS
+        ]
         return np.array([(*orbit.mean, *circle_in(orbit)) for orbit in whirls])
 
-    return refined(found, ORBIT_TOLERANCE, alike=False)
+    return refined(found, theory.ORBIT_TOLERANCE, alike=False)
 
 
 def circle_in(orbit: Orbit) -> tuple[float, float]:
@@ -284,7 +274,7 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
     return float(np.abs(harmonics[1])), float(np.mean(states[:, -1]))
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The offset shifts the centre of the whirl by the first-order response, with an error like X0³",
     equation="(18)",
     kind="order",
@@ -297,15 +287,17 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
 def offset_shifts(engine: Engine) -> Measured:
     """Observe the order of what the first-order response leaves of the shift."""
     found = parts(engine)
-    discs = [with_load(replace(RING, offset=offset), OFFSET_LOAD) for offset in HALVED_OFFSETS]
-    response = [first_order_shift(disc) for disc in discs]
+    discs = [
+        with_load(replace(theory.RING, offset=offset), theory.OFFSET_LOAD) for offset in theory.HALVED_OFFSETS
+    ]
+    response = [theory.first_order_shift(disc) for disc in discs]
     gaps = np.abs(found.value[:, 0] + 1j * found.value[:, 1] - response)[:, np.newaxis]
     return _orders_of_shift(
         gaps, np.hypot(found.error[:, 0], found.error[:, 1])[:, np.newaxis], 3.0, ("shift",)
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The offset changes radius and spin of the whirl like X0²",
     kind="order",
     resolution=0.05,
@@ -315,7 +307,7 @@ def offset_shifts(engine: Engine) -> Measured:
 )
 def offset_changes_size(engine: Engine) -> Measured:
     """Observe the orders of the changes against the circle without offset."""
-    found, circle = parts(engine), circle_of(OFFSET_LOAD, 0)
+    found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
     _, _, radius, spin = found.value[1]
     return replace(
         _orders_of_shift(
@@ -324,8 +316,8 @@ def offset_changes_size(engine: Engine) -> Measured:
             2.0,
             ("radius", "spin"),
         ),
-        note=f"At X0 = {HALVED_OFFSETS[1]:g} m they change by {radius / circle.radius - 1.0:.2g} of themselves and "
-        f"{spin - circle.spin:.2g} rad/s.",
+        note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m they change by {radius / circle.radius - 1.0:.2g} of "
+        f"themselves and {spin - circle.spin:.2g} rad/s.",
     )
 
 
@@ -339,5 +331,5 @@ def _orders_of_shift(
         error=numerical,
         model=model,
         components=components,
-        system=with_load(RING, OFFSET_LOAD),
+        system=with_load(theory.RING, theory.OFFSET_LOAD),
     )

@@ -11,21 +11,7 @@ from scipy.special import stdtrit
 from compare.claims import Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.engines import Engine
-from compare.studies.disc.fig11.parameters import (
-    AMPLITUDE,
-    CENTRED,
-    COMPONENTS,
-    DURATION,
-    EXTREMES,
-    FOLLOWED,
-    OF_CYCLE,
-    SLIDING,
-    SLIDING_START,
-    STUDY,
-    TIMES,
-    TOLERANCE,
-    UNTIL,
-)
+from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
 from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated
 from reference_model import Trajectory
@@ -33,13 +19,13 @@ from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 NOTE = (
-    f"Rate and frequency of a deviation of {AMPLITUDE:g} radii, followed for {DURATION:g} s to either side: straight "
-    "lines through logarithm and phase of its share in the pair of modes. Error: scatter about the lines, the change "
-    "with twice the deviation, and at a smaller tolerance."
+    f"Rate and frequency of a deviation of {parameters.AMPLITUDE:g} radii, followed for {parameters.DURATION:g} "
+    "s to either side: straight lines through logarithm and phase of its share in the pair of modes. Error: "
+    "scatter about the lines, the change with twice the deviation, and at a smaller tolerance."
 )
 
 
-@STUDY.claim(
+@parameters.STUDY.claim(
     "A disc on {} that slides moves for 100 s as (19) to (21) say, integrated as they stand",
     equation="(19)–(21)",
     kind="trajectory",
@@ -51,25 +37,29 @@ def slides(engine: Engine, contact: str) -> Measured:
     """Compare the trajectory of a disc that slides all the time with an integration of (19) as it stands."""
     disc = DISCS[contact]
     predicted, rougher = (
-        integrated(disc, SLIDING_START, SLIDING[-1], len(SLIDING), tolerance) for tolerance in (3e-14, 2e-13)
+        integrated(disc, parameters.SLIDING_START, parameters.SLIDING[-1], len(parameters.SLIDING), tolerance)
+        for tolerance in (3e-14, 2e-13)
     )
     found = refined(
-        lambda tolerance: engine.simulate(disc, SLIDING_START, SLIDING, tolerance=tolerance).states, 5e-10
+        lambda tolerance: (
+            engine.simulate(disc, parameters.SLIDING_START, parameters.SLIDING, tolerance=tolerance).states
+        ),
+        5e-10,
     )
     return Measured(
         predicted=predicted,
         value=found.value,
         # A single number may be right by chance.
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
-        at={"t in s": SLIDING},
-        components=COMPONENTS,
+        at={"t in s": parameters.SLIDING},
+        components=parameters.COMPONENTS,
         system=disc,
-        source=f"{CENTRED}; start {SLIDING_START} is an assumption",
+        source=f"{parameters.CENTRED}; start {parameters.SLIDING_START} is an assumption",
         named={f"slip for 100 s on {contact}": None},
     )
 
 
-@STUDY.claim(
+@parameters.STUDY.claim(
     "A small deviation from the whirl on {} grows at the rate that its linearisation gives",
     equation="(19)–(21)",
     unit="1/s",
@@ -80,21 +70,21 @@ def slides(engine: Engine, contact: str) -> Measured:
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
     """Compare the growth of a deviation with the real part of the slowest pair of eigenvalues."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
-    times, sizes = departure(engine, DISCS[contact], whirl, FOLLOWED)
+    times, sizes = departure(engine, DISCS[contact], whirl, parameters.FOLLOWED)
     return Measured(
         predicted=whirl.eigenvalue.real,
         value=found.value[0],
         error=found.error[0],
         resolution=1e-2 * abs(whirl.eigenvalue.real),
         system=DISCS[contact],
-        source=CENTRED,
+        source=parameters.CENTRED,
         note=_linearised(DISCS[contact]),
         named={f"rate of growth on {contact}": 0},
         data={f"{contact}: departure": np.column_stack((times, sizes))},
     )
 
 
-@STUDY.claim(
+@parameters.STUDY.claim(
     "A small deviation from the whirl on {} swings with the frequency that its linearisation gives",
     equation="(19)–(21)",
     unit="1/s",
@@ -111,7 +101,7 @@ def frequency_of_growth(engine: Engine, contact: str) -> Measured:
         error=found.error[1],
         resolution=5e-3 * abs(whirl.eigenvalue.imag),
         system=DISCS[contact],
-        source=CENTRED,
+        source=parameters.CENTRED,
         note=_linearised(DISCS[contact]),
         named={f"frequency of growth on {contact}": 0},
     )
@@ -135,9 +125,10 @@ def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = 
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
-        lambda tolerance: fitted(*deviation(engine, disc, whirl, AMPLITUDE, tolerance)), TOLERANCE
+        lambda tolerance: fitted(*deviation(engine, disc, whirl, parameters.AMPLITUDE, tolerance)),
+        parameters.TOLERANCE,
     )
-    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * AMPLITUDE, TOLERANCE))
+    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * parameters.AMPLITUDE, parameters.TOLERANCE))
     return Measurement(measured, scatter + np.abs(larger - measured) + error)
 
 
@@ -148,7 +139,7 @@ def deviation(
 
     Half the difference of two simulations that start on opposite sides of the whirl: its even powers drop out.
     """
-    turns = np.arange(round(DURATION / whirl.period) + 1)
+    turns = np.arange(round(parameters.DURATION / whirl.period) + 1)
     times = turns * whirl.period
     outwards, inwards = (
         rotated(
@@ -183,7 +174,7 @@ def departure(
     """
     turns = np.arange(round(until / whirl.period) + 1)
     times = turns * whirl.period
-    run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-6)
+    run = engine.simulate(disc, whirl.displaced(10.0 * parameters.AMPLITUDE), times, tolerance=1e-6)
     away = rotated(run.states, -turns * whirl.turn) - whirl.state
     away[:, ANGLE] -= turns * whirl.advance
     sizes = np.abs(away @ whirl.projection) / whirl.radius
@@ -193,13 +184,13 @@ def departure(
 # --- The modulated cycle itself on the continuous ring: its period, its turn about the axis and its extremes.
 
 CYCLE_NOTE = (
-    f"The last modulation within {UNTIL:g} s, from one maximum of the radius to the next. Predicted: (19) as it "
-    "stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the change from the "
-    "modulation before, of both."
+    f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
+    "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the "
+    "change from the modulation before, of both."
 )
 
 
-@STUDY.claim(
+@parameters.STUDY.claim(
     "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
@@ -216,11 +207,11 @@ def period_and_turn(engine: Engine) -> Measured:
         value=found.value[:2],
         error=found.error[:2],
         components=("period in s", "turn in rad"),
-        data={"the continuous ring": _run(engine, OF_CYCLE).states},
+        data={"the continuous ring": _run(engine, parameters.OF_CYCLE).states},
     )
 
 
-@STUDY.claim(
+@parameters.STUDY.claim(
     "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
@@ -235,7 +226,7 @@ def extremes(engine: Engine) -> Measured:
         predicted=predicted_modulation()[0][2:],
         value=found.value[2:],
         error=found.error[2:],
-        components=EXTREMES,
+        components=parameters.EXTREMES,
     )
 
 
@@ -243,12 +234,14 @@ def extremes(engine: Engine) -> Measured:
 def modulation(engine: Engine) -> Measurement:
     """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
     found = refined(
-        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
+        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], parameters.OF_CYCLE, alike=False
     )
-    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
+    error = (
+        found.error + predicted_modulation()[1] + last_modulation(_run(engine, parameters.OF_CYCLE).states)[1]
+    )
     return Measurement(found.value, known(found.value, error))
 
 
 @functools.lru_cache(maxsize=4)
 def _run(engine: Engine, tolerance: float) -> Trajectory:
-    return engine.simulate(RING, START, TIMES, tolerance=tolerance)
+    return engine.simulate(RING, START, parameters.TIMES, tolerance=tolerance)

@@ -12,32 +12,7 @@ from scipy.optimize import brentq
 
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.measured import Measured, answers_of
-from compare.studies.disc.stability_map.theory import (
-    BESIDE_LARGEST,
-    BOTH_LAWS,
-    DISC,
-    FAR_FROM_KINK,
-    ONE_AT_A_TIME,
-    ONSET_SPEEDS,
-    SLOWLY_SETTLED,
-    STUDY,
-    UNSTABLE_LOADS,
-    K,
-    Start,
-    Traced,
-    at,
-    change_of_stability,
-    critical_eigenvalues,
-    crossed,
-    ends_of,
-    growth_of_rotation,
-    nearest,
-    rotation,
-    spectra,
-    state_at,
-    sticking_load,
-    traced,
-)
+from compare.studies.disc.stability_map import theory
 from compare.studies.toolkit.fig11_planes import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.pin import upper_branch_margin
@@ -59,19 +34,19 @@ EPSILON = float(np.finfo(float).eps)
 
 @functools.cache
 def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
-    return spectra(kind, traced())
+    return theory.spectra(kind, theory.traced())
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "At every point of the Hopf curves a pair of eigenvalues of the whirl is imaginary",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     resolution=1e-10,
     note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which takes no part in "
     f"the tracing. {CURVES}. Error: rounding, by the condition of the eigenvalues.",
 )
-def marginal(curves: Traced | None = None) -> Measured:
+def marginal(curves: theory.Traced | None = None) -> Measured:
     """Take the pair's real part at all points of ``curves``, or of the map."""
-    found = _spectra_on_map("Hopf") if curves is None else spectra("Hopf", curves)
+    found = _spectra_on_map("Hopf") if curves is None else theory.spectra("Hopf", curves)
     frequencies = np.array([abs(values[0].imag) for values, _ in found])
     return Measured(
         predicted=np.zeros(len(found)),
@@ -80,9 +55,9 @@ def marginal(curves: Traced | None = None) -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Beside the Hopf curves no other eigenvalue of the whirl grows: they are borders of its stability",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     note="Whether the real parts of all other eigenvalues are negative.",
 )
 def no_other_grows() -> Measured:
@@ -95,9 +70,9 @@ def no_other_grows() -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "At every point of the fold curves an eigenvalue of the whirl is zero",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     resolution=1e-8,
     note=f"The least eigenvalue over k. {CURVES}. Error: rounding, by the condition of the eigenvalues, which grows "
     "where a second one becomes zero.",
@@ -107,16 +82,16 @@ def folds() -> Measured:
     found = _spectra_on_map("fold")
     return Measured(
         predicted=np.zeros(len(found)),
-        value=[abs(values[np.argmin(np.abs(values))]) / K for values, _ in found],
-        error=[error / K for _, error in found],
+        value=[abs(values[np.argmin(np.abs(values))]) / theory.K for values, _ in found],
+        error=[error / theory.K for _, error in found],
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The traced curves cross the line of Fig. 11 where a search along it finds the boundary",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     unit="N",
-    resolution=1e-3 * DISC.friction_force,
+    resolution=1e-3 * theory.DISC.friction_force,
     note="μN of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
     "determinant over the ratio U : W. Error: the change with points at twice the distance.",
     swept=("friction_force",),
@@ -128,20 +103,20 @@ def crosses_line() -> Measured:
     errors: list[float] = []
     names: list[str] = []
     for law in LAWS:
-        sets = traced()["load", law, "Hopf"], curves_in("load", "Hopf", law, step=2.0 * FINE)
-        fine, coarse = (crossed(curves, DISC.disc_speed) for curves in sets)
-        predicted.extend(crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed, LAWS[law]))
+        sets = theory.traced()["load", law, "Hopf"], curves_in("load", "Hopf", law, step=2.0 * FINE)
+        fine, coarse = (theory.crossed(curves, theory.DISC.disc_speed) for curves in sets)
+        predicted.extend(crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]))
         measured.extend(fine)
         errors.extend(np.abs(fine - coarse))
         names.extend(f"{law}, crossing {1 + i}" for i in range(len(fine)))
     return Measured(predicted=predicted, value=measured, error=errors, components=names)
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The centred rotation loses its stability at the closed form of the onset",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     unit="N",
-    resolution=1e-9 * DISC.friction_force,
+    resolution=1e-9 * theory.DISC.friction_force,
     note="By the root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
     "of the eigenvalues.",
     swept=("friction_force", "disc_speed"),
@@ -150,40 +125,40 @@ def onset() -> Measured:
     """Compare μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
-        for speed in ONSET_SPEEDS:
-            disc = at(disc_speed=speed)
-            sticking = sticking_load(disc)
+        for speed in theory.ONSET_SPEEDS:
+            disc = theory.at(disc_speed=speed)
+            sticking = theory.sticking_load(disc)
 
             def growth(load: float, disc: DiscOnDisc = disc, law: IsotropicContact = law) -> float:
                 loaded = replace(disc, friction_force=load)
-                return equilibrium_eigenvalues(loaded, rotation(loaded), law)[0].real
+                return equilibrium_eigenvalues(loaded, theory.rotation(loaded), law)[0].real
 
             load = brentq(growth, 1e-3 * sticking, (1.0 - 1e-3) * sticking, xtol=1e-15)
             step = 1e-3 * load
             slope = (growth(load + step) - growth(load - step)) / (2.0 * step)
             predicted.append(onset_load(disc, law))
             measured.append(load)
-            errors.append(16.0 * EPSILON * (K / abs(slope) + load))
+            errors.append(16.0 * EPSILON * (theory.K / abs(slope) + load))
     return Measured(
         predicted=predicted,
         value=measured,
         error=errors,
-        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in ONSET_SPEEDS],
+        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in theory.ONSET_SPEEDS],
     )
 
 
-SLIP_SPEED = DISC.disc_speed - DISC.shaft_speed
+SLIP_SPEED = theory.DISC.disc_speed - theory.DISC.shaft_speed
 
 WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
-    "load": (lambda share: at(friction_force=share * DISC.friction_force), 0.8),
-    "shaft damping": (lambda share: at(shaft_damping=share * DISC.shaft_damping), 1.5),
-    "damping of the springs": (lambda share: at(damping=share * DISC.damping), 1.6),
-    "slip speed": (lambda share: at(shaft_speed=DISC.disc_speed - share * SLIP_SPEED), 1.3),
+    "load": (lambda share: theory.at(friction_force=share * theory.DISC.friction_force), 0.8),
+    "shaft damping": (lambda share: theory.at(shaft_damping=share * theory.DISC.shaft_damping), 1.5),
+    "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
+    "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
 }
 """The disc with a share of one of its parameters, and a share beyond the onset."""
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Each parameter by itself makes the centred rotation of Fig. 11 stable where the closed form of the onset says",
     equation="(19), (20)",
     resolution=1e-9,
@@ -202,20 +177,20 @@ def remedies() -> Measured:
             return onset_load(disc_of(share)) / disc_of(share).friction_force - 1.0
 
         def growth(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
-            return growth_of_rotation(disc_of(share))
+            return theory.growth_of_rotation(disc_of(share))
 
         predicted.append(brentq(excess, 1.0, end, xtol=1e-15))
         measured.append(brentq(growth, 1.0, end, xtol=1e-15))
         slope = (growth(end) - growth(1.0)) / (end - 1.0)
-        errors.append(16.0 * EPSILON * (K / abs(slope) + 1.0))
+        errors.append(16.0 * EPSILON * (theory.K / abs(slope) + 1.0))
     return Measured(
-        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=ONE_AT_A_TIME
+        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=theory.ONE_AT_A_TIME
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Along the line of Fig. 11 whirls gain and lose their stability where the map says",
-    equation=BOTH_LAWS,
+    equation=theory.BOTH_LAWS,
     resolution=1e-8,
 )
 def by_whirls() -> Measured:
@@ -227,13 +202,13 @@ def by_whirls() -> Measured:
     for law in LAWS:
         for plane in PLANES.values():
             for fixed, name in (plane.names[::-1], plane.names):
-                here = getattr(DISC, name)
-                borders = crossings(plane, "Hopf", fixed, getattr(DISC, fixed), LAWS[law])
-                for value in nearest(borders, here):
+                here = getattr(theory.DISC, name)
+                borders = crossings(plane, "Hopf", fixed, getattr(theory.DISC, fixed), LAWS[law])
+                for value in theory.nearest(borders, here):
                     if law == "ring":
                         named[f"{'lower' if value < here else 'upper'} {name}"] = len(predicted)
                     predicted.append(value)
-                    found.append(change_of_stability(name, value, LAWS[law]))
+                    found.append(theory.change_of_stability(name, value, LAWS[law]))
                     names.append(f"{law}: {name} {value:.4g} ({100.0 * (value / here - 1.0):+.1f} %)")
     measured, errors = np.transpose(found)
     return Measured(
@@ -241,7 +216,7 @@ def by_whirls() -> Measured:
         value=measured,
         error=errors,
         components=names,
-        source=ONE_AT_A_TIME,
+        source=theory.ONE_AT_A_TIME,
         note="The borders next to the point of Fig. 11, to either side, and how far away they are: "
         + "; ".join(dict.fromkeys(names))
         + ".",
@@ -249,23 +224,23 @@ def by_whirls() -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "On the continuous ring the whirl always loses its stability with a jump: the cycle at the border is unstable",
     equation="(19), (20)",
     note="Whether the growth of the modulation rises with its amplitude, by the third-order terms of (19), at each "
-    f"point of the Hopf curves that is farther than {FAR_FROM_KINK:g} from U = W in U : W.",
+    f"point of the Hopf curves that is farther than {theory.FAR_FROM_KINK:g} from U = W in U : W.",
 )
 def jumps() -> Measured:
     """Take the sign of the first Lyapunov coefficient along the Hopf curves."""
     data: dict[str, FloatArray] = {}
     on_ring: list[float] = []
-    for (plane, law, kind), curves in traced().items():
+    for (plane, law, kind), curves in theory.traced().items():
         for i, curve in enumerate(curves if kind == "Hopf" else ()):
             growth = np.full(len(curve.alpha), np.nan)
             for j, (values, alpha) in enumerate(zip(curve.parameters, curve.alpha.tolist(), strict=True)):
-                if abs(1.0 / math.tan(alpha) - 1.0) > FAR_FROM_KINK:
+                if abs(1.0 / math.tan(alpha) - 1.0) > theory.FAR_FROM_KINK:
                     disc = PLANES[plane].at(values)
-                    growth[j] = growth_by_amplitude(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
+                    growth[j] = growth_by_amplitude(disc, theory.state_at(disc, alpha, LAWS[law]), LAWS[law])
             data[f"{plane}/{law}/growth/{i}"] = growth
             if law == "ring":
                 on_ring += growth[np.isfinite(growth)].tolist()
@@ -278,11 +253,11 @@ def jumps() -> Measured:
 
 SIGN = "Sign of the largest real part."
 
-SPEEDS = np.linspace(K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
+SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
 """β in N s/m and ω in rad/s between which pins are looked at."""
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "At the parameters of Fig. 11 the whirl on the continuous ring is unstable",
     equation="(19), (20)",
     note=SIGN,
@@ -292,7 +267,7 @@ def unstable_on_ring() -> Measured:
     return _side("ring", 1.0)
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "At the parameters of Fig. 11 the whirl of (23) is stable: (23) does not have the instability there",
     equation="(19), (23)",
     note=SIGN,
@@ -304,9 +279,11 @@ def stable_by_23() -> Measured:
 
 def _side(law: str, sign: float) -> Measured:
     """See whether the largest real part of the whirl of Fig. 11 by ``law`` has this ``sign``."""
-    (whirl,) = whirls(DISC, LAWS[law])
-    values, error = critical_eigenvalues(DISC, whirl.state, LAWS[law])
-    near = nearest(crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed, LAWS[law]), np.inf)
+    (whirl,) = whirls(theory.DISC, LAWS[law])
+    values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
+    near = theory.nearest(
+        crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]), np.inf
+    )
     return answers_of(
         sign * values[0].real,
         error,
@@ -317,10 +294,10 @@ def _side(law: str, sign: float) -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "A pin's whirl has no Hopf curve: it is stable for all damping wherever ω > k",
     equation="(16)",
-    note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / K:g} and β from "
+    note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / theory.K:g} and β from "
     f"{LOW:g} to {HIGH:g} N s/m; μN and the torsion do not matter.",
     swept=("disc_speed", "damping"),
 )
@@ -328,10 +305,10 @@ def pin_is_stable() -> Measured:
     """Count at how many points (16), the border of the pin's whirl, is violated where the whirl exists."""
     pins = [
         PinOnDisc(
-            mass=DISC.mass,
-            stiffness=DISC.stiffness,
+            mass=theory.DISC.mass,
+            stiffness=theory.DISC.stiffness,
             damping=damping,
-            friction_force=DISC.friction_force,
+            friction_force=theory.DISC.friction_force,
             disc_speed=speed,
         )
         for speed in SPEEDS.tolist()
@@ -340,22 +317,22 @@ def pin_is_stable() -> Measured:
     return answers_of([(upper_branch_margin(pin), -whirl_eigenvalues(pin)[1].real) for pin in pins])
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Where the whirl of (23) is unstable at the speeds of Fig. 11, motions end as rotation, not in a cycle",
     equation="(19), (23)",
     basis="reference",
 )
 def collapses_by_23() -> Measured:
     """See what motions under (23) end as where its whirl is unstable, simulated by the reference."""
-    law, plane, speed = LAWS["(23)"], PLANES["load"], DISC.disc_speed
+    law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
     (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
     starts = []
-    for share in UNSTABLE_LOADS:
-        disc = at(friction_force=fold + share * (hopf - fold))
+    for share in theory.UNSTABLE_LOADS:
+        disc = theory.at(friction_force=fold + share * (hopf - fold))
         largest = whirls(disc, law)[0]
         starts += [
-            Start(disc, tuple((largest.state * factors).tolist()), "rotation", SLOWLY_SETTLED)
-            for factors in BESIDE_LARGEST
+            theory.Start(disc, tuple((largest.state * factors).tolist()), "rotation", theory.SLOWLY_SETTLED)
+            for factors in theory.BESIDE_LARGEST
         ]
-    _, measured = ends_of(functools.partial(simulate, contact=law), starts)
+    _, measured = theory.ends_of(functools.partial(simulate, contact=law), starts)
     return measured

@@ -13,29 +13,7 @@ import numpy as np
 from compare.claims import Data, Measured, answers_of, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
-from compare.studies.disc.stability_map.theory import (
-    ASIDE,
-    BESIDE,
-    BEYOND,
-    DEVIATION,
-    DISC,
-    ENDS,
-    FLOW_TOLERANCE,
-    LINES,
-    LOADS,
-    ON_CYCLE,
-    OUTSIDE,
-    SETTLED,
-    SLOW_LOADS,
-    SLOWLY_SETTLED,
-    STUCK,
-    STUDY,
-    K,
-    Start,
-    at,
-    ends_of,
-    kind_of_end,
-)
+from compare.studies.disc.stability_map import theory
 from compare.studies.toolkit.fig11_planes import PLANES
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
@@ -48,8 +26,8 @@ Lines = Sequence[tuple[str, str, float]]
 """Plane, the parameter that is fixed, and its value."""
 
 BESIDE_CURVES = (
-    f"Discs {100.0 * ASIDE:g} % from the curves to either side. Start on the whirl and a little off it along the "
-    "pair's plane, both ways."
+    f"Discs {100.0 * theory.ASIDE:g} % from the curves to either side. Start on the whirl and a little off it "
+    "along the pair's plane, both ways."
 )
 
 
@@ -63,15 +41,15 @@ class Deviation(NamedTuple):
     error: float
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Beside the Hopf curves small deviations from the whirl grow as the pair of eigenvalues says that the map traces",
     equation="(19), (20)",
     unit="1/s",
-    resolution=1e-4 * K,
+    resolution=1e-4 * theory.K,
     note=f"{BESIDE_CURVES} Error: the change at a smaller tolerance and with twice the deviation.",
     basis="reference",
 )
-def rates(engine: Engine, lines: Lines = LINES) -> Measured:
+def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     """Compare growth and frequency of deviations with the pair of eigenvalues."""
     found = deviations(engine, lines)
     return Measured(
@@ -83,14 +61,14 @@ def rates(engine: Engine, lines: Lines = LINES) -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Small deviations from the whirl grow on one side of the Hopf curves and die out on the other, as mapped",
     equation="(19), (20)",
     note=BESIDE_CURVES,
     basis="reference",
     implied_by=rates,
 )
-def sides(engine: Engine, lines: Lines = LINES) -> Measured:
+def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     """See on which side of the curves deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
@@ -124,8 +102,8 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
         plane = PLANES[name]
         along = plane.names[1 - plane.names.index(fixed)]
         for crossing in crossings(plane, "Hopf", fixed, value):
-            for side in (1.0 - ASIDE, 1.0 + ASIDE):
-                yield name, at(**{fixed: value, along: side * crossing})
+            for side in (1.0 - theory.ASIDE, 1.0 + theory.ASIDE):
+                yield name, theory.at(**{fixed: value, along: side * crossing})
 
 
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
@@ -137,7 +115,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
     which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
     left = np.linalg.inv(vectors)[which]
-    slip = (disc.disc_speed - K) * whirl.radius
+    slip = (disc.disc_speed - theory.K) * whirl.radius
     gap = abs(disc.contact_radius * abs(disc.disc_speed - whirl.spin) - slip)
     deviation = gap / np.max(np.abs(vectors[:, which])) * vectors[:, which].real
     duration = 1.0 / abs(values[which].imag)  # less than half a period: the logarithm is unique
@@ -151,88 +129,93 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
         end = np.delete(rotated((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
         return complex(np.log((left @ end) / (left @ (size * deviation))) / duration)
 
-    parts, error = refined(lambda tolerance: real_and_imaginary(rate(DEVIATION, tolerance)), FLOW_TOLERANCE)
+    parts, error = refined(
+        lambda tolerance: real_and_imaginary(rate(theory.DEVIATION, tolerance)), theory.FLOW_TOLERANCE
+    )
     found = complex(*parts)
-    return found, math.hypot(*error) + abs(rate(2.0 * DEVIATION, FLOW_TOLERANCE) - found)
+    return found, math.hypot(*error) + abs(rate(2.0 * theory.DEVIATION, theory.FLOW_TOLERANCE) - found)
 
 
 # --- What motions end as in each region of the map, and beside its borders.
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
 )
-def regions(engine: Engine, starts: Sequence[Start] | None = None) -> Measured:
+def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
     """See what motions end as; None for those of ``starts_in_regions``."""
     starts = starts_in_regions() if starts is None else starts
-    ends, measured = ends_of(engine.simulate, starts)
+    ends, measured = theory.ends_of(engine.simulate, starts)
     return replace(measured, data=ends_by_plane(starts, ends))
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Just outside of the Hopf curves whirl and modulated cycle coexist, and 2 % outside only the whirl is left",
     equation="(19), (20)",
     basis="reference",
 )
 def coexist(
-    engine: Engine, starts: Sequence[Start] | None = None, loads: Sequence[float] = LOADS
+    engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
 ) -> Measured:
     """See what motions end as outside of the Hopf curves; None for those of ``coexisting``.
 
     ``loads`` in N are those of the motions that are drawn over the load.
     """
-    _, measured = ends_of(engine.simulate, coexisting() if starts is None else starts)
+    _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 
 
-def starts_in_regions() -> tuple[Start, ...]:
+def starts_in_regions() -> tuple[theory.Start, ...]:
     """Return motions in all regions of the map: what they are to end as, by the curves of the ring."""
-    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, DISC.disc_speed)  # it turns with the master disc
+    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 
     return (
-        Start(at(friction_force=0.018), outside, "rotation"),
-        Start(at(friction_force=0.0211), near_axis, "whirl", SLOWLY_SETTLED),
-        Start(DISC, near_axis, "modulated cycle"),
-        Start(DISC, outside, "modulated cycle"),
-        Start(at(friction_force=0.028), near_axis, "whirl"),
-        Start(at(friction_force=0.034), outside, "whirl"),
-        Start(at(friction_force=0.034), at_rest, "sticking", STUCK),
-        Start(at(shaft_damping=0.011), near_axis, "whirl"),
-        Start(at(shaft_damping=0.02), outside, "rotation"),
-        Start(at(polar_inertia=0.4), outside, "whirl", SLOWLY_SETTLED),
-        Start(at(polar_inertia=2.0), outside, "modulated cycle"),
-        Start(at(damping=0.35), outside, "whirl"),
-        Start(at(damping=0.8), outside, "rotation"),
-        Start(at(shaft_speed=1.15), outside, "rotation"),
-        Start(at(shaft_speed=1.3), near_axis, "whirl"),
+        theory.Start(theory.at(friction_force=0.018), outside, "rotation"),
+        theory.Start(theory.at(friction_force=0.0211), near_axis, "whirl", theory.SLOWLY_SETTLED),
+        theory.Start(theory.DISC, near_axis, "modulated cycle"),
+        theory.Start(theory.DISC, outside, "modulated cycle"),
+        theory.Start(theory.at(friction_force=0.028), near_axis, "whirl"),
+        theory.Start(theory.at(friction_force=0.034), outside, "whirl"),
+        theory.Start(theory.at(friction_force=0.034), at_rest, "sticking", theory.STUCK),
+        theory.Start(theory.at(shaft_damping=0.011), near_axis, "whirl"),
+        theory.Start(theory.at(shaft_damping=0.02), outside, "rotation"),
+        theory.Start(theory.at(polar_inertia=0.4), outside, "whirl", theory.SLOWLY_SETTLED),
+        theory.Start(theory.at(polar_inertia=2.0), outside, "modulated cycle"),
+        theory.Start(theory.at(damping=0.35), outside, "whirl"),
+        theory.Start(theory.at(damping=0.8), outside, "rotation"),
+        theory.Start(theory.at(shaft_speed=1.15), outside, "rotation"),
+        theory.Start(theory.at(shaft_speed=1.3), near_axis, "whirl"),
     )
 
 
-def coexisting() -> tuple[Start, ...]:
+def coexisting() -> tuple[theory.Start, ...]:
     """Return motions outside of both Hopf curves: near to them one from whirl and cycle each, and farther off."""
-    lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed)
+    lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
     starts = []
-    for border, outward, settled in ((lower, -1.0, SLOWLY_SETTLED), (upper, 1.0, SETTLED)):
-        near, far = (at(friction_force=border * (1.0 + outward * share)) for share in (OUTSIDE, BEYOND))
+    for border, outward, settled in ((lower, -1.0, theory.SLOWLY_SETTLED), (upper, 1.0, theory.SETTLED)):
+        near, far = (
+            theory.at(friction_force=border * (1.0 + outward * share))
+            for share in (theory.OUTSIDE, theory.BEYOND)
+        )
         (whirl,) = whirls(near)
         starts += [
-            Start(near, tuple((whirl.state * BESIDE).tolist()), "whirl"),
-            Start(near, ON_CYCLE, "modulated cycle"),
-            Start(far, ON_CYCLE, "whirl", settled),
+            theory.Start(near, tuple((whirl.state * theory.BESIDE).tolist()), "whirl"),
+            theory.Start(near, theory.ON_CYCLE, "modulated cycle"),
+            theory.Start(far, theory.ON_CYCLE, "whirl", settled),
         ]
     return tuple(starts)
 
 
-def ends_by_plane(starts: Sequence[Start], ends: Sequence[str]) -> Data:
+def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
     """Return the two parameters and the end, as its place in ``ENDS``, of all motions that a plane shows."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     for name, plane in PLANES.items():
         for start, end in zip(starts, ends, strict=True):
             first, second = (getattr(start.disc, parameter) for parameter in plane.names)
             if plane.at((first, second)) == start.disc:
-                rows.setdefault(f"ends/{name}", []).append((first, second, float(ENDS.index(end))))
+                rows.setdefault(f"ends/{name}", []).append((first, second, float(theory.ENDS.index(end))))
     return {name: np.array(found) for name, found in rows.items()}
 
 
@@ -240,7 +223,9 @@ def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
     """Return friction force in N, smallest and largest radius in m after a long time, shape (n, 3)."""
 
     def extent(load: float) -> tuple[float, float]:
-        settled = SLOWLY_SETTLED if load in SLOW_LOADS else SETTLED
-        return kind_of_end(engine.simulate, Start(at(friction_force=load), ON_CYCLE, "", settled))[1:]
+        settled = theory.SLOWLY_SETTLED if load in theory.SLOW_LOADS else theory.SETTLED
+        return theory.kind_of_end(
+            engine.simulate, theory.Start(theory.at(friction_force=load), theory.ON_CYCLE, "", settled)
+        )[1:]
 
     return np.array([(load, *extent(load)) for load in loads])

@@ -14,20 +14,7 @@ from scipy.optimize import brentq
 
 from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
 from compare.engines import Engine
-from compare.studies.drivetrain.frozen.theory import (
-    ABOVE,
-    BELOW,
-    CASES,
-    DECAYS,
-    FINER,
-    SAMPLE,
-    SEEN,
-    SLIPPING,
-    START,
-    STUDY,
-    TORQUE,
-    balanced_car,
-)
+from compare.studies.drivetrain.frozen import theory
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (
     BRAKE,
@@ -51,7 +38,7 @@ if TYPE_CHECKING:
 
 # --- The speed above which the clutch disc does not stay on the engine's axis: closed form, reference and Exudyn.
 
-IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in CASES]
+IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
 
 NAMED = {f"onset at {words}": i for i, words in enumerate(IN_WORDS)}
 
@@ -62,7 +49,7 @@ ONSET_NOTE = (
 )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
@@ -90,7 +77,7 @@ def loses_stability(engine: Engine) -> Measured:
     return _onset_of(matrix)
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
@@ -111,10 +98,10 @@ def reduced_disc_loses_stability() -> Measured:
 def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
     """Compare the onset by ``matrix(speed, slip, torque)`` with the closed form."""
     car = centred_car()
-    closed = [onset_speed(car, slip, torque) for torque, slip in CASES]
+    closed = [onset_speed(car, slip, torque) for torque, slip in theory.CASES]
     found = [
         _onset(partial(matrix, slip=slip, torque=torque), near, natural_frequency(car))
-        for (torque, slip), near in zip(CASES, closed, strict=True)
+        for (torque, slip), near in zip(theory.CASES, closed, strict=True)
     ]
     measured, errors = np.transpose(found)
     return Measured(
@@ -148,10 +135,10 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
 # line it whirls on its stop above.
 
 NOTE = (
-    f"At {TORQUE:g} N m and {SLIPPING:g} rad/s of slip, after {DECAYS:g} decay times of the slowest mode. "
-    "Numerical error: the change at a smaller tolerance, what is left of the transient by its change in the last "
-    f"{SEEN:g} decay times, and of the prediction the change with finer rings of the annulus; the largest counts for "
-    "all, since one alone may be right by chance."
+    f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
+    "slowest mode. Numerical error: the change at a smaller tolerance, what is left of the transient by its "
+    f"change in the last {theory.SEEN:g} decay times, and of the prediction the change with finer rings of the "
+    "annulus; the largest counts for all, since one alone may be right by chance."
 )
 
 
@@ -166,48 +153,54 @@ class Steady(NamedTuple):
     predicted: Measurement
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Below the onset the clutch disc comes to rest in space where the reference's reduced disc does",
     unit="m",
     note=NOTE,
 )
-def rests(engine: Engine, below: tuple[float, ...] = BELOW) -> Measured:
+def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
     """Compare x and y of the disc at rest."""
     motions = _resting(engine, below)
     return _measured(
-        motions, slice(0, 2), balanced_car().offset, components=("x", "y"), data={"rest": _shown(motions)}
+        motions,
+        slice(0, 2),
+        theory.balanced_car().offset,
+        components=("x", "y"),
+        data={"rest": _shown(motions)},
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Above the onset the clutch disc whirls on its stop, on the circle of the reference's reduced disc",
     unit="m",
     note=NOTE,
 )
-def radius(engine: Engine, above: tuple[float, ...] = ABOVE) -> Measured:
+def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
     """Compare the distance of the centre from the axis."""
     motions = _whirling(engine, above)
     return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Above the onset the clutch disc whirls with the frequency of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
 )
-def frequency(engine: Engine, above: tuple[float, ...] = ABOVE) -> Measured:
+def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
     """Compare the angular velocity of the centre about the axis."""
     return _measured(_whirling(engine, above), 1, 0.0)
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "At rest in space and in the whirl the clutch disc slips as the reference's reduced disc does",
     unit="rad/s",
     note=NOTE,
 )
-def slips(engine: Engine, below: tuple[float, ...] = BELOW, above: tuple[float, ...] = ABOVE) -> Measured:
+def slips(
+    engine: Engine, below: tuple[float, ...] = theory.BELOW, above: tuple[float, ...] = theory.ABOVE
+) -> Measured:
     """Compare the slip of the disc."""
-    return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, balanced_car().offset)
+    return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, theory.balanced_car().offset)
 
 
 def _measured(
@@ -228,7 +221,7 @@ def _measured(
         at={"speed in rpm": [one.speed for one in motions]},
         components=components,
         parameters=parameters_of(
-            balanced_car(), without=("offset",), offset=offset, torque=TORQUE, brake=BRAKE
+            theory.balanced_car(), without=("offset",), offset=offset, torque=theory.TORQUE, brake=BRAKE
         ),
         data=data or {},
     )
@@ -241,10 +234,10 @@ def _shown(motions: Sequence[Steady]) -> FloatArray:
 @functools.lru_cache(maxsize=2)
 def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
     """Return the states of rest at ``speeds`` in turns a minute, with the car's offset."""
-    car = balanced_car()
+    car = theory.balanced_car()
 
     def one(speed: float) -> Steady:
-        bench = Operation(speed * RPM, SLIPPING, TORQUE, car.offset)
+        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, car.offset)
 
         def quantities(rings: int) -> FloatArray:
             rest = rest_of(car, bench, rings)
@@ -260,17 +253,17 @@ def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
 @functools.lru_cache(maxsize=2)
 def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
     """Return the whirls at ``speeds`` in turns a minute, without offset."""
-    car = balanced_car()
+    car = theory.balanced_car()
 
     def one(speed: float) -> Steady:
-        bench = Operation(speed * RPM, SLIPPING, TORQUE)
+        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE)
 
         def quantities(rings: int) -> FloatArray:
             whirl = whirl_of(car, bench, rings)
             return np.array([whirl.radius, whirl.frequency, bench.speed - whirl.spin])
 
         rate = -whirl_of(car, bench).eigenvalues[1].real
-        found = _settled(car, bench, rate, complex(START), whirling=True)
+        found = _settled(car, bench, rate, complex(theory.START), whirling=True)
         return Steady(speed, found, _with_rings(quantities))
 
     return tuple(one(speed) for speed in speeds)
@@ -279,7 +272,7 @@ def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
 def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
     """Return ``quantities(rings)`` of the reference, and the change with finer rings as their error."""
     found = quantities(RINGS)
-    return Measurement(found, np.abs(found - quantities(FINER)))
+    return Measurement(found, np.abs(found - quantities(theory.FINER)))
 
 
 def _settled(
@@ -293,13 +286,13 @@ def _settled(
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
         model = operation.build(car)
         start_disc(model, start, 0j)
-        motion = model.run(DECAYS / rate, sample_every=SAMPLE, tolerance=tolerance)
+        motion = model.run(theory.DECAYS / rate, sample_every=theory.SAMPLE, tolerance=tolerance)
         z, velocity = centre(motion.disc), centre(motion.disc_velocity)
         shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)
         return motion.times, np.column_stack((*shape, motion.slip))
 
     (times, found), (_, finer) = run(WORKING), run(WORKING / COARSENING)
-    delay = SEEN / rate
+    delay = theory.SEEN / rate
     earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
     rest = remaining_transient(earlier, found[-1], rate, delay)
     return Measurement(found[-1], change_as_error(found[-1], finer[-1], alike=False) + rest)

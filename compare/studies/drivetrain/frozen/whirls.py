@@ -19,36 +19,14 @@ from scipy.optimize import brentq
 from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
-from compare.studies.drivetrain.frozen.theory import (
-    BETWEEN,
-    BORDER_SURPLUS,
-    BORDER_TORQUES,
-    CYCLE_SAMPLE,
-    DEVIATION,
-    FINER,
-    MODULATED,
-    PUSH,
-    ROUGHER,
-    STUDY,
-    TIME,
-    TOLERANCE,
-    UNTIL,
-    WHIRLS,
-    CarWhirl,
-    build,
-    in_turning_axes,
-    of_modulation,
-    state_matrix_of,
-    whirl_under_surplus,
-    whirls_of,
-)
+from compare.studies.drivetrain.frozen import theory
 from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
-Matrix = Callable[[CarWhirl], FloatArray]
+Matrix = Callable[[theory.CarWhirl], FloatArray]
 """Of the small motions about a whirl, see ``state_matrix_of``."""
 
 
@@ -57,10 +35,10 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 
-    return lambda whirl: state_matrix(build(car, whirl, regularisation=REGULARISATION).mbs)
+    return lambda whirl: state_matrix(theory.build(car, whirl, regularisation=REGULARISATION).mbs)
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Exudyn's linearisation about a whirl has the eigenvalues that the reference's law of friction gives",
     unit="1/s",
     resolution=1e-9,
@@ -73,16 +51,16 @@ def linearised(engine: Engine) -> Measured:
     car = centred_car()
     by_exudyn = _by_exudyn(car)
     found, expected, errors = [], [], []
-    for whirl in whirls_of(car):
-        predicted = of_modulation(state_matrix_of(car, whirl), whirl.frequency)
-        finer = of_modulation(state_matrix_of(car, whirl, FINER), whirl.frequency)
-        found.append(matched(of_modulation(by_exudyn(whirl), whirl.frequency), predicted))
+    for whirl in theory.whirls_of(car):
+        predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)
+        finer = theory.of_modulation(theory.state_matrix_of(car, whirl, theory.FINER), whirl.frequency)
+        found.append(matched(theory.of_modulation(by_exudyn(whirl), whirl.frequency), predicted))
         expected.append(predicted)
         errors.append(np.max(np.abs(matched(finer, predicted) - predicted)))
     scale = max(abs(value) for values in expected for value in values)
     whirls = [
         f"{speed:g} turns a minute with {torque:g} N m and {100.0 * surplus:g} % of load too much"
-        for speed, torque, surplus in WHIRLS
+        for speed, torque, surplus in theory.WHIRLS
     ]
     return Measured(
         predicted=real_and_imaginary(expected),
@@ -94,31 +72,31 @@ def linearised(engine: Engine) -> Measured:
     )
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "A whirl in the play is modulated above the speed where an eigenvalue by the reference's friction is imaginary",
     unit="turns a minute",
     resolution=1.0,
-    note=f"With {100.0 * BORDER_SURPLUS:g} % of load too much. Measured: the speed at which Exudyn's linearisation "
-    "about the whirl has an imaginary eigenvalue. Numerical error: rounding of both eigenvalue problems, and the "
-    "change with finer rings of the reference's annulus.",
-    named={f"border at {torque:g} N m": i for i, torque in enumerate(BORDER_TORQUES)},
+    note=f"With {100.0 * theory.BORDER_SURPLUS:g} % of load too much. Measured: the speed at which Exudyn's "
+    "linearisation about the whirl has an imaginary eigenvalue. Numerical error: rounding of both eigenvalue "
+    "problems, and the change with finer rings of the reference's annulus.",
+    named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
 )
-def border(engine: Engine, between: tuple[float, float] = BETWEEN) -> Measured:
+def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
     """Compare the speeds above which the modulation grows, sought ``between`` two (turns a minute)."""
     car = centred_car()
 
     def borders(matrix: Matrix) -> FloatArray:
-        return np.transpose([_border(car, matrix, torque, between) for torque in BORDER_TORQUES])
+        return np.transpose([_border(car, matrix, torque, between) for torque in theory.BORDER_TORQUES])
 
-    predicted, rounding = borders(partial(state_matrix_of, car))
-    finer, _ = borders(partial(state_matrix_of, car, rings=FINER))
+    predicted, rounding = borders(partial(theory.state_matrix_of, car))
+    finer, _ = borders(partial(theory.state_matrix_of, car, rings=theory.FINER))
     measured, rounded = borders(_by_exudyn(car))
     return Measured(
         predicted=predicted,
         value=measured,
         error=np.abs(finer - predicted) + rounding + rounded,
-        at={"torque in N m": BORDER_TORQUES},
-        parameters=parameters_of(car, surplus=BORDER_SURPLUS),
+        at={"torque in N m": theory.BORDER_TORQUES},
+        parameters=parameters_of(car, surplus=theory.BORDER_SURPLUS),
     )
 
 
@@ -128,12 +106,12 @@ def _border(
     """Return the speed in turns a minute, and its error by the rounding of the eigenvalue; NaN if there is none."""
 
     def growth(speed: float) -> tuple[float, float]:
-        whirl = whirl_under_surplus(car, speed * RPM, torque, BORDER_SURPLUS)
+        whirl = theory.whirl_under_surplus(car, speed * RPM, torque, theory.BORDER_SURPLUS)
         if whirl is None:
             return math.nan, math.nan
-        balanced, _ = matrix_balance(in_turning_axes(matrix(whirl), whirl.frequency))
+        balanced, _ = matrix_balance(theory.in_turning_axes(matrix(whirl), whirl.frequency))
         values, errors = eigenvalues_with_rounding(balanced)
-        slowest = of_modulation(matrix(whirl), whirl.frequency)[0]
+        slowest = theory.of_modulation(matrix(whirl), whirl.frequency)[0]
         return slowest.real, float(errors[np.argmin(np.abs(values - slowest))])
 
     low, high = (growth(speed)[0] for speed in between)
@@ -143,41 +121,48 @@ def _border(
     return speed, 2.0 * growth(speed)[1] * (between[1] - between[0]) / (high - low) + 1e-9
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Small deviations from a whirl in the play grow and turn with the eigenvalue of its modulation",
     unit="1/s",
-    note=f"Two runs that start {100.0 * DEVIATION:g} % of the radius outside and inside of the whirl; the part of "
-    f"their difference that belongs to the mode, after {TIME:g} s. Numerical error: the change with twice the "
-    "deviation, and at a smaller tolerance.",
+    note=f"Two runs that start {100.0 * theory.DEVIATION:g} % of the radius outside and inside of the whirl; the "
+    f"part of their difference that belongs to the mode, after {theory.TIME:g} s. Numerical error: the change "
+    "with twice the deviation, and at a smaller tolerance.",
 )
 def growth(engine: Engine) -> Measured:
     """Compare the eigenvalue with which deviations from the modulated whirl grow in a run."""
     car = centred_car()
-    whirl = whirls_of(car)[0]
-    matrix = in_turning_axes(state_matrix_of(car, whirl), whirl.frequency)
-    predicted = of_modulation(state_matrix_of(car, whirl), whirl.frequency)[0]
+    whirl = theory.whirls_of(car)[0]
+    matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)
+    predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)[0]
     values, left = np.linalg.eig(matrix.T)
     mode = left[:, np.argmin(np.abs(values - predicted))]
 
     def grown(deviation: float, tolerance: float) -> complex:
         runs = [_deviations(car, whirl, sign * deviation, tolerance) for sign in (1.0, -1.0)]
         start, end = (runs[0] - runs[1]) @ mode
-        return complex(np.log(end / start) / TIME)
+        return complex(np.log(end / start) / theory.TIME)
 
-    found = refined(lambda tolerance: real_and_imaginary(grown(DEVIATION, tolerance)), TOLERANCE)
+    found = refined(
+        lambda tolerance: real_and_imaginary(grown(theory.DEVIATION, tolerance)), theory.TOLERANCE
+    )
     return Measured(
         predicted=real_and_imaginary(predicted),
         value=found.value,
-        error=np.hypot(*found.error) + abs(grown(2.0 * DEVIATION, TOLERANCE) - complex(*found.value)),
+        error=np.hypot(*found.error)
+        + abs(grown(2.0 * theory.DEVIATION, theory.TOLERANCE) - complex(*found.value)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
-        parameters=parameters_of(car, speed=MODULATED[0], torque=whirl.torque, surplus=MODULATED[2]),
+        parameters=parameters_of(
+            car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]
+        ),
     )
 
 
-def _deviations(car: Drivetrain, whirl: CarWhirl, deviation: float, tolerance: float) -> FloatArray:
+def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
     """Return the state in axes that turn with the whirl, as ``in_turning_axes`` orders it, at both ends, (2, 8)."""
-    motion = build(car, whirl, deviation=deviation).run(TIME, sample_every=TIME, tolerance=tolerance)
+    motion = theory.build(car, whirl, deviation=deviation).run(
+        theory.TIME, sample_every=theory.TIME, tolerance=tolerance
+    )
     turn = np.exp(-1j * whirl.frequency * motion.times)
     z, velocity = turn * centre(motion.disc), turn * centre(motion.disc_velocity)
     twist = motion.disc[:, 2] - motion.vehicle_angle
@@ -189,23 +174,25 @@ def _deviations(car: Drivetrain, whirl: CarWhirl, deviation: float, tolerance: f
     )[[0, -1]]
 
 
-@STUDY.claim(
+@theory.STUDY.claim(
     "Energy is balanced in the modulated whirl of the clutch disc",
     kind="conservation",
     resolution=1e-6,
     basis="self-check",  # the model's own law of friction gives the heat
 )
-def balance(engine: Engine, until: float = UNTIL) -> Measured:
+def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
     """Check the energy of the modulated motion up to ``until`` s, and keep it for the figure."""
     car = centred_car()
-    whirl = whirls_of(car)[0]
+    whirl = theory.whirls_of(car)[0]
     motions = [
-        build(car, whirl, deviation=PUSH).run(until, sample_every=CYCLE_SAMPLE, tolerance=tolerance)
-        for tolerance in (ROUGHER * WORKING, ROUGHER * WORKING / COARSENING)
+        theory.build(car, whirl, deviation=theory.PUSH).run(
+            until, sample_every=theory.CYCLE_SAMPLE, tolerance=tolerance
+        )
+        for tolerance in (theory.ROUGHER * WORKING, theory.ROUGHER * WORKING / COARSENING)
     ]
     measured = balance_of(
         [motion.energy for motion in motions],
-        parameters_of(car, speed=MODULATED[0], torque=whirl.torque, surplus=MODULATED[2]),
+        parameters_of(car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]),
     )
     motion = motions[0]
     shown = np.column_stack((motion.times, np.abs(centre(motion.disc)), motion.slip))

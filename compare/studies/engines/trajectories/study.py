@@ -12,17 +12,8 @@ import numpy as np
 from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import components_of
 from compare.engines import Engine
+from compare.studies.engines.trajectories import parameters
 from compare.studies.engines.trajectories.drawn import DRAWN
-from compare.studies.engines.trajectories.parameters import (
-    MOTIONS,
-    PANEL,
-    PINS,
-    PINS_THAT_STICK,
-    POINTS,
-    RINGS,
-    STICK_RESOLUTION,
-    Motion,
-)
 from compare.studies.engines.trajectories.pooling import MeasureAll, Motions, together
 from compare.studies.engines.trajectories.stick import as_many, late, samples_in_stick, stick_times
 from compare.studies.engines.trajectories.theory import (
@@ -41,30 +32,34 @@ from reference_model.systems import FloatArray
 STUDY = Study.beside(
     __file__,
     "trajectories",
-    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{parameters.Motion.tolerance:g}"},
     seconds=2.0,
     quick=True,
     contact=True,
 )
 
 INTEGRATED = (
-    f"What is missing in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its error from how "
-    "the Legendre coefficients of what is integrated fall. The tolerance counts as an error of both states besides."
+    f"What is missing in every {parameters.PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its "
+    "error from how the Legendre coefficients of what is integrated fall. The tolerance counts as an error of "
+    "both states besides."
 )
 
-NAMES = {motion: name for name, motion in MOTIONS.items()}
+NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
 
 
-def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
+def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
     """Return motions by hand each for itself, and those that are drawn by kinds."""
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
 
 
-SLIDING = by_name(PINS, "pins", "pins on stops")
-STICKING = by_name(PINS_THAT_STICK, "pins that stick")
-OF_DISCS = {"(19), (20)": by_name(RINGS, "rings"), "(19), (21)": by_name(POINTS, "points")}
+SLIDING = by_name(parameters.PINS, "pins", "pins on stops")
+STICKING = by_name(parameters.PINS_THAT_STICK, "pins that stick")
+OF_DISCS = {
+    "(19), (20)": by_name(parameters.RINGS, "rings"),
+    "(19), (21)": by_name(parameters.POINTS, "points"),
+}
 """By the equations that they follow."""
 
 
@@ -95,12 +90,12 @@ def of_bodies(
 
 
 @functools.lru_cache(maxsize=256)  # of all motions, at the tolerances of an error estimate
-def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+def run(engine: Engine, motion: parameters.Motion, tolerance: float) -> Trajectory:
     """Return the motion at ``times_of(motion)``, for all claims on it."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
-def states_of(engine: Engine, motion: Motion) -> Measurement:
+def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
     """Return the states of a motion, and their errors."""
     return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
 
@@ -114,7 +109,7 @@ def states_of(engine: Engine, motion: Motion) -> Measurement:
     note=f"Predicted: the reference at tolerance {TRUTH:g}.",
 )
 @together
-def moves(engine: Engine, motion: Motion) -> Measured:
+def moves(engine: Engine, motion: parameters.Motion) -> Measured:
     """Compare all states with the reference's."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
@@ -148,7 +143,7 @@ def moves(engine: Engine, motion: Motion) -> Measured:
     note=INTEGRATED,
 )
 @together
-def kinematics(engine: Engine, motion: Motion) -> Measured | None:
+def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the change of places and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
     return balance(
@@ -170,7 +165,7 @@ def kinematics(engine: Engine, motion: Motion) -> Measured | None:
     note=INTEGRATED,
 )
 @together
-def momentum(engine: Engine, motion: Motion) -> Measured | None:
+def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the change of momentum and spin in each panel with the integral of forces and moments."""
     body = motion.system
     half = body.state_size // 2
@@ -188,7 +183,7 @@ def momentum(engine: Engine, motion: Motion) -> Measured | None:
 
 def balance(
     engine: Engine,
-    motion: Motion,
+    motion: parameters.Motion,
     amounts: Callable[[FloatArray], FloatArray],
     rates: Callable[[FloatArray], FloatArray],
     components: Sequence[str],
@@ -224,12 +219,12 @@ def balance(
     "A body sticks and lets go when the reference does: {}",
     kind="trajectory",
     unit="s",
-    resolution=STICK_RESOLUTION,
-    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, beside those of the reference.",
+    resolution=parameters.STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {parameters.STICK_RESOLUTION:g} s, beside those of the reference.",
     each=STICKING,
 )
 @together
-def phases(engine: Engine, motion: Motion) -> Measured | None:
+def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare beginnings and ends of all stick phases with the reference's."""
     if not motion.sticks:
         return None
@@ -245,12 +240,12 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
     "A body half way through a stick phase is let go when (7) says: {}",
     equation="(7)",
     unit="s",
-    resolution=STICK_RESOLUTION,
+    resolution=parameters.STICK_RESOLUTION,
     note="End of each stick phase, less what (7) says for the place in the middle of it.",
     each=STICKING,
 )
 @together
-def release(engine: Engine, motion: Motion) -> Measured | None:
+def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the ends of stick phases with (7), where the reference finds any."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
@@ -260,7 +255,9 @@ def release(engine: Engine, motion: Motion) -> Measured | None:
     return of_stick(motion, np.zeros(len(middles)), found, ("release",))
 
 
-def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]) -> Measured:
+def of_stick(
+    motion: parameters.Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]
+) -> Measured:
     """Return what is measured of a pin's stick phases; the numbers are of each ``kind`` in turn."""
     return Measured(
         predicted=predicted,
@@ -275,7 +272,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
     )
 
 
-def started(motion: Motion) -> str:
+def started(motion: parameters.Motion) -> str:
     """Return from where, and until when, a motion is followed."""
     return f"To t = {motion.until:g} s from {motion.start}."
 
@@ -283,7 +280,7 @@ def started(motion: Motion) -> str:
 # ---------------------------------------------------------------- of other motions
 
 
-def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
+def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
     """Measure what the study claims, of each of the given motions in place of its own."""
     declared = []
     for one in STUDY.declared:
