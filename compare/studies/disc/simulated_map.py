@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of
 from compare.claims.parameters import FIG11
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
-from compare.studies.toolkit.fig11_planes import KINDS, curves_in
+from compare.studies.toolkit.fig11 import KINDS, curves_in
 from reference_model import onset_load, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 

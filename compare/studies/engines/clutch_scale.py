@@ -15,7 +15,7 @@ from compare.claims.parameters import FIG4, FIG5, FIG8
 from compare.engines import Engine
 from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import remaining_transient
-from compare.studies.toolkit.fig11_motion import DISCS, integrated
+from compare.studies.toolkit.fig11 import DISCS, integrated
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues

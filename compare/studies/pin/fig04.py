@@ -13,7 +13,7 @@ from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Measureme
 from compare.claims.parameters import FIG4
 from compare.engines import Engine
 from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.whirls import whirl_of
+from compare.studies.toolkit.pins import whirl_of
 from reference_model import Orbit, PinOnDisc
 from reference_model.formulas.pin import (
     first_order_whirl_response,

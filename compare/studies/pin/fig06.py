@@ -18,7 +18,7 @@ from compare.claims.parameters import FIG4
 from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.whirls import extent, whirl_of
+from compare.studies.toolkit.pins import extent, whirl_of
 from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.formulas.pin import (
     equilibrium_position,

@@ -10,7 +10,7 @@ import numpy as np
 from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.theory import RESOLUTION, RING, place_and_spin
-from compare.studies.toolkit.self_centred import last_load, with_load
+from compare.studies.toolkit.steady_motion import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.disc.fig08 import theory
-from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
-from compare.studies.toolkit.steady_motion import steady_motion
+from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
 from reference_model.formulas.disc import places_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle

@@ -13,9 +13,8 @@ from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.whirls import circle, circles_of, rest, rests_of
-from compare.studies.toolkit.self_centred import with_load
-from compare.studies.toolkit.steady_motion import mode_growth
-from compare.studies.toolkit.sticking import first_release
+from compare.studies.toolkit.pins import first_release
+from compare.studies.toolkit.steady_motion import mode_growth, with_load
 from reference_model import Trajectory, simulate
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray

@@ -15,8 +15,8 @@ from scipy.optimize import brentq
 
 from compare.claims import ROUNDING, TIGHTEST, WORKING, Data, Study
 from compare.claims.parameters import FIG9
-from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
-from compare.studies.toolkit.sticking import safest_angle, stuck
+from compare.studies.toolkit.pins import safest_angle, stuck
+from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, with_load
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing, contact_of
 from reference_model.formulas.disc import held_pin, pin_of, whirl_at

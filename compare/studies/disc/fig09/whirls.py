@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
-from compare.studies.toolkit.self_centred import with_load
-from compare.studies.toolkit.steady_motion import sharpness, steady_motion
+from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
 from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray

@@ -18,7 +18,7 @@ from compare.studies.disc.fig11.theory import (
     predicted_modulation,
     steady_whirl,
 )
-from compare.studies.toolkit.fig11_motion import DISCS, RING, SOURCE, START
+from compare.studies.toolkit.fig11 import DISCS, RING, SOURCE, START
 from reference_model import simulate, whirl_orbit
 from reference_model.orbits import modulated_cycle
 from reference_model.systems import FloatArray

@@ -21,7 +21,7 @@ from compare.studies.disc.fig11.theory import (
     pair_modulus,
     rest_offset,
 )
-from compare.studies.toolkit.fig11_motion import RING, SIX, SOURCE, START, rates
+from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
 from reference_model import Orbit, Trajectory, simulate
 from reference_model.systems import FloatArray
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from compare.claims import WORKING, Study
 from compare.claims.parameters import FIG8, FIG11
-from compare.studies.toolkit.fig11_motion import RING, SOURCE, START
+from compare.studies.toolkit.fig11 import RING, SOURCE, START
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.systems import ANGLE
 

@@ -22,7 +22,7 @@ from compare.output.figures import (
     points,
 )
 from compare.studies.disc.fig11.parameters import TIMES
-from compare.studies.toolkit.fig11_motion import DISCS, RING
+from compare.studies.toolkit.fig11 import DISCS, RING
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

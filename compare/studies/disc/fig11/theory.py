@@ -19,7 +19,7 @@ from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG11
 from compare.engines import Engine
 from compare.studies.disc.fig11 import parameters
-from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated, rates
+from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated, rates
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import IsotropicContact

@@ -13,7 +13,7 @@ from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.engines import Engine
 from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
-from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated
+from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
 from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray

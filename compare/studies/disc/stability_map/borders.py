@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.measured import Measured, answers_of
 from compare.studies.disc.stability_map import theory
-from compare.studies.toolkit.fig11_planes import FINE, LAWS, PLANES, curves_in
+from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.pin import upper_branch_margin
 from reference_model.simulation import simulate

@@ -14,7 +14,7 @@ from compare.claims import Data, Measured, answers_of, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
 from compare.studies.disc.stability_map import theory
-from compare.studies.toolkit.fig11_planes import PLANES
+from compare.studies.toolkit.fig11 import PLANES
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls

@@ -16,7 +16,7 @@ from compare.claims import WORKING, Data, Measured, Study, answers_of, asked
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
 from compare.claims.parameters import FIG11, at_each
 from compare.engines import Simulate
-from compare.studies.toolkit.fig11_planes import KINDS, LAWS, PLANES, curves_in
+from compare.studies.toolkit.fig11 import KINDS, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
 from reference_model.steady.bifurcation_curves import Boundary, Kind

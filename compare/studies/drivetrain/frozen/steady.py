@@ -18,6 +18,7 @@ from compare.studies.drivetrain.frozen import theory
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (
     BRAKE,
+    RINGS,
     RPM,
     Operation,
     centre,
@@ -26,9 +27,10 @@ from compare.studies.toolkit.drivetrain_bench import (
     natural_frequency,
     onset_speed,
     parameters_of,
+    rest_of,
     start_disc,
+    whirl_of,
 )
-from compare.studies.toolkit.drivetrain_steady import RINGS, rest_of, whirl_of
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import FloatArray
 

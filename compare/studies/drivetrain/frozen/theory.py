@@ -28,9 +28,10 @@ from compare.studies.toolkit.drivetrain_bench import (
     natural_frequency,
     onset_speed,
     passenger_car,
+    rest_of,
     start_disc,
+    whirl_of,
 )
-from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support

@@ -23,9 +23,10 @@ from compare.studies.toolkit.drivetrain_bench import (
     onset_speed,
     parameters_of,
     passenger_car,
+    rest_of,
     rotating_damping,
+    whirl_of,
 )
-from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model.systems import FloatArray
 
 # --- The run-up: how the engine pulls, and how the slip of the clutch is held.

@@ -15,8 +15,8 @@ from numpy.random import Generator
 from compare.claims.error_estimates import WORKING
 from compare.studies.engines.trajectories import parameters
 from compare.studies.engines.trajectories.theory import by_reference
+from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import between, sign
-from compare.studies.toolkit.sticking import farthest
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.formulas.pin import release_time
 from reference_model.systems import System

@@ -15,8 +15,8 @@ from compare.claims.study import ByEngine, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.pin.nonlinear_support import theory
+from compare.studies.toolkit.pins import extent, whirl_of
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
-from compare.studies.toolkit.whirls import extent, whirl_of
 from reference_model import simulate, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius

@@ -40,7 +40,7 @@ from compare.studies.pin.sticking_domain.theory import (
     top,
     vertex,
 )
-from compare.studies.toolkit.sticking import first_release, safest_angle, stuck
+from compare.studies.toolkit.pins import first_release, safest_angle, stuck
 from reference_model.formulas.pin import release_time, resonant_disc_speed, sticking_radius
 from reference_model.systems import FloatArray, PinOnDisc
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from compare.claims.parameters import FIG4
 from compare.claims.study import Data
-from compare.studies.toolkit.sticking import safest_angle
+from compare.studies.toolkit.pins import safest_angle
 from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 

@@ -1,4 +1,4 @@
-"""Starts of a pin that sticks to the disc, and when the disc lets it go."""
+"""Pins that stick to the disc, and their whirl as an engine's own periodic orbit."""
 
 from __future__ import annotations
 
@@ -6,8 +6,12 @@ import math
 
 import numpy as np
 
+from compare.engines import Engine
+from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
+
+# --- Starts of a pin that sticks to the disc, and when the disc lets it go.
 
 
 def safest_angle(pin: PinOnDisc) -> float:
@@ -34,3 +38,27 @@ def first_release(run: Trajectory) -> float:
     if first.kind != "stick":
         return math.nan
     return first.end if len(run.phases) > 1 else math.inf
+
+
+# --- The pin's whirl as an engine's own periodic orbit, and what is read off it.
+
+SAMPLES = 64
+"""States in a turn."""
+
+
+def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
+    """Return the whirl of ``pin``, found by shooting with ``engine``."""
+    return whirl_orbit(
+        pin,
+        simulate=engine.simulate,
+        tolerance=tolerance,
+        guess=guess,
+        samples=SAMPLES,
+        precision=engine.precision,
+    )
+
+
+def extent(orbit: Orbit) -> FloatArray:
+    """Return the least and the greatest distance from the axis in m."""
+    radius = orbit.trajectory.radius
+    return np.array([np.min(radius), np.max(radius)])
