@@ -251,9 +251,11 @@ class Bench:
 
     def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
         """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
+        from compare.run.runner import measured
+
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(_measured, study, engine, parts, owner=engine)
+            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, owner=engine)
         return self._outcomes[key]
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -267,14 +269,6 @@ class Bench:
 
 
 _BENCH = pytest.StashKey[Bench]()
-
-
-def _measured(study: Study, name: str, parts: tuple[str, ...]) -> Findings:
-    """Return what ``parts`` of ``study`` find; the engine is imported here, in a process that may hang or crash."""
-    from compare.engines import engines
-    from compare.run.runner import measured
-
-    return measured(study, engines([name])[0], parts)
 
 
 def _account(study: Study, claim: Claim, engine: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -17,10 +17,8 @@ from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table
 from compare.engines import Engine, UnsupportedSystemError
+from compare.output.figures import Figure
 from reference_model.systems import FloatArray, System
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Data = dict[str, FloatArray]
 

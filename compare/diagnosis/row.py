@@ -8,7 +8,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,13 +15,9 @@ from compare.claims.as_json import as_json
 from compare.diagnosis.findings import MOTIONS, RUNGS, Creep, Lag, Motion
 from compare.diagnosis.laws import CONE, DISTINCT, FITS, Friction
 from compare.diagnosis.probes import FRICTION, SPEED
-from compare.output.figures import new_figure, paper_style, saved
+from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 LEAST_DEVIATION = 1e-8
 """Of a force or its direction, relative, that is told."""

@@ -222,12 +222,15 @@ class _Runner:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
 
 
-def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:
+def measured(study: Study, engine: Engine | str | None, only: Collection[str] = ()) -> Findings:
     """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``.
 
-    ``only`` are the parts of it that are asked for, as ``Study.measure`` has them; empty for all.
+    The engine of a name is imported here, in a process that may hang or crash. ``only`` are the parts of the study
+    that are asked for, as ``Study.measure`` has them; empty for all.
     """
     findings: object = None
+    if isinstance(engine, str):
+        (engine,) = engines([engine])
     if engine is not None:
         try:
             findings = study.measure(engine, only=only)

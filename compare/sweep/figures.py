@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,6 +15,8 @@ from compare.output.figures import (
     ORANGE,
     PURPLE,
     SKY,
+    Axes,
+    Figure,
     axis,
     new_figure,
     paper_style,
@@ -26,10 +28,6 @@ from compare.sweep.plan import Basin, Continuation, Map, Plan, RandomBasin, Unce
 from compare.sweep.quantities import symbol, units
 from compare.sweep.store import SweepStore
 from reference_model.ensemble import EndState
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 COLOURS = {
     EndState.UNDECIDED: "#ffffff",

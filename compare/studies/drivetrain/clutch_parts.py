@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from compare.claims import COARSENING, ByEngine, Data, Figures, Measured, Study, change_as_error
 from compare.engines import Engine
-from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figure, points
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # Judder: a drive drags a clutch disc on a torsional spring, and friction falls with the slip.
 

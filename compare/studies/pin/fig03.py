@@ -6,14 +6,14 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
 from compare.engines import Engine
-from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, Axes, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import Rates, measured_rates, settled
 from reference_model.formulas.pin import (
     equilibrium_position,
@@ -23,11 +23,6 @@ from reference_model.formulas.pin import (
 )
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray, PinOnDisc
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 # --- The pin of Fig. 3, for which the paper prints no parameters, and how it is measured.
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Measurement, Study, refined
 from compare.claims.parameters import FIG4
 from compare.engines import Engine
-from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import BLACK, GREY, Axes, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.pins import whirl_of
 from reference_model import Orbit, PinOnDisc
 from reference_model.formulas.pin import (
@@ -24,10 +24,6 @@ from reference_model.formulas.pin import (
     whirl_shift_error_limit,
 )
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # --- Speeds and offsets at which the whirl of Fig. 4 is measured.
 

@@ -6,7 +6,6 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -17,7 +16,7 @@ from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG4
 from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
-from compare.output.figures import GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREEN, GREY, ORANGE, Axes, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.pins import extent, whirl_of
 from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
 from reference_model.formulas.pin import (
@@ -26,10 +25,6 @@ from reference_model.formulas.pin import (
     largest_load_with_equilibrium,
 )
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 # --- The pin of Fig. 6 and the friction forces at which it is measured.
 

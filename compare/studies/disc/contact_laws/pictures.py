@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from compare.claims.study import ByEngine, Figures
 from compare.output.figures import (
     BLACK,
@@ -11,15 +9,13 @@ from compare.output.figures import (
     GREY,
     PURPLE,
     SKY,
+    Figure,
     axis,
     curve,
     engines_in,
     new_figure,
     points,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 RATIO = axis("U/W")
 

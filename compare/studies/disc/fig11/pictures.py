@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -14,6 +13,8 @@ from compare.output.figures import (
     GREEN,
     GREY,
     PURPLE,
+    Axes,
+    Figure,
     axis,
     curve,
     engine_style,
@@ -24,10 +25,6 @@ from compare.output.figures import (
 from compare.studies.disc.fig11.parameters import TIMES
 from compare.studies.toolkit.fig11 import DISCS, RING
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 K = RING.natural_frequency
 

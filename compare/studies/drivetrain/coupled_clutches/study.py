@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +17,8 @@ from compare.output.figures import (
     GREY,
     ORANGE,
     PURPLE,
+    Axes,
+    Figure,
     axis,
     engine_style,
     engines_in,
@@ -48,11 +49,6 @@ from compare.studies.drivetrain.coupled_clutches.theory import (
 )
 from compare.studies.toolkit.torsional_chain import STUCK
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]

@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compare.claims import COARSENING, ROUNDING, SAFETY, ByEngine, Figures, Measured, Study
 from compare.engines import Engine
-from compare.output.figures import BLACK, curve, engine_style, engines_in, new_figure, points
+from compare.output.figures import BLACK, Axes, Figure, curve, engine_style, engines_in, new_figure, points
 from compare.studies.engines.error_estimates import theory
 from compare.studies.toolkit.random_systems import between
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
 """Estimate over true error where errors are in proportion to the tolerance."""

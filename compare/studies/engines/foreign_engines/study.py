@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 import compare.studies.engines.foreign_engines.theory as ladders
 from compare.claims import ByEngine, Data, Figures, Measured, Study, extrapolated_order, observed_exponent
 from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
-from compare.output.figures import BLACK, GREY, PURPLE, SKY, engine_style, new_figure
+from compare.output.figures import BLACK, GREY, PURPLE, SKY, Axes, Figure, engine_style, new_figure
 from compare.studies.engines.foreign_engines.theory import (
     BOXES,
     BY_AXIS,
@@ -31,11 +31,6 @@ from compare.studies.engines.foreign_engines.theory import (
     release_where,
     tables,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 ORDER = (
     "Orders observed while the step is halved, extrapolated to 0. Model error: the extrapolation's own step; "

@@ -6,7 +6,6 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from compare.claims.linearised_flow import rotated
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
-from compare.output.figures import GREY, axis, curve, engines_in, new_figure, points
+from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.sticking_domain.theory import (
     BRACKET,
     CREEP,
@@ -43,10 +42,6 @@ from compare.studies.pin.sticking_domain.theory import (
 from compare.studies.toolkit.pins import first_release, safest_angle, stuck
 from reference_model.formulas.pin import release_time, resonant_disc_speed, sticking_radius
 from reference_model.systems import FloatArray, PinOnDisc
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 STUDY = Study.beside(
     __file__,
