@@ -10,12 +10,13 @@ import numpy as np
 
 from compare.claims import Measured, extrapolated_order
 from compare.studies.disc.fig09 import theory
+from compare.studies.disc.fig09.theory import STUDY
 from reference_model import smallest_load_with_whirl
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Without offset the whirl ends in a fold: at its smallest friction force an eigenvalue of it passes zero",
     equation="(20), (23)",
     unit="N",
@@ -37,7 +38,7 @@ def fold() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "As β → 0 the equilibrium loses its stability where friction feeds a circular motion as much as β damps it",
     resolution=0.05,
     note=f"Order in β of the error, for β = {', '.join(f'{damping:g}' for damping in theory.DAMPINGS)} N s/m, "
@@ -62,7 +63,7 @@ def weak_damping() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The inner, unstable whirl shrinks onto the equilibrium at the μN where the equilibrium loses its stability",
     unit="N",
     note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. Measured: "

@@ -12,6 +12,7 @@ from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
+from compare.studies.disc.fig09.theory import STUDY
 from compare.studies.disc.fig09.whirls import circle, circles_of, rest, rests_of
 from compare.studies.toolkit.pins import first_release
 from compare.studies.toolkit.steady_motion import mode_growth, with_load
@@ -28,7 +29,7 @@ FOLLOWED = (
 )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Place and spin of the self-centred disc are those of the balance of forces and moments, stable or not",
     equation="(19), (20)",
     resolution=1e-7,
@@ -53,7 +54,7 @@ def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measure
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues say",
     equation="(19), (20)",
     unit="1/s",
@@ -80,7 +81,7 @@ def deviations_grow(engine: Engine) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A disc beside the whirl approaches it at the rate of the slowest eigenvalue",
     equation="(19), (20)",
     unit="1/s",
@@ -133,7 +134,7 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
 """In s: the period of what holds a disc that sticks."""
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A disc stuck at 0.98 of the radius (9) turns with the master disc for ever",
     equation="(9)",
     resolution=1e-2,
@@ -181,7 +182,7 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A disc stuck at 1.02 and at 1.5 of the radius (9) is let go at the time of (7)",
     equation="(7)",
     unit="rad",
@@ -213,7 +214,7 @@ def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Mea
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Sticking and a whirl that never sticks exist for the same parameters",
     equation="(9), (11)",
     note="Whether a start stuck at half the radius (9) sticks all the time, for a turn, and one on the whirl slides "
@@ -243,7 +244,7 @@ REFERENCE = Engine("reference", simulate, ("points",))
 BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "On six points the mean whirl without offset is that of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
@@ -278,7 +279,7 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
     return tuple(circle(REFERENCE, theory.on_six_points(theory.CENTRED), load, which, TIGHTEST))
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "On six points the mean place and spin of the self-centred disc are those of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
@@ -306,7 +307,7 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
     return tuple(rest(REFERENCE, theory.on_six_points(theory.RING), load, TIGHTEST))
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A disc on six points that is stuck beyond the radius (9) slips away as under exact Coulomb friction",
     equation="(7)",
     kind="trajectory",

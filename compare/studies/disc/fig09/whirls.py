@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09 import theory
+from compare.studies.disc.fig09.theory import STUDY
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
 from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
@@ -100,7 +101,7 @@ OBSERVED = (
 )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Without offset the whirl has radius, frequency and spin of the three balances, stable or not",
     equation="(19), (20)",
     resolution=1e-6,
@@ -133,7 +134,7 @@ def circles(engine: Engine) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The error of (23) falls like (μN)⁻⁴ in the whirl's radius, and like (μN)⁻² in its spin",
     equation="(23)",
     kind="order",
@@ -154,7 +155,7 @@ def error_of_23(engine: Engine) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The whirl's radius tends to the pin's μN/(βk), its spin to a limit without μN, both like (μN)⁻²",
     equation="(11)",
     kind="order",
@@ -193,7 +194,7 @@ EXTRAPOLATED = (
 )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "With the offset the whirls, stable or not, are the periodic orbits of exact Coulomb friction",
     equation="(19), (20)",
     kind="trajectory",
@@ -273,7 +274,7 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
     return float(np.abs(harmonics[1])), float(np.mean(states[:, -1]))
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The offset shifts the centre of the whirl by the first-order response, with an error like X0³",
     equation="(18)",
     kind="order",
@@ -296,7 +297,7 @@ def offset_shifts(engine: Engine) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The offset changes radius and spin of the whirl like X0²",
     kind="order",
     resolution=0.05,

@@ -11,6 +11,7 @@ from compare.claims import WORKING, Measured, answers_of, asked, refined
 from compare.engines import Engine
 from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.offsets import end_of, error_of_monodromy
+from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import (
     disc_at,
     extremes_of,
@@ -24,7 +25,7 @@ from reference_model.orbits import modulated_cycle
 from reference_model.systems import FloatArray
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "Shooting finds the modulated cycle, periodic up to a rotation, to which integration settles",
     equation="(19)–(21)",
     kind="trajectory",
@@ -52,7 +53,7 @@ def shooting() -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "The whirl is unstable on the continuous ring and on six points; by (23) it would be stable",
     equation="(19)–(23)",
     note="So the simplified equations would not have shown the modulated cycle.",
@@ -71,7 +72,7 @@ def unstable() -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "By (23) a small deviation from the whirl dies out as its linearisation says",
     equation="(23)",
     unit="1/s",
@@ -96,7 +97,7 @@ def dies_out_by_23() -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "Just above the critical X0 the steady whirl and the modulated motion are both stable",
     equation="(19)–(21)",
     note="Whether the pair of multipliers lies inside of the unit circle, and whether the spin still swings by more "

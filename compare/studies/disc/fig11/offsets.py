@@ -12,6 +12,7 @@ from compare.claims import WORKING, Measured, Measurement, answers_of, asked, kn
 from compare.claims.parameters import at_each
 from compare.engines import Engine, StatesOnly, UnsupportedSystemError
 from compare.studies.disc.fig11 import parameters
+from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import (
     critical_offset,
     disc_at,
@@ -28,7 +29,7 @@ from reference_model.systems import FloatArray
 # --- For which offset the modulated cycle of Fig. 11 exists: between steady whirl and self-centred equilibrium.
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "The whirl is unstable below a critical X0, where a pair of Floquet multipliers crosses the unit circle",
     equation="(19)–(21)",
     kind="trajectory",
@@ -71,7 +72,7 @@ def error_of_monodromy(orbit: Orbit) -> float:
     return math.sqrt(len(shift)) * float(np.linalg.norm(change) / np.linalg.norm(shift))
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "Motions end modulated at small offsets, as a steady whirl at larger ones, and at rest beyond those",
     equation="(19)–(21)",
     note=f"From the last {parameters.LOOKED_AT:g} of {parameters.ENDS_UNTIL:g} s: the spin, averaged over a "
@@ -133,7 +134,7 @@ def end_of(
 NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "Single points of six, about which the disc then turns, come to rest when the reference says",
     equation="(19)–(21)",
     kind="trajectory",
@@ -165,7 +166,7 @@ def points_rest(engine: Engine) -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "Within 300 s the motion on six points has the least and greatest radius and spin that the reference gives",
     equation="(19)–(21)",
     kind="trajectory",

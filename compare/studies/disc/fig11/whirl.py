@@ -12,6 +12,7 @@ from compare.claims import Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.engines import Engine
 from compare.studies.disc.fig11 import parameters
+from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
 from reference_model import Trajectory
@@ -25,7 +26,7 @@ NOTE = (
 )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "A disc on {} that slides moves for 100 s as (19) to (21) say, integrated as they stand",
     equation="(19)–(21)",
     kind="trajectory",
@@ -59,7 +60,7 @@ def slides(engine: Engine, contact: str) -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "A small deviation from the whirl on {} grows at the rate that its linearisation gives",
     equation="(19)–(21)",
     unit="1/s",
@@ -84,7 +85,7 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "A small deviation from the whirl on {} swings with the frequency that its linearisation gives",
     equation="(19)–(21)",
     unit="1/s",
@@ -190,7 +191,7 @@ CYCLE_NOTE = (
 )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",
@@ -211,7 +212,7 @@ def period_and_turn(engine: Engine) -> Measured:
     )
 
 
-@parameters.STUDY.claim(
+@STUDY.claim(
     "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
     equation="(19)–(21)",
     kind="trajectory",

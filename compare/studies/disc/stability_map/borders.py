@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from compare.claims.linearised_flow import ComplexArray
 from compare.claims.measured import Measured, answers_of
 from compare.studies.disc.stability_map import theory
+from compare.studies.disc.stability_map.theory import STUDY
 from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.pin import upper_branch_margin
@@ -37,7 +38,7 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
     return theory.spectra(kind, theory.traced())
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "At every point of the Hopf curves a pair of eigenvalues of the whirl is imaginary",
     equation=theory.BOTH_LAWS,
     resolution=1e-10,
@@ -55,7 +56,7 @@ def marginal(curves: theory.Traced | None = None) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Beside the Hopf curves no other eigenvalue of the whirl grows: they are borders of its stability",
     equation=theory.BOTH_LAWS,
     note="Whether the real parts of all other eigenvalues are negative.",
@@ -70,7 +71,7 @@ def no_other_grows() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "At every point of the fold curves an eigenvalue of the whirl is zero",
     equation=theory.BOTH_LAWS,
     resolution=1e-8,
@@ -87,7 +88,7 @@ def folds() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The traced curves cross the line of Fig. 11 where a search along it finds the boundary",
     equation=theory.BOTH_LAWS,
     unit="N",
@@ -112,7 +113,7 @@ def crosses_line() -> Measured:
     return Measured(predicted=predicted, value=measured, error=errors, components=names)
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The centred rotation loses its stability at the closed form of the onset",
     equation=theory.BOTH_LAWS,
     unit="N",
@@ -158,7 +159,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
 """The disc with a share of one of its parameters, and a share beyond the onset."""
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Each parameter by itself makes the centred rotation of Fig. 11 stable where the closed form of the onset says",
     equation="(19), (20)",
     resolution=1e-9,
@@ -188,7 +189,7 @@ def remedies() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Along the line of Fig. 11 whirls gain and lose their stability where the map says",
     equation=theory.BOTH_LAWS,
     resolution=1e-8,
@@ -224,7 +225,7 @@ def by_whirls() -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "On the continuous ring the whirl always loses its stability with a jump: the cycle at the border is unstable",
     equation="(19), (20)",
     note="Whether the growth of the modulation rises with its amplitude, by the third-order terms of (19), at each "
@@ -257,7 +258,7 @@ SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
 """β in N s/m and ω in rad/s between which pins are looked at."""
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "At the parameters of Fig. 11 the whirl on the continuous ring is unstable",
     equation="(19), (20)",
     note=SIGN,
@@ -267,7 +268,7 @@ def unstable_on_ring() -> Measured:
     return _side("ring", 1.0)
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "At the parameters of Fig. 11 the whirl of (23) is stable: (23) does not have the instability there",
     equation="(19), (23)",
     note=SIGN,
@@ -294,7 +295,7 @@ def _side(law: str, sign: float) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A pin's whirl has no Hopf curve: it is stable for all damping wherever ω > k",
     equation="(16)",
     note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / theory.K:g} and β from "
@@ -317,7 +318,7 @@ def pin_is_stable() -> Measured:
     return answers_of([(upper_branch_margin(pin), -whirl_eigenvalues(pin)[1].real) for pin in pins])
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Where the whirl of (23) is unstable at the speeds of Fig. 11, motions end as rotation, not in a cycle",
     equation="(19), (23)",
     basis="reference",

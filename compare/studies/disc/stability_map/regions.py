@@ -14,6 +14,7 @@ from compare.claims import Data, Measured, answers_of, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
 from compare.studies.disc.stability_map import theory
+from compare.studies.disc.stability_map.theory import STUDY
 from compare.studies.toolkit.fig11 import PLANES
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
@@ -41,7 +42,7 @@ class Deviation(NamedTuple):
     error: float
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Beside the Hopf curves small deviations from the whirl grow as the pair of eigenvalues says that the map traces",
     equation="(19), (20)",
     unit="1/s",
@@ -61,7 +62,7 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Small deviations from the whirl grow on one side of the Hopf curves and die out on the other, as mapped",
     equation="(19), (20)",
     note=BESIDE_CURVES,
@@ -139,7 +140,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
 # --- What motions end as in each region of the map, and beside its borders.
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
 )
 def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
@@ -149,7 +150,7 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
     return replace(measured, data=ends_by_plane(starts, ends))
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Just outside of the Hopf curves whirl and modulated cycle coexist, and 2 % outside only the whirl is left",
     equation="(19), (20)",
     basis="reference",

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen import theory
+from compare.studies.drivetrain.frozen.theory import STUDY
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (
     BRAKE,
@@ -51,7 +52,7 @@ ONSET_NOTE = (
 )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
@@ -79,7 +80,7 @@ def loses_stability(engine: Engine) -> Measured:
     return _onset_of(matrix)
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
@@ -155,7 +156,7 @@ class Steady(NamedTuple):
     predicted: Measurement
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Below the onset the clutch disc comes to rest in space where the reference's reduced disc does",
     unit="m",
     note=NOTE,
@@ -172,7 +173,7 @@ def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Above the onset the clutch disc whirls on its stop, on the circle of the reference's reduced disc",
     unit="m",
     note=NOTE,
@@ -183,7 +184,7 @@ def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
     return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Above the onset the clutch disc whirls with the frequency of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
@@ -193,7 +194,7 @@ def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measur
     return _measured(_whirling(engine, above), 1, 0.0)
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "At rest in space and in the whirl the clutch disc slips as the reference's reduced disc does",
     unit="rad/s",
     note=NOTE,

@@ -20,6 +20,7 @@ from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen import theory
+from compare.studies.drivetrain.frozen.theory import STUDY
 from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
 from reference_model.systems import FloatArray
 
@@ -38,7 +39,7 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
     return lambda whirl: state_matrix(theory.build(car, whirl, regularisation=REGULARISATION).mbs)
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Exudyn's linearisation about a whirl has the eigenvalues that the reference's law of friction gives",
     unit="1/s",
     resolution=1e-9,
@@ -72,7 +73,7 @@ def linearised(engine: Engine) -> Measured:
     )
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "A whirl in the play is modulated above the speed where an eigenvalue by the reference's friction is imaginary",
     unit="turns a minute",
     resolution=1.0,
@@ -121,7 +122,7 @@ def _border(
     return speed, 2.0 * growth(speed)[1] * (between[1] - between[0]) / (high - low) + 1e-9
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Small deviations from a whirl in the play grow and turn with the eigenvalue of its modulation",
     unit="1/s",
     note=f"Two runs that start {100.0 * theory.DEVIATION:g} % of the radius outside and inside of the whirl; the "
@@ -174,7 +175,7 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
     )[[0, -1]]
 
 
-@theory.STUDY.claim(
+@STUDY.claim(
     "Energy is balanced in the modulated whirl of the clutch disc",
     kind="conservation",
     resolution=1e-6,
