@@ -1,4 +1,4 @@
-"""The same question at ever smaller tolerances or steps, and what the answers tend to."""
+"""What is found of one engine in parts, each measured by itself: one that hangs costs itself only."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
 from compare.foreign import CASES, Quantity
 from reference_model import simulate
 from reference_model.systems import FloatArray
+
+# --- The same question at ever smaller tolerances or steps, and what the answers tend to.
 
 RUNGS = 4
 """Of a ladder, for every engine and on every machine: what one costs depends on neither."""
@@ -65,7 +67,7 @@ def step_ratio(engine: Engine) -> float:
     return COARSENING if engine.step is None else HALVED
 
 
-# --- What is found of one engine in parts, each measured by itself: one that hangs costs itself only.
+# --- The parts, and what is found in each.
 
 
 @functools.cache

@@ -1,8 +1,7 @@
-"""All numbers of each claim as a table: a file of comma-separated values beside the page, and back again.
+"""``results.json``: the report for programs, described by ``results.schema.json``.
 
-A row for each element and engine. Where an engine makes a claim several times, ``measurement`` counts them from 1.
-Numbers come back to the last bit; "nan" and "inf" are what they are called. Large tables are compressed (xz),
-which pandas and R read as they are.
+It has the verdict of each claim and engine with the numbers that decide it. All other numbers are in tables beside
+it; ``read_results`` puts both together.
 """
 
 from __future__ import annotations
@@ -33,6 +32,11 @@ from compare.run.runner import Run
 from compare.run.store import Drawing
 from compare.run.workers import Failure
 from reference_model.systems import FloatArray
+
+# --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
+#
+# Where an engine makes a claim several times, ``measurement`` counts them from 1. Numbers come back to the last bit;
+# "nan" and "inf" are what they are called. Large tables are compressed (xz), which pandas and R read as they are.
 
 FOLDER = "arrays"
 
@@ -142,10 +146,7 @@ def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, A
     }
 
 
-# --- ``results.json``: the report for programs, described by ``results.schema.json``.
-#
-# It has the verdict of each claim and engine with the numbers that decide it. All other numbers are in tables
-# beside it, see ``compare.report.results_json``; ``read_results`` puts both together.
+# --- The report as one file.
 
 FORMAT, VERSION = "friction-discs results", 1
 """What the file says of itself; the version rises when a reader of the old one would be misled."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, root
 
-from compare.claims.error_estimates import ROUNDING
+from compare.claims import ROUNDING
 from compare.claims.linearised_flow import rotated
 from compare.engines import Engine
 from reference_model import self_centred_equilibria

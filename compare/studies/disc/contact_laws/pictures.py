@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,

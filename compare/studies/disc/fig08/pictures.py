@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import GREY, PALETTE, Axes, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.theory import RESOLUTION, RING, place_and_spin
 from compare.studies.toolkit.steady_motion import last_load, with_load

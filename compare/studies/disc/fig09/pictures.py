@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,

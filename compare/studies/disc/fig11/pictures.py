@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
+from compare.claims import Measured, answers_of
 from compare.claims.linearised_flow import ComplexArray
-from compare.claims.measured import Measured, answers_of
 from compare.studies.disc.stability_map import theory
 from compare.studies.disc.stability_map.theory import STUDY
 from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from compare.claims import ByEngine, Data, Figures
 from compare.claims.parameters import FIG11
-from compare.claims.study import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import BLACK, GREY, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.drivetrain.frozen.theory import (
     MODULATED,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     BLUE,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING
+from compare.claims import TRUTH, WORKING
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
 from reference_model import Phase, PinOnDisc, Trajectory, simulate

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from compare.claims.error_estimates import TRUTH, refined
+from compare.claims import TRUTH, refined
 from compare.engines import Engine
 from compare.studies.toolkit.free_bodies import Slowing
 from compare.studies.toolkit.pins import farthest

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING
 from compare.studies.engines.trajectories import parameters
 from compare.studies.engines.trajectories.theory import by_reference
 from compare.studies.toolkit.pins import farthest
