@@ -10,7 +10,7 @@ import numpy as np
 
 from compare.claims import Measured, extrapolated_order
 from compare.studies.disc.fig09 import theory
-from compare.studies.disc.fig09.theory import STUDY
+from compare.studies.disc.fig09.theory import STUDY, last_stable_load, weak_damping_load
 from reference_model import smallest_load_with_whirl
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
@@ -48,9 +48,7 @@ def fold() -> Measured:
 def weak_damping() -> Measured:
     """Observe the order in β of the error of ``weak_damping_load``."""
     discs = [replace(theory.RING, damping=float(damping)) for damping in theory.DAMPINGS]
-    errors = np.array(
-        [abs(theory.weak_damping_load(one) / theory.last_stable_load(one) - 1.0) for one in discs]
-    )
+    errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
     order, numerical, model = extrapolated_order(errors, 1e-12)
     return Measured(
         predicted=1.0,
@@ -58,8 +56,8 @@ def weak_damping() -> Measured:
         error=numerical,
         model=model,
         source=f"{theory.SOURCE}; the falling β are ours",
-        note=f"With the β of Fig. 9 it loses its stability at {theory.last_stable_load(theory.RING):.6f} N, "
-        f"{theory.weak_damping_load(theory.RING):.6f} N by this formula: far below C·X0, where sticking begins.",
+        note=f"With the β of Fig. 9 it loses its stability at {last_stable_load(theory.RING):.6f} N, "
+        f"{weak_damping_load(theory.RING):.6f} N by this formula: far below C·X0, where sticking begins.",
     )
 
 
@@ -80,7 +78,7 @@ def merges() -> Measured:
     square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in theory.orbits()])
     near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))
     return Measured(
-        predicted=theory.last_stable_load(theory.RING),
+        predicted=last_stable_load(theory.RING),
         value=near,
         error=1e-9 * near,
         model=abs(near - far),

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from compare.claims import Measured, answers_of
 from compare.claims.linearised_flow import ComplexArray
 from compare.studies.disc.stability_map import theory
-from compare.studies.disc.stability_map.theory import STUDY
+from compare.studies.disc.stability_map.theory import STUDY, growth_of_rotation
 from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.pin import upper_branch_margin
@@ -178,7 +178,7 @@ def remedies() -> Measured:
             return onset_load(disc_of(share)) / disc_of(share).friction_force - 1.0
 
         def growth(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
-            return theory.growth_of_rotation(disc_of(share))
+            return growth_of_rotation(disc_of(share))
 
         predicted.append(brentq(excess, 1.0, end, xtol=1e-15))
         measured.append(brentq(growth, 1.0, end, xtol=1e-15))

@@ -20,7 +20,7 @@ from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen import theory
-from compare.studies.drivetrain.frozen.theory import STUDY
+from compare.studies.drivetrain.frozen.theory import STUDY, build
 from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
 from reference_model.systems import FloatArray
 
@@ -36,7 +36,7 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 
-    return lambda whirl: state_matrix(theory.build(car, whirl, regularisation=REGULARISATION).mbs)
+    return lambda whirl: state_matrix(build(car, whirl, regularisation=REGULARISATION).mbs)
 
 
 @STUDY.claim(
@@ -161,7 +161,7 @@ def growth(engine: Engine) -> Measured:
 
 def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
     """Return the state in axes that turn with the whirl, as ``in_turning_axes`` orders it, at both ends, (2, 8)."""
-    motion = theory.build(car, whirl, deviation=deviation).run(
+    motion = build(car, whirl, deviation=deviation).run(
         theory.TIME, sample_every=theory.TIME, tolerance=tolerance
     )
     turn = np.exp(-1j * whirl.frequency * motion.times)
@@ -186,7 +186,7 @@ def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     motions = [
-        theory.build(car, whirl, deviation=theory.PUSH).run(
+        build(car, whirl, deviation=theory.PUSH).run(
             until, sample_every=theory.CYCLE_SAMPLE, tolerance=tolerance
         )
         for tolerance in (theory.ROUGHER * WORKING, theory.ROUGHER * WORKING / COARSENING)

@@ -12,6 +12,7 @@ from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answ
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
 from compare.studies.pin.whirl_stability import theory
+from compare.studies.pin.whirl_stability.theory import K, linear_deviation
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
 from reference_model.formulas.pin import (
     characteristic_coefficients,
@@ -46,7 +47,7 @@ BoolArray = NDArray[np.bool_]
     "Corrected (13), the matrix of (12) and the Jacobian of (1) have the same eigenvalues",
     equation="(12), (13)",
     unit="1/s",
-    resolution=1e-9 * theory.K,
+    resolution=1e-9 * K,
     note="All three eigenvalues of (12), and all four of the Jacobian in the frame that turns with the whirl, one of "
     "which is the zero of the phase. Error: rounding, by the condition of each eigenvalue.",
     swept=("disc_speed", "damping"),
@@ -55,7 +56,7 @@ def same_eigenvalues() -> Measured:
     """Compare the roots of corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
     pins = [
         theory.pin_at(float(speed), float(damping))
-        for speed in theory.K * (1.0 + np.geomspace(0.02, 9.0, 15))
+        for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
         for damping in np.geomspace(0.03, 3.0, 9)
     ]
     companion = np.zeros((len(pins), 3, 3))
@@ -168,7 +169,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=theory.DURATION,
             delay=theory.DELAY,
-            period=np.pi / theory.K,  # of the deviations in the frame that turns with the whirl, nearly
+            period=np.pi / K,  # of the deviations in the frame that turns with the whirl, nearly
             rate=-whirl_eigenvalues(theory.pin_at(speed))[1].real,
             tolerance=theory.TOLERANCE,
         )
@@ -202,7 +203,7 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     "A pin that starts beside the whirl comes to its frequency k where ω > k",
     equation="(11)",
     unit="rad/s",
-    resolution=1e-9 * theory.K,
+    resolution=1e-9 * K,
     note=SETTLING,
     swept=("disc_speed",),
 )
@@ -210,7 +211,7 @@ def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measur
     """Compare the frequency in the end with k."""
     found = whirls(engine, speeds)
     return Measured(
-        predicted=np.full(len(speeds), theory.K),
+        predicted=np.full(len(speeds), K),
         value=found.value[:, 1],
         error=found.error[:, 1],
         at={"ω in rad/s": speeds},
@@ -245,9 +246,9 @@ def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured
 
     found = refined(functools.partial(rates_of, theory.INTERVAL), 10.0 * TIGHTEST)
     wide = np.abs(rates_of(2.0 * theory.INTERVAL, 10.0 * TIGHTEST) - found.value)
-    rounding = 8.0 * np.finfo(float).eps * theory.PIN.mass * theory.K / (theory.PIN.damping * theory.INTERVAL)
+    rounding = 8.0 * np.finfo(float).eps * theory.PIN.mass * K / (theory.PIN.damping * theory.INTERVAL)
     return Measured(
-        predicted=[0.0 if speed > theory.K else -2.0 for speed in starts],
+        predicted=[0.0 if speed > K else -2.0 for speed in starts],
         value=found.value,
         error=np.full(len(starts), found.largest + np.max(wide) + rounding),
         at={"ω in rad/s": starts},
@@ -265,7 +266,7 @@ def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured 
     """Measure how fast a pin that left the circle (11) below k turns in the end."""
     if engine.contact_only:
         return None
-    below = [speed for speed in starts if speed < theory.K]
+    below = [speed for speed in starts if speed < K]
 
     def ends(tolerance: float) -> list[FloatArray]:
         return [
@@ -303,7 +304,7 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
         [(pin, theory.on_circle(pin)) for pin in pins],
         [whirl_eigenvalues(pin) for pin in pins],
         duration=theory.FLOW_DURATION,
-        frame_speed=theory.K,
+        frame_speed=K,
     )
 
 
@@ -311,7 +312,7 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     "Small deviations from the whirl develop with the eigenvalues of (12), and a zero for the phase",
     equation="(12)",
     unit="1/s",
-    resolution=1e-6 * theory.K,
+    resolution=1e-6 * K,
     note=f"Central differences of the motion over {theory.FLOW_DURATION:g} s, in the frame that turns with the "
     "whirl, extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
     swept=("disc_speed", "damping"),
@@ -358,7 +359,7 @@ def history(engine: Engine) -> Measured | None:
     if engine.contact_only:
         return None
     circle = whirl_radius(theory.PIN)
-    shift = np.array([circle, 0.0, theory.K * circle, theory.K * circle])
+    shift = np.array([circle, 0.0, K * circle, K * circle])
 
     def deviation(amplitude: float, tolerance: float) -> FloatArray:
         starts = (theory.on_circle(theory.PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
@@ -371,7 +372,7 @@ def history(engine: Engine) -> Measured | None:
     found = refined(functools.partial(deviation, theory.DEVIATION), WORKING / 10)
     nonlinear = np.abs(deviation(2.0 * theory.DEVIATION, WORKING / 10) - found.value)
     return Measured(
-        predicted=theory.linear_deviation(theory.DEVIATION_TIMES),
+        predicted=linear_deviation(theory.DEVIATION_TIMES),
         value=found.value,
         error=np.full(len(theory.DEVIATION_TIMES), found.largest),
         model=float(np.max(nonlinear)),
