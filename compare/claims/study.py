@@ -235,12 +235,12 @@ class Study:
         """Whether there is anything to find without an engine."""
         return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
-    def measure(self, engine: Engine, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims on ``engine``.
+    def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims on ``engine``, or without one those of the theory.
 
         Parameters
         ----------
-        engine : Engine
+        engine : Engine, optional
             Where it does not promise what a claim needs, that claim is missing, and the findings say so.
         few : mapping, optional
             Arguments of claims' functions by the functions' names, to measure less than all.
@@ -248,16 +248,6 @@ class Study:
             Names of the functions that are to be called, or "function/case" for one of a family; empty for all.
 
         """
-        return self._findings(engine, few or {}, only)
-
-    def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
-        found = self._findings(None, few or {}, only)
-        if "curves" in self.provided and not only:
-            found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
-        return found
-
-    def _findings(self, engine: Engine | None, few: Few, only: Collection[str]) -> Findings:
         claims: list[Claim] = []
         data: Data = {}
         lacking: list[str] = []
@@ -269,7 +259,7 @@ class Study:
                 if only and not {name, declared.part(case)} & set(only):
                     continue
                 try:
-                    ask = partial(self._asked, declared, case, arguments, few.get(name, {}))
+                    ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
                     found, note = decided(engine, ask, _is_open)
                 except UnsupportedSystemError as error:
                     lacking.append(str(error))
@@ -278,6 +268,13 @@ class Study:
                     claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))
                     data |= found[1]
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
+
+    def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
+        found = self.measure(None, few, only)
+        if "curves" in self.provided and not only:
+            found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
+        return found
 
     def _asked(
         self,
