@@ -10,12 +10,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import KroghInterpolator
 
+import compare.studies.disc.fig08.theory as theory
 from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING, Measurement, refined
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
 from compare.engines import Engine
-from compare.studies.disc.fig08 import theory
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
 from reference_model.formulas.disc import places_by_26, semicircle_residual

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
+import compare.studies.disc.fig09.theory as theory
 from compare.claims import Measured, extrapolated_order
-from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.theory import STUDY, last_stable_load, weak_damping_load
 from reference_model import smallest_load_with_whirl
 from reference_model.contact.contact_law import IsotropicContact

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import compare.studies.disc.fig09.theory as theory
 from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement, answers_of, asked, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
-from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.theory import STUDY
 from compare.studies.disc.fig09.whirls import circle, circles_of, rest, rests_of
 from compare.studies.toolkit.pins import first_release

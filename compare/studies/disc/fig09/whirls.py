@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+import compare.studies.disc.fig09.theory as theory
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
-from compare.studies.disc.fig09 import theory
 from compare.studies.disc.fig09.theory import STUDY
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
 from reference_model import Orbit, whirl_orbit

@@ -6,10 +6,10 @@ import functools
 
 import numpy as np
 
+import compare.studies.disc.fig11.parameters as parameters
 import compare.studies.disc.fig11.whirl as whirl
 from compare.claims import WORKING, Measured, answers_of, asked, refined
 from compare.engines import Engine
-from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.offsets import end_of, error_of_monodromy
 from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import (

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import compare.studies.disc.fig11.parameters as parameters
 from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine, StatesOnly, UnsupportedSystemError
-from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import (
     critical_offset,

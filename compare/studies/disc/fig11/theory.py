@@ -14,11 +14,11 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+import compare.studies.disc.fig11.parameters as parameters
 from compare.claims import TRUTH, Data
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG11
 from compare.engines import Engine
-from compare.studies.disc.fig11 import parameters
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated, rates
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls

@@ -8,10 +8,10 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
+import compare.studies.disc.fig11.parameters as parameters
 from compare.claims import Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.engines import Engine
-from compare.studies.disc.fig11 import parameters
 from compare.studies.disc.fig11.parameters import STUDY
 from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated

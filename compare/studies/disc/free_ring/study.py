@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
+import compare.studies.disc.free_ring.theory as theory
 from compare.claims import Measured, Measurement, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine
-from compare.studies.disc.free_ring import theory
 from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
+import compare.studies.disc.stability_map.theory as theory
 from compare.claims import Measured, answers_of
 from compare.claims.linearised_flow import ComplexArray
-from compare.studies.disc.stability_map import theory
 from compare.studies.disc.stability_map.theory import STUDY, growth_of_rotation
 from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact

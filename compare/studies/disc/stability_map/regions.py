@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+import compare.studies.disc.stability_map.theory as theory
 from compare.claims import Data, Measured, answers_of, refined
 from compare.claims.linearised_flow import real_and_imaginary, rotated
 from compare.engines import Engine
-from compare.studies.disc.stability_map import theory
 from compare.studies.disc.stability_map.theory import STUDY
 from compare.studies.toolkit.fig11 import PLANES
 from reference_model.steady.bifurcation_curves import crossings

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eig, matrix_balance, norm
 from scipy.optimize import brentq
 
+import compare.studies.drivetrain.frozen.theory as theory
 from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
 from compare.engines import Engine
-from compare.studies.drivetrain.frozen import theory
 from compare.studies.drivetrain.frozen.theory import STUDY
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.drivetrain_bench import (

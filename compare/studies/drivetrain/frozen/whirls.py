@@ -16,10 +16,10 @@ import numpy as np
 from scipy.linalg import matrix_balance
 from scipy.optimize import brentq
 
+import compare.studies.drivetrain.frozen.theory as theory
 from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
-from compare.studies.drivetrain.frozen import theory
 from compare.studies.drivetrain.frozen.theory import STUDY, build
 from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
 from reference_model.systems import FloatArray

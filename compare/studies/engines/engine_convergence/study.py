@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+import compare.studies.engines.engine_convergence.theory as theory
 from compare.claims import COARSENING, TRUTH, Data, Measured, Study, extrapolated_order, observed_exponent
 from compare.claims.parameters import FIG5, FIG5_STARTS, at_each
 from compare.engines import Engine
-from compare.studies.engines.engine_convergence import theory
 from reference_model import simulate
 from reference_model.systems import FloatArray
 

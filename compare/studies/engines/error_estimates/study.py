@@ -6,10 +6,10 @@ import functools
 
 import numpy as np
 
+import compare.studies.engines.error_estimates.theory as theory
 from compare.claims import COARSENING, ROUNDING, SAFETY, ByEngine, Figures, Measured, Study
 from compare.engines import Engine
 from compare.output.figures import BLACK, Axes, Figure, curve, engine_style, engines_in, new_figure, points
-from compare.studies.engines.error_estimates import theory
 from compare.studies.toolkit.random_systems import between
 
 PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)

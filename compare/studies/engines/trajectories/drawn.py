@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
+import compare.studies.engines.trajectories.parameters as parameters
 from compare.claims import WORKING
-from compare.studies.engines.trajectories import parameters
 from compare.studies.engines.trajectories.theory import by_reference
 from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import between, sign

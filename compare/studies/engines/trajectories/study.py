@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+import compare.studies.engines.trajectories.parameters as parameters
 from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import at_each, components_of, parameters_of
 from compare.engines import Engine, UnsupportedSystemError
-from compare.studies.engines.trajectories import parameters
 from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
 from compare.studies.engines.trajectories.parameters import MOTIONS, ONE_OF_EACH_KIND, UNTIL, Motion
 from compare.studies.engines.trajectories.theory import (

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
+import compare.studies.pin.nonlinear_support.theory as theory
 from compare.claims.error_estimates import TRUTH, WORKING, known, observed_exponent, refined
 from compare.claims.measured import Measured
 from compare.claims.parameters import CENTRED, FIG5_STARTS
 from compare.claims.study import ByEngine, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import axis, curve, engines_in, new_figure, points
-from compare.studies.pin.nonlinear_support import theory
 from compare.studies.toolkit.pins import extent, whirl_of
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
 from reference_model import simulate, whirls

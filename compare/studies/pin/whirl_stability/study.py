@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import compare.studies.pin.whirl_stability.theory as theory
 from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
-from compare.studies.pin.whirl_stability import theory
 from compare.studies.pin.whirl_stability.theory import K, linear_deviation
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
 from reference_model.formulas.pin import (
