@@ -43,7 +43,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from reference_model.ensemble import simulate_ensemble
 from reference_model.ensemble.chunks import CHUNK
 from reference_model.ensemble.core.stepping.runge_kutta import LOCAL

@@ -31,7 +31,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from compare.claims.paper_parameters import FIG8, FIG9, FIG11
+from compare.claims.parameters import FIG8, FIG9, FIG11
 from reference_model.ensemble import simulate_ensemble
 from reference_model.ensemble.core.stepping.runge_kutta import LOCAL
 from reference_model.ensemble.disc.kernel import PARAMETERS

@@ -24,7 +24,7 @@ import numba
 import numpy as np
 
 import reference_model
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import (
     add_energy_balance,
     add_ring_friction,

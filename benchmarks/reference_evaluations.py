@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import simulate
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.stick import release_delay

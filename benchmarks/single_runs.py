@@ -35,7 +35,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from reference_model import simulate
 from reference_model.systems import System
 

@@ -16,13 +16,13 @@ import psutil
 from distributed import LocalCluster
 from pages import write_into
 
-from compare.claims.paper_parameters import FIG5
-from compare.cli.door.options import cores
+from compare.claims.parameters import FIG5
+from compare.cli.options import cores
 from compare.sweep.compute.executors import Cluster, Executor, InProcess
 from compare.sweep.compute.run import run
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import RandomBasin
-from compare.sweep.store.store import SweepStore
+from compare.sweep.plan import RandomBasin
+from compare.sweep.quantities import Axis
+from compare.sweep.store import SweepStore
 
 ROOT = Path(__file__).parents[1]
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from pages import write_into
 
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
 from reference_model.systems import FloatArray
 

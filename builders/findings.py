@@ -21,9 +21,9 @@ from typing import Any
 
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
-from compare.report.machines.results_json import read_results
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.quotes import Nature, parts, quote
+from compare.report.results_json import read_results
 
 ROOT = Path(__file__).parents[1]
 

@@ -5,7 +5,7 @@
     python builders/record.py mujoco bullet   # or some of them
     python builders/record.py --laws          # only the friction laws; recorded times and errors are kept
 
-Each setting of an engine simulates the cases of ``compare.foreign.cases``. The tolerance falls by the factor
+Each setting of an engine simulates the cases of ``compare.foreign``. The tolerance falls by the factor
 ``compare.claims.error_estimates.COARSENING`` until a run takes ``LONGEST``. The command skips an engine that is not
 installed and says so. Times are comparable only within one recording.
 """
@@ -37,8 +37,7 @@ from compare.diagnosis.findings import PROBES
 from compare.diagnosis.run import measured
 from compare.engines import INSTALLED, Engine, installed_engine
 from compare.engines.live.setting import rate
-from compare.foreign.cases import CASES, Case
-from compare.foreign.records import COLUMNS, DIGITS, FOLDER
+from compare.foreign import CASES, COLUMNS, DIGITS, FOLDER, Case
 from compare.run.workers import Failure, Workers
 from reference_model import SimulationError, Trajectory
 from reference_model.systems import System

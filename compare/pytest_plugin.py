@@ -147,18 +147,15 @@ def pytest_report_header(config: pytest.Config) -> str | None:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
     """Take the modules of the studies, where an engine is to be judged."""
-    if (
-        not file_path.is_relative_to(STUDIES)
-        or file_path.name != "__init__.py"
-        or file_path.parents[2] != STUDIES  # the claims of some studies are packages too
-        or not _engines(parent.config)
-    ):
+    place = file_path.parent if file_path.name == "__init__.py" else file_path.with_suffix("")
+    # a study is a module in the folder of its group, or a package
+    if file_path.suffix != ".py" or STUDIES not in place.parents[1:2] or not _engines(parent.config):
         return None
     from compare.studies import STUDIES as ALL
 
     quick = parent.config.getoption("friction_discs_level") == "quick"
     wanted = parent.config.getoption("friction_discs_studies")
-    module = ".".join((STUDY_MODULES, *file_path.parent.relative_to(STUDIES).parts))
+    module = ".".join((STUDY_MODULES, *place.relative_to(STUDIES).parts))
     study = getattr(import_module(module), "STUDY", None)
     if study not in ALL or (quick and not study.quick) or (wanted and study.name not in wanted):
         return None
@@ -254,9 +251,11 @@ class Bench:
 
     def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
         """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
+        from compare.run.runner import measured
+
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(_measured, study, engine, parts, owner=engine)
+            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, owner=engine)
         return self._outcomes[key]
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -272,19 +271,10 @@ class Bench:
 _BENCH = pytest.StashKey[Bench]()
 
 
-def _measured(study: Study, name: str, parts: tuple[str, ...]) -> Findings:
-    """Return what ``parts`` of ``study`` find; the engine is imported here, in a process that may hang or crash."""
-    from compare.engines import engines
-    from compare.run.runner import measured
-
-    return measured(study, engines([name])[0], parts)
-
-
 def _account(study: Study, claim: Claim, engine: str) -> str:
     """Return a claim with the numbers that decide, and all that is needed to repeat it with the named engine."""
     from compare.claims.claim import Verdict
-    from compare.report.numbers import error_text, value_text
-    from compare.report.worst import answers_text, in_short, worst
+    from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
 
     element = worst(claim)
     repeat = {
@@ -357,7 +347,7 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
     """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
     from compare.diagnosis.run import IN_SHORT, in_short
-    from compare.run.loading import loaded
+    from compare.run.runner import loaded
     from compare.run.workers import Workers
 
     with Workers(1, IN_SHORT) as workers:

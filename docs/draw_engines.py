@@ -10,8 +10,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from compare.diagnosis.laws import CONE
-from compare.diagnosis.recorded import row_of
-from compare.foreign.records import recordings
+from compare.diagnosis.run import row_of
+from compare.foreign import recordings
 from compare.output.figures import paper_style
 
 PICTURE = Path(__file__).with_name("engines.png")
@@ -23,7 +23,7 @@ COLUMNS = {
     "release": "pin releases",
     "disc": "disc on six points",
 }
-"""Column titles of the motions of ``compare.foreign.cases``."""
+"""Column titles of the motions of ``compare.foreign``."""
 
 LAW = "friction law"
 COLOURS = {"✓": "#bfe3cf", "?": "#fff3bf", "✗": "#e0796b", "": "white"}

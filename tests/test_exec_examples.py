@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import UnsupportedSystemError, engines
 from compare.studies.engines.trajectories import STUDY
 from reference_model import simulate

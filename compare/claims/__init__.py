@@ -1,1 +1,50 @@
-"""What a verdict is made of: claims and studies, their errors, what agreement is worth."""
+"""What a verdict is made of: claims and studies, their errors, what agreement is worth.
+
+The names that most studies need are here.
+"""
+
+from compare.claims.claim import Claim, ErrorBudget
+from compare.claims.error_estimates import (
+    COARSENING,
+    ROUNDING,
+    SAFETY,
+    TIGHTEST,
+    TRUTH,
+    WORKING,
+    Measurement,
+    change_as_error,
+    extrapolated_order,
+    known,
+    observed_exponent,
+    open_where_coarse,
+    refined,
+)
+from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.study import ByEngine, Data, Figures, Findings, Recorded, Study
+
+__all__ = [
+    "COARSENING",
+    "ROUNDING",
+    "SAFETY",
+    "TIGHTEST",
+    "TRUTH",
+    "WORKING",
+    "ByEngine",
+    "Claim",
+    "Data",
+    "ErrorBudget",
+    "Figures",
+    "Findings",
+    "Measured",
+    "Measurement",
+    "Recorded",
+    "Study",
+    "answers_of",
+    "asked",
+    "change_as_error",
+    "extrapolated_order",
+    "known",
+    "observed_exponent",
+    "open_where_coarse",
+    "refined",
+]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compare.claims.linearised_flow import measured_eigenvalues
-from compare.claims.paper_parameters import CENTRED, FIG8, FIG9
+from compare.claims.parameters import CENTRED, FIG8, FIG9
 from compare.engines import reference
 from reference_model import whirl_orbit
 from reference_model.contact.contact_law import ThreeTermRing

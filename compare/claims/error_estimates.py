@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import replace
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +14,8 @@ from scipy.special import stdtrit  # the quantile of Student's t, without the re
 
 from compare.engines import COARSENING as COARSENING
 from compare.engines import USUAL_TOLERANCE
+from compare.engines.engine import Engine
+from compare.output.outside_text import printable
 from reference_model.systems import FloatArray
 
 WORKING = USUAL_TOLERANCE
@@ -154,3 +158,41 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
         float(abs(extrapolated[-1] - extrapolated[-2])) + rounding,
         float(abs(orders[-1] - orders[-2])),
     )
+
+
+# --- Engines whose fixed step is too long for a question: they are asked again at shorter ones.
+#
+# At a longer step the engine's own error may be larger than what a claim can tell. That says nothing about
+# the engine, and a shorter step often decides.
+
+SHORTER = 4.0
+"""By which steps become shorter from one time to the next."""
+
+LONGEST = 4.0
+"""Time in s that an answer is expected to take, up to which it is asked for at a shorter step."""
+
+Answer = TypeVar("Answer")
+
+
+def decided(
+    engine: Engine | None, ask: Callable[[Engine | None], Answer], is_open: Callable[[Answer], bool]
+) -> tuple[Answer, str]:
+    """Return what ``engine`` answers, at a shorter step than its own if that leaves it open, and a note of that.
+
+    What the engine or the question raises at the engine's own step is raised; at a shorter one the note says it.
+    """
+    began, share, note = time.perf_counter(), 1.0, ""
+    answer = ask(engine)
+    while engine is not None and engine.step is not None and is_open(answer):
+        if SHORTER * (time.perf_counter() - began) > LONGEST:
+            break
+        began, share = time.perf_counter(), SHORTER * share
+        try:
+            answer = ask(replace(engine, step=engine.step / share))
+        except Exception as error:  # whatever the engine may raise: its own step was no failure
+            return (
+                answer,
+                f"At a step {share:g} times as short as the engine's own it failed: {printable(error)}",
+            )
+        note = f"Asked at a step {share:g} times as short as the engine's own, which leaves it open."
+    return answer, note

@@ -1,14 +1,67 @@
-"""The parameters of a claim, for those who want to repeat it."""
+"""Parameter sets that the paper prints, and the parameters of a claim for those who want to repeat it."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import COLUMNS, System
+from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc, System
+
+# --- Parameter sets that the paper prints.
+
+FIG4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.1)
+"""Fig. 4, whose axis is ω; Fig. 6 has the same parameters with ω = 1.2 and the load as its axis."""
+
+CENTRED = replace(FIG4, offset=0.0)
+"""Fig. 4 without its offset, as (10) to (16) assume."""
+
+FIG5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+
+FIG5_STARTS = {"equilibrium": (0.1, 0.0, 0.0, 0.0), "whirl": (0.1, 0.0, 0.03, 0.0)}
+"""x, y, vx, vy by what they lead to."""
+
+FIG8 = DiscOnDisc(
+    mass=1.0,
+    polar_inertia=1.0,
+    stiffness=1.0,
+    damping=0.003,
+    friction_force=0.05,
+    disc_speed=0.8,
+    offset=0.1,
+    contact_radius=0.12,
+    shaft_damping=0.01,
+    shaft_speed=0.5,
+)
+"""Fig. 8, whose axis is the load: the one here is a choice.
+
+The paper leaves out X0: it is that of Figs. 4 to 6 here.
+"""
+
+FIG9 = replace(FIG8, disc_speed=1.5, shaft_speed=1.25)
+"""Figs. 9 and 10, whose axis is the load, "for the same parameter values as above" but for the two speeds.
+
+We take it that β and b are those of Fig. 8. X0 is left out here too.
+"""
+
+FIG11 = DiscOnDisc(
+    mass=1.0,
+    polar_inertia=1.0,
+    stiffness=1.0,
+    damping=0.5,
+    friction_force=0.0225,
+    disc_speed=1.5,
+    offset=0.0,
+    contact_radius=0.12,
+    shaft_damping=0.015,
+    shaft_speed=1.25,
+)
+"""Fig. 11. The paper leaves out the initial conditions and X0: zero here, which makes the whirl a circle."""
+
+
+# --- The parameters of a claim, for those who want to repeat it.
 
 BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
 """Parameters of a support that are zero in the paper."""

@@ -1,4 +1,4 @@
-"""The prose of a study, which people read and edit as prose: ``study.md``.
+"""The prose of a study, which people read and edit as prose: ``fig04.md`` beside ``fig04.py``, or ``study.md``.
 
 The first heading is the title; under it stands what the paper says. "## Finding" and "## Figures" may follow, the
 latter with a heading for the name of each figure and its caption::
@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NAME = "study.md"
+"""Of the prose in the folder of a study that has one."""
 
 SECTIONS = {
     "pin": "The friction pin",
@@ -30,7 +31,7 @@ SECTIONS = {
     "drivetrain": "The drivetrain",
     "engines": "The engines",
 }
-"""Of the report, by the folder in which a study's folder lies."""
+"""Of the report, by the folder in which a study lies."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +61,12 @@ class Prose:
 
     @classmethod
     def of(cls, file: Path, words: Mapping[str, str]) -> Prose:
-        """Return the prose beside the module ``file``, or in the folder above it.
+        """Return the prose of the module ``file``, in its folder, or in the folder above it.
 
         ``words`` stand in it for their names in braces. Raises ``ValueError`` for a file that is not as above.
         """
-        path = next(folder / NAME for folder in file.parents[:2] if (folder / NAME).is_file())
+        places = (file.with_suffix(".md"), *(folder / NAME for folder in file.parents[:2]))
+        path = next(place for place in places if place.is_file())
         text = path.read_text(encoding="utf-8")
         for name, word in words.items():
             if f"{{{name}}}" not in text:
@@ -76,7 +78,7 @@ class Prose:
             for depth, title, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True)
         ]
         (depth, title, paper), *others = sections
-        group = path.parents[1].name
+        group = path.parents[path.name == NAME].name
         if depth != "#" or group not in SECTIONS:
             raise ValueError(
                 f"{path} must begin with a title, and lie in {', '.join(SECTIONS)}, not {group!r}"

@@ -6,21 +6,19 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
 from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
 from compare.claims.declared import Declared, takes_engine
+from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table
 from compare.engines import Engine, UnsupportedSystemError
-from compare.engines.finer_steps import decided
+from compare.output.figures import Figure
 from reference_model.systems import FloatArray, System
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Data = dict[str, FloatArray]
 
@@ -28,7 +26,7 @@ ByEngine = Mapping[str, Data]
 """What figures are drawn from: data by the names of engines, of those that found any, and of "theory"."""
 
 Figures: TypeAlias = "dict[str, Figure]"
-"""Of matplotlib, by the names under which ``study.md`` has their captions."""
+"""Of matplotlib, by the names under which a study's prose has their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
 Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
@@ -128,7 +126,7 @@ class Study:
 
     @classmethod
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
-        """Return the study whose prose is ``study.md`` beside ``file``, or in the folder above it.
+        """Return the study of the module ``file``, whose prose lies beside it, see :meth:`Prose.of`.
 
         ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
         """
@@ -237,12 +235,12 @@ class Study:
         """Whether there is anything to find without an engine."""
         return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
-    def measure(self, engine: Engine, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims on ``engine``.
+    def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims on ``engine``, or without one those of the theory.
 
         Parameters
         ----------
-        engine : Engine
+        engine : Engine, optional
             Where it does not promise what a claim needs, that claim is missing, and the findings say so.
         few : mapping, optional
             Arguments of claims' functions by the functions' names, to measure less than all.
@@ -250,16 +248,6 @@ class Study:
             Names of the functions that are to be called, or "function/case" for one of a family; empty for all.
 
         """
-        return self._findings(engine, few or {}, only)
-
-    def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
-        found = self._findings(None, few or {}, only)
-        if "curves" in self.provided and not only:
-            found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
-        return found
-
-    def _findings(self, engine: Engine | None, few: Few, only: Collection[str]) -> Findings:
         claims: list[Claim] = []
         data: Data = {}
         lacking: list[str] = []
@@ -271,7 +259,7 @@ class Study:
                 if only and not {name, declared.part(case)} & set(only):
                     continue
                 try:
-                    ask = partial(self._asked, declared, case, arguments, few.get(name, {}))
+                    ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
                     found, note = decided(engine, ask, _is_open)
                 except UnsupportedSystemError as error:
                     lacking.append(str(error))
@@ -280,6 +268,13 @@ class Study:
                     claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))
                     data |= found[1]
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
+
+    def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
+        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
+        found = self.measure(None, few, only)
+        if "curves" in self.provided and not only:
+            found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
+        return found
 
     def _asked(
         self,

@@ -8,8 +8,8 @@ from typing import Annotated, Literal, cast
 
 import typer
 
-from compare.cli.door.command import BadInputError, Command, EngineFailedError, refused
-from compare.cli.door.options import Settings, changes_of, taking, whole
+from compare.cli.command import BadInputError, Command, EngineFailedError, refused
+from compare.cli.options import Settings, changes_of, taking, whole
 from compare.output.text_files import check_writable
 
 export_fmu = typer.Typer(rich_markup_mode=None)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.cli.door.command import BadInputError, Command, EngineFailedError, printing, refused
-from compare.cli.door.options import Settings, Tolerance, changed, finite, positive, taking, whole
+from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
+from compare.cli.options import Settings, Tolerance, changed, finite, positive, taking, whole
 from compare.output.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
       friction-discs simulate pin --engine exudyn --set disc_speed=1.2 --set friction_force=0.05
           --start 0.1 0 -0.02 0 --until 100 --samples 1001 --output pin.csv
     """
-    from compare.claims.paper_parameters import FIG5
+    from compare.claims.parameters import FIG5
 
     _simulate(FIG5, start, request)
 
@@ -113,7 +113,7 @@ def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) 
       friction-discs simulate disc --engine exudyn --set contact_points=6 --set disc_speed=2
           --start 0.1 0 0 0 0 1.2 --until 100 --samples 1001 --output disc.json
     """
-    from compare.claims.paper_parameters import FIG11
+    from compare.claims.parameters import FIG11
 
     _simulate(FIG11, start, request)
 
@@ -124,7 +124,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
 
     from compare.cli.trajectory_files import write_csv, writer
     from compare.engines import UnsupportedSystemError
-    from compare.run.loading import loaded
+    from compare.run.runner import loaded
     from compare.run.workers import Failure, Workers
     from reference_model.systems import checked_state
 

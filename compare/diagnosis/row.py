@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
-from compare.diagnosis.findings import Creep, Lag, Motion
+import numpy as np
+
+from compare.claims.as_json import as_json
+from compare.diagnosis.findings import MOTIONS, RUNGS, Creep, Lag, Motion
 from compare.diagnosis.laws import CONE, DISTINCT, FITS, Friction
 from compare.diagnosis.probes import FRICTION, SPEED
+from compare.output.figures import Figure, new_figure, paper_style, saved
+from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
 LEAST_DEVIATION = 1e-8
@@ -207,3 +216,55 @@ def _of_motions(motions: dict[str, Motion], refined: str) -> str:
         said.append(f"what it tends to is another motion than the exact one, off by: {off}")
     text = "; ".join(said)
     return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+# --- The picture of the matrix: how far each engine is off each exact motion, rung by rung.
+#
+# From rung to rung a fixed step is halved; a tolerance falls to an eighth. The dotted line is a tenth of what
+# another law would change.
+
+MARKERS = "os^Dvx+*"
+
+LEAST = 1e-16
+"""In m: what is shown of less."""
+
+
+def drawn(rows: Sequence[Row]) -> Figure:
+    """Return a panel for each motion that any engine was asked for, with a line for each engine."""
+    names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
+    columns = min(4, len(names))
+    figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
+    for panel, name in zip(panels, names, strict=False):
+        for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
+            if name in row.motions:
+                errors = np.array(row.motions[name].errors)
+                rungs = np.arange(RUNGS - len(errors), RUNGS) + 1
+                panel.semilogy(rungs, np.maximum(errors, LEAST), marker=marker, label=row.engine)
+        panel.axhline(MOTIONS[name].resolution, color="0.6", linewidth=0.8, linestyle=":")
+        panel.set(title=name, xticks=range(1, RUNGS + 1), xlabel="rung, to finer steps", ylabel="error in m")
+    for panel in panels[len(names) :]:
+        panel.set_visible(False)
+    lines = {str(line.get_label()): line for panel in panels for line in panel.get_lines()}
+    named = [line for label, line in lines.items() if not label.startswith("_")]
+    figure.legend(handles=named, loc="outside lower center", ncols=4)
+    return figure
+
+
+# --- The files of a matrix: numbers and sentences as JSON, and the picture.
+
+
+def write_rows(rows: Sequence[Row], folder: Path) -> None:
+    """Write what is found so far into ``folder``/matrix.json; a file that is there is complete."""
+    content = [as_json(row) | {"sentences": list(row.sentences), "wrong": row.wrong} for row in rows]
+    write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def write_picture(rows: Sequence[Row], folder: Path) -> None:
+    """Write matrix.svg and matrix.png, if any motion was simulated."""
+    if not any(row.motions for row in rows):
+        return
+    with paper_style():
+        figure = drawn(rows)
+    for ending, content in zip(("svg", "png"), saved(figure), strict=True):
+        with replacing(folder / f"matrix.{ending}", "wb") as stream:
+            stream.write(content)

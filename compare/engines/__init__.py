@@ -17,8 +17,6 @@ import os
 os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError
-from compare.engines.built_in import compiled, exudyn, exudyn_native, plain, reference
-from compare.engines.by_name import ByName, one_of
 from compare.engines.engine import (
     EVERY_KIND,
     KINDS,
@@ -30,20 +28,27 @@ from compare.engines.live.installed import INSTALLED, installed_engine
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program
+from compare.engines.precision import COARSENING, USUAL_TOLERANCE
 from compare.engines.registry import (
+    ByName,
+    compiled,
     engines,
+    exudyn,
+    exudyn_native,
     imported,
     is_registered,
     known_name,
     on_request,
     owner_of,
+    plain,
+    reference,
     register,
     repeated_by,
     shares_code,
     told_apart,
 )
 from compare.engines.stick import StatesOnly
-from compare.engines.tolerances import COARSENING, USUAL_TOLERANCE
+from compare.output.outside_text import one_of
 
 __all__ = [
     "COARSENING",

@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import BadTrajectoryError, as_many_as, checked
-from compare.engines.by_name import one_of
-from compare.engines.precision import LEAST_PRECISE, blurred, blurred_start
+from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
-from compare.engines.tolerances import USUAL_TOLERANCE
-from compare.output.outside_text import one_line
+from compare.output.outside_text import one_line, one_of
 from reference_model.support import Support
 from reference_model.systems import FloatArray, PinOnDisc, System, finite_number
 from reference_model.trajectory import Trajectory

@@ -14,7 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.engines.tolerances import COARSENING
 from reference_model.systems import ANGLE, FloatArray, System
 from reference_model.trajectory import Trajectory
 
@@ -67,3 +66,11 @@ def _sizes(states: FloatArray) -> FloatArray:
     for x in (0, half):
         sizes[x : x + ANGLE] = np.max(np.hypot(*states[:, x : x + ANGLE].T))
     return np.asarray(sizes)
+
+
+# --- The tolerances at which engines are asked.
+
+USUAL_TOLERANCE = 1e-9
+
+COARSENING = 8.0
+"""Factor between the two tolerances from which an error is estimated, see ``compare.claims.error_estimates``."""

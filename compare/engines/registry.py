@@ -1,16 +1,52 @@
-"""Engines by name: those that are registered, those of installed packages, and functions of modules."""
+"""Engines by name: this project's, those of installed packages, and functions of modules."""
 
 from __future__ import annotations
 
+import functools
+import importlib
 import os
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from compare.engines.by_name import ByName, one_of
-from compare.engines.engine import Engine
+from compare.engines.engine import EVERY_KIND, Engine
+from compare.output.outside_text import one_of
+from reference_model.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class ByName:
+    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn.
+
+    The module is looked for in ``folder``, if there is one, after all other places.
+    """
+
+    module: str
+    function: str
+    folder: str = ""
+
+    def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
+        """Call it."""
+        trajectory: Trajectory = self.imported(*arguments, **options)
+        return trajectory
+
+    @property
+    def simulate_many(self) -> Callable[..., Any] | None:
+        """What the function has under this name, if anything, see ``compare.engines.engine.SimulateMany``."""
+        return getattr(self.imported, "simulate_many", None)
+
+    @property
+    def imported(self) -> Callable[..., Any]:
+        """The function itself."""
+        if self.folder and self.folder not in sys.path:
+            # last, or a file of the user's would take the place of a library's module
+            sys.path.append(self.folder)
+        function: Callable[..., Any] = getattr(importlib.import_module(self.module), self.function)
+        return function
+
 
 ENTRY_POINTS = "friction_discs.engines"
 """The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""
@@ -164,3 +200,46 @@ def imported(name: str, place: str) -> Engine:
     except (TypeError, ValueError) as error:
         attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
+
+
+# --- The engines of this project.
+
+_simulate_reference = ByName("reference_model", "simulate")
+
+reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
+exudyn_native = register(
+    Engine(
+        "exudyn-native",
+        ByName("exudyn_models", "simulate_with_native_contact"),
+        ("pin", "points"),
+        kin="exudyn",
+        contact_only=True,
+        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. "
+        "Integrator, support and the smoothing of friction are the same, so it is asked only where the contact's own "
+        "code decides: the contact by itself, a motion of each kind, a whirl, and free bodies. With --engine "
+        "exudyn-native it is measured in all that it simulates.",
+    )
+)
+compiled = register(
+    Engine(
+        "compiled",
+        functools.partial(_simulate_reference, compiled=True),
+        EVERY_KIND,
+        nonlinear=False,
+        kin="reference",
+    ),
+    on_request=True,
+)
+plain = register(
+    Engine(
+        "plain",
+        ByName("reference_model.plain", "simulate"),
+        EVERY_KIND,
+        sticks=False,
+        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
+        "at slow slip: what sticks creeps, and it tells no stick from slip. It takes only the parameters from the "
+        "reference.",
+    ),
+    on_request=True,
+)

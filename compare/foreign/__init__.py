@@ -1,1 +1,262 @@
-"""Engines of other people: what each recorded, and the cases that were asked of them."""
+"""Engines of other people: the cases by which they are measured, and what was recorded of them."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compare.claims.claim import Kind
+from compare.claims.error_estimates import TRUTH
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
+from reference_model import Trajectory, simulate
+from reference_model.formulas.pin import whirl_radius
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
+
+# --- The motions by which foreign engines are measured: five of a pin and one of a disc on six points.
+
+Quantity = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A motion, and what of it is compared.
+
+    Parameters
+    ----------
+    title : str
+        In words.
+    sentence : str
+        What is claimed of it.
+    kind : str
+        What ``exact`` is taken from, as in ``compare.claims.claim.KINDS``.
+    system : PinOnDisc or DiscOnDisc
+        The parameters.
+    start : tuple of float
+        The state at the first of ``times``.
+    times : array of shape (n,)
+        In s.
+    quantity : callable
+        Reads what is compared off a trajectory, complex numbers in m.
+    exact : callable
+        Returns what it should be.
+    resolution : float
+        In m: a tenth of what another law of friction, or a pin that lets go, would change of it.
+    equation : str
+        Of the paper, where ``exact`` is from there.
+
+    """
+
+    title: str
+    sentence: str
+    kind: Kind
+    system: System
+    start: tuple[float, ...]
+    times: FloatArray
+    quantity: Callable[[Trajectory], Quantity]
+    exact: Callable[[], Quantity]
+    resolution: float
+    equation: str = ""
+
+
+def _places(trajectory: Trajectory) -> Quantity:
+    """Return where the pin is, or the first contact point of a disc, which depends on its angle too."""
+    system, states = trajectory.system, trajectory.states
+    places = states[:, 0] + 1j * states[:, 1]
+    if isinstance(system, DiscOnDisc):
+        places = places + system.contact_radius * np.exp(1j * states[:, ANGLE])
+    return np.asarray(places)
+
+
+def _radius(trajectory: Trajectory) -> Quantity:
+    """Return the mean distance from the axis in the last fifth of the time."""
+    late = trajectory.times >= 0.8 * trajectory.times[-1]
+    return np.array([np.mean(np.abs(_places(trajectory)[late]))], dtype=complex)
+
+
+@functools.cache
+def _exact_places(case: str) -> Quantity:
+    it = CASES[case]
+    return _places(simulate(it.system, it.start, it.times, tolerance=TRUTH))
+
+
+_CENTRED = replace(FIG5, offset=0.0)
+_ON_THE_WHIRL = (0.9, 0.0, 0.0, 0.9)
+_ON_THE_DISC = (0.05, 0.0, 0.0, 0.05 * _CENTRED.disc_speed)
+_UNTIL_RELEASE = (-0.022, 0.033, -0.033 * FIG5.disc_speed, -0.022 * FIG5.disc_speed)
+_PIN_TIMES = np.linspace(0.0, 100.0, 101)
+_STUCK_TIMES = np.linspace(0.0, 20.0, 21)
+
+
+def _exact_radius() -> Quantity:
+    return np.array([whirl_radius(_CENTRED)], dtype=complex)
+
+
+def _exact_stuck() -> Quantity:
+    """Return where a pin is that turns with the disc: nothing of it depends on a law of slip."""
+    return np.asarray(_ON_THE_DISC[0] * np.exp(1j * _CENTRED.disc_speed * _STUCK_TIMES))
+
+
+CASES = {
+    "slip": Case(
+        title="a pin that slides",
+        sentence="A pin that slides follows Coulomb's law",
+        kind="trajectory",
+        system=FIG5,
+        start=_ON_THE_WHIRL,
+        times=_PIN_TIMES,
+        quantity=_places,
+        exact=functools.partial(_exact_places, "slip"),
+        resolution=0.025,
+    ),
+    "stick-slip": Case(
+        title="a pin that sticks nine times on its way to the whirl",
+        sentence="A pin that sticks nine times follows Coulomb's law",
+        kind="trajectory",
+        system=FIG5,
+        start=FIG5_STARTS["whirl"],
+        times=_PIN_TIMES,
+        quantity=_places,
+        exact=functools.partial(_exact_places, "stick-slip"),
+        resolution=0.08,
+    ),
+    "whirl": Case(
+        title="radius of the whirl without an offset, (11)",
+        sentence="The whirl's radius is that of (11)",
+        kind="formula",
+        system=_CENTRED,
+        start=_ON_THE_WHIRL,
+        times=_PIN_TIMES,
+        quantity=_radius,
+        exact=_exact_radius,
+        resolution=9e-3,
+        equation="(11)",
+    ),
+    "stuck": Case(
+        title="a pin that sticks all the time",
+        sentence="A pin that sticks turns with the disc",
+        kind="formula",
+        system=_CENTRED,
+        start=_ON_THE_DISC,
+        times=_STUCK_TIMES,
+        quantity=_places,
+        exact=_exact_stuck,
+        resolution=5e-3,
+        equation="(6)",
+    ),
+    "release": Case(
+        title="a pin that sticks for 1.5 s and lets go",
+        sentence="A pin lets go when Coulomb's law says",
+        kind="trajectory",
+        system=FIG5,
+        start=_UNTIL_RELEASE,
+        times=np.linspace(0.0, 4.0, 41),
+        quantity=_places,
+        exact=functools.partial(_exact_places, "release"),
+        resolution=3.5e-3,
+    ),
+    "disc": Case(
+        title="a disc on six points",
+        sentence="A disc on six points follows Coulomb's law",
+        kind="trajectory",
+        system=replace(FIG11, contact_points=6),
+        start=(0.05, 0.0, 0.0, 0.0, 0.05, 1.3),
+        times=np.linspace(0.0, 50.0, 51),
+        quantity=_places,
+        exact=functools.partial(_exact_places, "disc"),
+        resolution=2.5e-3,
+    ),
+}
+"""Of Fig. 5's parameters, and of Fig. 11's; the starts on the disc and on the whirl are ours."""
+
+
+# --- What foreign engines yield, recorded by ``builders/record.py``, and our own engines recorded with them.
+
+FOLDER = Path(__file__).parent
+
+COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
+"""Of a recorded run.
+
+The error in m is the largest over time, against the exact motion; the change is that against the run before, whose
+tolerance is larger by ``compare.claims.error_estimates.COARSENING``, and none at the first. Seconds are those of
+the processor, wall those on the clock; of an engine that is another process both are those on the clock.
+"""
+
+TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
+"""Places of ``COLUMNS`` in a recorded run."""
+
+DIGITS = 4
+"""Of the numbers in the files."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One setting of an engine.
+
+    Parameters
+    ----------
+    engine, version, recorded, platform : str
+        What ran, when and on what.
+    setting : str
+        Its name; "" for an engine of ours.
+    says : str
+        How it is set, in words.
+    runs : mapping
+        Of each case that it simulates, by the names of ``compare.foreign.CASES``: arrays of shape
+        (n, len(COLUMNS)), from the largest tolerance to the smallest.
+    probes : mapping
+        What tells the law of friction, as JSON of the parts ``compare.diagnosis.findings.PROBES``; empty where it is
+        not recorded.
+
+    """
+
+    engine: str
+    version: str
+    recorded: str
+    platform: str
+    setting: str
+    says: str
+    runs: Mapping[str, FloatArray]
+    probes: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Engine and setting."""
+        return f"{self.engine}, {self.setting}" if self.setting else self.engine
+
+
+def recordings() -> tuple[Recording, ...]:
+    """Return all that is recorded, our own engines first, the reference before the others.
+
+    Raises
+    ------
+    ValueError
+        For a file whose columns are not ``COLUMNS``.
+
+    """
+    found: list[Recording] = []
+    for path in sorted(FOLDER.glob("*.json")):
+        file = json.loads(path.read_text(encoding="utf-8"))
+        if tuple(file["columns"]) != COLUMNS:
+            raise ValueError(f"{path.name}: columns = {file['columns']}: they must be {list(COLUMNS)}")
+        about = {key: file[key] for key in ("engine", "version", "recorded", "platform")}
+        for setting in file["settings"]:
+            runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
+            own = {"setting": setting["name"], "says": setting["says"], "probes": setting.get("probes", {})}
+            found.append(Recording(**about, **own, runs=runs))
+    return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))
+
+
+def estimate(runs: FloatArray) -> float:
+    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
+
+    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
+    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
+    """
+    return float(np.nansum(runs[-2:, CHANGE]))

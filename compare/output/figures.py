@@ -27,11 +27,14 @@ import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    import matplotlib.axes
+    import matplotlib.figure
+
+Axes: TypeAlias = "matplotlib.axes.Axes"
+Figure: TypeAlias = "matplotlib.figure.Figure"
 
 BLACK = "#000000"
 BLUE = "#0b4f7d"
@@ -122,12 +125,12 @@ def new_figure(
     ``width`` and ``height`` are in inches and default to a comfortable panel; ``subplots`` goes to
     ``Figure.subplots`` (``sharex=True``, ``width_ratios=...``, ``subplot_kw=...``).
     """
+    import matplotlib.figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
     with paper_style():
         size = (width or ncols * PANEL_WIDTH + 0.6 * (ncols == 1), height or nrows * PANEL_HEIGHT)
-        figure = Figure(figsize=size, layout="constrained")
+        figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
         return figure, tuple(figure.subplots(nrows, ncols, squeeze=False, **subplots).flat)
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import re
+import signal
+from collections.abc import Iterable
 from typing import Any
 
 MOST = 2000
@@ -36,6 +39,16 @@ def one_line(text: object) -> str:
     return f"'{line}" if line.startswith(FORMULA) else line
 
 
+def one_of(kind: str, name: str, names: Iterable[str]) -> str:
+    """Return ``name`` if it is among ``names``; raise ``ValueError`` that suggests the nearest otherwise."""
+    names = list(names)
+    if name in names:
+        return name
+    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
+    hint = f"did you mean {nearest[0]!r}?" if nearest else f"known are {', '.join(names)}"
+    raise ValueError(f"unknown {kind} {name!r}: {hint}")
+
+
 def all_printable(content: Any) -> Any:
     """Return JSON values with every text and every name made ``printable``."""
     if isinstance(content, dict):
@@ -54,3 +67,13 @@ def _shortened(text: str, most: int) -> str:
         return text
     kept = (most - len(LEFT_OUT)) // 2
     return f"{text[:kept]}{LEFT_OUT}{text[-kept:]}"
+
+
+# --- Exit codes of processes, in words.
+
+
+def cause_of_end(code: int) -> str:
+    """Return how a process with this exit code ended: by its status, or by a signal if the code is negative."""
+    if code >= 0:
+        return f"exit status {code}"
+    return next((one.name for one in signal.Signals if one == -code), f"signal {-code}")  # some have no name

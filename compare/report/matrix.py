@@ -12,7 +12,7 @@ from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by, shares_code
-from compare.report.worst import deciding, in_short
+from compare.report.numbers import deciding, in_short
 from compare.run.runner import Run
 from compare.run.workers import Failure
 
@@ -85,7 +85,7 @@ class Cell:
 
     @property
     def number(self) -> str:
-        """What stands beside the verdict, see ``compare.report.worst.in_short``; "" where there is none."""
+        """What stands beside the verdict, see ``compare.report.numbers.in_short``; "" where there is none."""
         return in_short(deciding(self._decisive)) if self.claims else ""
 
     @property

@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compare.claims.claim import Claim, Verdict
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -50,3 +56,125 @@ def trimmed(value: float) -> str:
         return with_digits(value, 1)
     digits = next((n for n in range(1, 13) if float(f"{value:.{n - 1}e}") == value), 12)
     return with_digits(value, digits)
+
+
+# --- The element of a claim that decides its verdict, and the numbers that stand for it wherever that is shown.
+
+SPACE = "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True)
+class Largest:
+    """The largest difference in one unit, of the element ``index`` with that ``name``."""
+
+    index: int
+    name: str
+    difference: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The numbers of one element, ``index`` (from 0) of ``count``, in ``unit``, and each unit's largest difference.
+
+    ``name`` says in words which element it is, "" where there is only one.
+    """
+
+    index: int
+    count: int
+    name: str
+    predicted: float
+    measured: float
+    difference: float
+    numerical: float
+    model: float
+    unit: str
+    largest: tuple[Largest, ...]
+
+    @property
+    def total(self) -> float:
+        """Numerical plus model error."""
+        return self.numerical + self.model
+
+
+def worst(claim: Claim) -> Worst:
+    """Return the element that is nearest to failing, or, where nothing was shown, the least certain one."""
+    numerical = np.broadcast_to(claim.budget.numerical, claim.predicted.shape)
+    i = int(np.argmax(numerical)) if claim.verdict is Verdict.INCONCLUSIVE else claim.worst
+    return Worst(
+        i,
+        claim.predicted.size,
+        _name(claim, i),
+        float(claim.predicted.flat[i]),
+        float(claim.measured.flat[i]),
+        float(claim.difference.flat[i]),
+        float(numerical.flat[i]),
+        claim.budget.model,
+        claim.unit_of(i),
+        _largest(claim),
+    )
+
+
+def _largest(claim: Claim) -> tuple[Largest, ...]:
+    """Return the largest difference of each unit: metres and radians are not compared."""
+    units = claim.units
+    found = []
+    for unit in dict.fromkeys(units):
+        own = np.resize([one == unit for one in units], claim.predicted.size)
+        difference = np.where(own, np.nan_to_num(claim.difference.ravel(), nan=np.inf), -1.0)
+        i = int(np.argmax(difference))
+        found.append(Largest(i, _name(claim, i), float(claim.difference.flat[i]), unit))
+    return tuple(found)
+
+
+def _name(claim: Claim, index: int) -> str:
+    """Return which element it is in words, by its number where nothing names it."""
+    if claim.predicted.size == 1:
+        return ""
+    return claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
+
+
+def deciding(claims: Sequence[Claim]) -> Claim:
+    """Return the one of several claims with the same verdict that decides it, as ``worst`` does of elements."""
+
+    def weight(claim: Claim) -> float:
+        element = worst(claim)
+        if claim.verdict is Verdict.INCONCLUSIVE:
+            return element.total
+        return float(claim.ratio.flat[element.index])
+
+    return max(claims, key=weight)
+
+
+def in_short(claim: Claim) -> str:
+    """Return what stands beside a verdict: the error that is allowed, "± 2×10⁻⁹ m", or that it is off, "by 3 m".
+
+    Of answers, "7 of 8"; nothing where an exact number is met exactly.
+    """
+    element = worst(claim)
+    if claim.answers:
+        return f"{answers_text(element.measured)} of {answers_text(element.predicted)}"
+    unit = f" {element.unit}" if element.unit else ""
+    if claim.verdict is Verdict.DIFFERS:
+        return f"by{SPACE}{error_text(element.difference)}{unit}"
+    return f"±{SPACE}{error_text(element.total)}{unit}" if element.total > 0.0 else ""
+
+
+def answers_text(count: float) -> str:
+    """Return a number of answers, which is whole: "3", "1,000,000"."""
+    return f"{round(count):,}"
+
+
+def account(claim: Claim) -> str:
+    """Return the numbers of the element that decides."""
+    element = worst(claim)
+    if claim.answers:
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
+    unit = f" {element.unit}" if element.unit else ""
+    largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
+    return (
+        f"predicted {element.predicted!r}{unit}, measured {element.measured!r}{unit}, "
+        f"difference {error_text(element.difference)}, allowed {error_text(element.numerical)} (numerical) "
+        f"+ {error_text(element.model)} (model), resolution {error_text(claim.budget.resolution)}; "
+        f"largest difference of {element.count}: {largest}"
+    )

@@ -17,12 +17,11 @@ from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.study import Study
 from compare.report import quotes
 from compare.report.at_a_glance import cases, glances
-from compare.report.machines.results_json import erratum_id
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Matrix, Row, State, state_of
-from compare.report.numbers import error_text, trimmed, value_text
-from compare.report.worst import answers_text, in_short, worst
-from compare.run.drawings import Drawing
+from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
+from compare.report.results_json import erratum_id
 from compare.run.runner import Run
+from compare.run.store import Drawing
 from compare.run.workers import Failure
 from reference_model.systems import UNITS
 

@@ -9,15 +9,14 @@ from typing import Any
 
 from compare.output.text_files import replacing, write_text
 from compare.report.animation import still
-from compare.report.machines.arrays import tables
-from compare.report.machines.badge import badge
-from compare.report.machines.junit import junit
-from compare.report.machines.results_json import FILE, results
+from compare.report.at_a_glance import badge
+from compare.report.junit import junit
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
-from compare.run.drawings import Drawing
+from compare.report.results_json import FILE, results, tables
 from compare.run.provenance import platform_stamp
 from compare.run.runner import Run
+from compare.run.store import Drawing
 
 LINES = 4
 """How deep lines are nested in ``results.json``: each claim has one."""

@@ -1,16 +1,29 @@
-"""From which commit, versions and machine a report is."""
+"""Where results come from: commit, versions and machine, and one digest of all that they depend on."""
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import importlib.util
 import json
 import os
 import platform
 import subprocess
 import sys
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, distribution, version
+from functools import cache
+from importlib.machinery import ModuleSpec
+from importlib.metadata import PackageNotFoundError, distribution, distributions, version
 from pathlib import Path
+from typing import Any
+
+from compare.engines import ByName, Engine
+from compare.engines.outside.program import code_below
+
+# --- From which commit, versions and machine a report is.
 
 ROOT = Path(__file__).resolve().parents[2]
 """Where the packages are."""
@@ -83,3 +96,99 @@ def exudyn_user_settings() -> str:
     """Return "off", or "on" where Exudyn was imported before a study and has found a user's own settings."""
     found = sys.modules.get("exudyn.misc.overrideSettings")
     return "on" if found is not None and found.Applied() else "off"
+
+
+# --- The files of an engine's code. Modules are found, not imported: foreign code runs only in a process of its own.
+
+PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
+"""This project's own."""
+
+SITES = {"site-packages", "dist-packages"}
+"""Folders of installed packages, which do not belong to each other."""
+
+
+def files_of(function: Callable[..., Any]) -> list[Path] | None:
+    """Return the files of an engine's function and of the modules next to it, sorted.
+
+    Empty for this project's functions and those of Python itself; None if there are no files to be found.
+    """
+    if (files := getattr(function, "files", None)) is not None:
+        return sorted(files) or None
+    while isinstance(function, functools.partial):
+        function = function.func
+    folder = function.folder if isinstance(function, ByName) else ""
+    module = function.module if isinstance(function, ByName) else function.__module__
+    package = module.partition(".")[0]
+    if package in PACKAGES or package in sys.stdlib_module_names:
+        return []
+    spec = _found(package, folder)
+    if spec is None:
+        return None
+    if spec.submodule_search_locations is not None:
+        return sorted(code_below(spec.submodule_search_locations)) or None
+    if spec.origin is None or not (file := Path(spec.origin)).is_file():
+        return None
+    return [file] if file.parent.name in SITES else sorted(code_below([file.parent]))
+
+
+def _found(package: str, folder: str) -> ModuleSpec | None:
+    """Return where a module or package without dots is; ``folder`` comes last, as where it is imported."""
+    before = sys.path.copy()
+    sys.path.extend([folder] if folder else [])
+    try:
+        return importlib.util.find_spec(package)
+    except ValueError:  # a module of this process that came from no file
+        return None
+    finally:
+        sys.path[:] = before
+
+
+# --- One digest of what results depend on: sources, the engine's own files, versions of libraries, kind of machine.
+
+SOURCES = {".py", ".c", ".h", ".json", ".csv"}
+"""Endings of the project's code, and of the data that it reads: records of other engines, published numbers."""
+
+DRAWING_LIBRARIES = ("matplotlib", "pillow")
+
+
+def stamp(*more: str) -> str:
+    """Return the SHA-256 of the project's sources, the versions of its libraries, the machine and ``more``."""
+    versions = [(name, version_of(name)) for name in (*LIBRARIES, *DRAWING_LIBRARIES)]
+    facts = (platform.python_version(), platform.machine(), versions, exudyn_user_settings())
+    return hashlib.sha256(repr((_sources(ROOT), facts, more)).encode()).hexdigest()
+
+
+def engine_stamp(engine: Engine | None) -> str | None:
+    """Return :func:`stamp` with what the answers of an engine depend on, None if its files cannot be read.
+
+    An engine from elsewhere may use any installed package, so the versions of all packages count.
+    """
+    if engine is None:
+        return stamp()
+    function = engine.function  # its repr contains an address in memory unless it is a dataclass
+    promises = [field.name for field in fields(engine) if field.name != "function" or is_dataclass(function)]
+    facts = repr([(name, getattr(engine, name)) for name in promises])
+    try:
+        files = files_of(function)
+        if files is None:
+            return None
+        if not files:
+            return stamp(facts)
+        content = _digest((str(path), path) for path in files)
+    except OSError:
+        return None
+    installed = sorted((one.name, one.version) for one in distributions())
+    return stamp(facts, content, repr(installed))
+
+
+@cache
+def _sources(root: Path) -> str:
+    """Return the digest of the packages below ``root``; a process has the code that it was started with."""
+    paths = (path for name in PACKAGES for path in (root / name).rglob("*") if path.suffix in SOURCES)
+    return _digest((path.relative_to(root).as_posix(), path) for path in sorted(paths))
+
+
+def _digest(files: Iterable[tuple[str, Path]]) -> str:
+    """Return the SHA-256 of names and contents of files."""
+    contents = [(name, hashlib.sha256(path.read_bytes()).hexdigest()) for name, path in files]
+    return hashlib.sha256(repr(contents).encode()).hexdigest()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -10,12 +10,18 @@ from typing import Any
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import Engine, UnsupportedSystemError, owner_of
+from compare.engines import (
+    Engine,
+    UnsupportedSystemError,
+    engines,
+    is_registered,
+    known_name,
+    owner_of,
+    told_apart,
+)
 from compare.output.outside_text import printable
-from compare.run.drawings import Drawing, DrawingStore, drawing_stamp, drawn
-from compare.run.findings_store import Store
-from compare.run.provenance import engine_version
-from compare.run.stamp import engine_stamp
+from compare.run.provenance import engine_stamp, engine_version
+from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
 
 
@@ -117,7 +123,7 @@ def run(
     limit : float, optional
         Seconds after which a measurement is given up, as its engine's failure.
     resume : bool
-        Take from ``folder`` what has the same digest of code and libraries, see ``compare.run.stamp``.
+        Take from ``folder`` what has the same digest of code and libraries, see ``compare.run.provenance``.
     progress : callable
         Called with the number of finished and of all pieces of work, and the name of the last one.
 
@@ -216,12 +222,15 @@ class _Runner:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
 
 
-def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) -> Findings:
+def measured(study: Study, engine: Engine | str | None, only: Collection[str] = ()) -> Findings:
     """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``.
 
-    ``only`` are the parts of it that are asked for, as ``Study.measure`` has them; empty for all.
+    The engine of a name is imported here, in a process that may hang or crash. ``only`` are the parts of the study
+    that are asked for, as ``Study.measure`` has them; empty for all.
     """
     findings: object = None
+    if isinstance(engine, str):
+        (engine,) = engines([engine])
     if engine is not None:
         try:
             findings = study.measure(engine, only=only)
@@ -237,3 +246,35 @@ def measured(study: Study, engine: Engine | None, only: Collection[str] = ()) ->
 def _identities(study: Study) -> set[str]:
     """Return the names of the claims that a study declares."""
     return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}
+
+
+# --- Engines by name. Their modules are imported in another process, because an import may end its process.
+
+
+def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
+    """Return the engines of the given names, as ``compare.engines.engines`` does, by one of the ``workers``.
+
+    Raises ``ValueError`` for a name that is unknown or that the process could not load.
+    """
+    names = [known_name(name) for name in dict.fromkeys(names)]
+    if all(map(is_registered, names)):
+        return engines(names)
+    return told_apart(names, [_loaded(name, workers) for name in names])
+
+
+def _loaded(name: str, workers: Workers) -> Engine:
+    found = workers.ask(_described, name)
+    if isinstance(found, str):
+        raise ValueError(found)
+    if isinstance(found, Failure):
+        raise ValueError(f"engine {name!r} can't be loaded: {found}")
+    engine: Engine = found
+    return engine
+
+
+def _described(name: str) -> Engine | str:
+    """Return the engine, which holds nothing of the module that it is from, or why there is none."""
+    try:
+        return engines([name])[0]
+    except ValueError as error:
+        return str(error)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from compare.claims.study import Study
+from compare.claims import Study
 from compare.engines import one_of
 from compare.studies.disc.contact_laws import STUDY as CONTACT_LAWS
 from compare.studies.disc.fig08 import STUDY as FIG08

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from compare.claims.claim import Claim, ErrorBudget
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.claims.prose import Prose
 from compare.claims.study import Findings, Recorded, Study
 from compare.engines import Engine

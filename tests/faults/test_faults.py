@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipe, ellipkm1
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import BadTrajectoryError
 from faults import FAULTS, SOUND, reference
 from faults.equations import carried, rates

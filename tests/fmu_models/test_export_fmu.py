@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.cli import app as cli
 from compare.engines import engines
 from compare.studies.engines.trajectories import STUDY

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import reference_model
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc
 
 SLIPS, STICKS, LEAVES = range(3)

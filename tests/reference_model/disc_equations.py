@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG9
+from compare.claims.parameters import FIG9
 from reference_model import plain
 from reference_model.systems import DiscOnDisc
 

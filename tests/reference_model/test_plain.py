@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from reference_model import SimulationError, plain, self_centred_equilibria, simulate, whirls
 from reference_model.contact.contact_law import Ring
 

@@ -14,7 +14,7 @@ from plain_engines import support_force
 from test_systems import refusal
 
 import reference_model
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, stick_slip_orbits, whirls
 from reference_model import smallest_load_with_whirl as smallest_load
 from reference_model.contact.contact_law import Ring

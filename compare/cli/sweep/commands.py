@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from compare.cli.door.command import Command, refused
-from compare.cli.door.options import changed, taking
+from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, Command, printing, refused
+from compare.cli.options import Settings, Tolerance, changed, taking
 from compare.cli.sweep.options import (
     COARSE,
     STARTS,
@@ -26,8 +27,9 @@ from compare.cli.sweep.options import (
 from compare.cli.sweep.run import redraw
 
 if TYPE_CHECKING:
-    from compare.sweep.define.axes import Axis
+    from compare.sweep.quantities import Axis
     from reference_model.systems import System
+
 
 MOST_POINTS = 100_000_000
 """Of a plane."""
@@ -93,9 +95,8 @@ def sweep_basin(
       friction-discs sweep basin pin --random 20000 --seed 7 --output shares
       friction-discs sweep basin disc --set contact_points=6 --start spin=1.2 --x x=-0.2:0.2:129 --y y=-0.2:0.2:129
     """
-    from compare.sweep.define.axes import Axis
-    from compare.sweep.define.plan import Basin, RandomBasin
-    from compare.sweep.define.quantities import components
+    from compare.sweep.plan import Basin, RandomBasin
+    from compare.sweep.quantities import Axis, components
 
     with refused():
         common = request.common()
@@ -126,8 +127,8 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
       friction-discs sweep map pin --start x=0.1,vx=0.03 --start x=0.02,vx=0
       friction-discs sweep map disc --x damping=0.2:2:100 --y shaft_damping=0.004:0.026:100
     """
-    from compare.sweep.define.plan import Map
-    from compare.sweep.define.quantities import components, parameters
+    from compare.sweep.plan import Map
+    from compare.sweep.quantities import components, parameters
 
     with refused():
         common = request.common()
@@ -156,9 +157,9 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
       friction-discs sweep uncertainty pin --vary "offset=normal(0.1, 0.005)"
           --vary "friction_force=truncnorm(0.09, 0.01, 0.05, 0.13)" --vary "vx=uniform(-0.1, 0.1)"
     """
-    from compare.sweep.define.distributions import Uncertain
-    from compare.sweep.define.plan import Uncertainty
-    from compare.sweep.define.quantities import components
+    from compare.sweep.distributions import Uncertain
+    from compare.sweep.plan import Uncertainty
+    from compare.sweep.quantities import components
 
     with refused():
         common = request.common()
@@ -189,10 +190,9 @@ def sweep_continuation(
       friction-discs sweep continuation pin --x friction_force=0.02:0.12:50 --samples 4000
     """
     from compare.engines import one_of
-    from compare.sweep.define.axes import Axis
-    from compare.sweep.define.distributions import Uncertain
-    from compare.sweep.define.plan import Continuation
-    from compare.sweep.define.quantities import components, parameters
+    from compare.sweep.distributions import Uncertain
+    from compare.sweep.plan import Continuation
+    from compare.sweep.quantities import Axis, components, parameters
 
     with refused():
         common = request.common()
@@ -225,7 +225,7 @@ def sweep_figures(
 
 def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:
     """Return the axes x and y; raise ``ValueError`` for what is none, or the same one twice."""
-    from compare.sweep.define.axes import Axis
+    from compare.sweep.quantities import Axis
 
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
     if axes[0].name == axes[1].name:
@@ -283,3 +283,43 @@ def _check_varied(names: Sequence[str]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"--vary {name}: it is there more than once")
+
+
+# --- ``friction-discs sweep shock``: the smallest shock that leads to the whirl.
+
+AGREEMENT = 1e-6
+"""Largest relative difference of both ways to find it."""
+
+
+def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
+    """Find the smallest shock that throws a pin from its self-centred equilibrium into the whirl.
+
+    It is the point of the basin's boundary, the stable set of a stick–slip orbit, that is nearest in velocity. The
+    ends of motions on both sides of it check that by bisection.
+
+    \b
+    Example:
+      friction-discs sweep shock --set disc_speed=2
+    """
+    from compare.claims.parameters import FIG5
+    from reference_model import smallest_shock
+    from reference_model.orbits.shock import by_bisection
+    from reference_model.systems import PinOnDisc
+
+    with refused():
+        pin = changed(FIG5, settings or [])
+    assert isinstance(pin, PinOnDisc)
+    try:
+        shock = smallest_shock(pin, tolerance=tolerance)
+        checked = by_bisection(shock)
+    except (ValueError, RuntimeError) as error:
+        raise BadInputError(str(error)) from None
+    difference = abs(checked / shock.speed - 1.0)
+    with printing():
+        print(
+            f"smallest shock that leads to the whirl: {shock.impulse:.9g} N s, a change of the velocity by "
+            f"{shock.speed:.9g} m/s, ({shock.vx:.6g}, {shock.vy:.6g}) m/s"
+        )
+        print(f"  direction: {math.degrees(shock.direction):.2f}° from the x-axis")
+        print(f"  by bisection of ends: {checked:.9g} m/s, relative difference {difference:.0e}")
+    return FINE if difference <= AGREEMENT else SOMETHING_DIFFERS

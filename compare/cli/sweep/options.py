@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from compare.cli.door.command import refused
-from compare.cli.door.options import Settings, Tolerance, changed, chosen_from, count, positive, whole
+from compare.cli.command import refused
+from compare.cli.options import Settings, Tolerance, changed, chosen_from, count, positive, whole
 from compare.cli.sweep.run import CHUNK, run_sweep
 
 if TYPE_CHECKING:
-    from compare.sweep.define.plan import Plan
+    from compare.sweep.plan import Plan
     from reference_model.systems import System
 
 COARSE = 65
@@ -161,7 +161,7 @@ class Request:
 
     def common(self) -> dict[str, Any]:
         """Return what all plans have; raise ``ValueError`` for what can't be."""
-        from compare.claims.paper_parameters import FIG5, FIG11
+        from compare.claims.parameters import FIG5, FIG11
         from reference_model.support import require_linear_support
 
         papers: Mapping[str, System] = {"pin": FIG5, "disc": FIG11}

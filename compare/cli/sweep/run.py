@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from compare.cli.door.command import (
+from compare.cli.command import (
     BAD_INPUT,
     FINE,
     INTERRUPTED,
@@ -17,15 +17,15 @@ from compare.cli.door.command import (
     printing,
     refused,
     say,
+    trajectories,
 )
-from compare.cli.door.options import check_folder
-from compare.cli.door.progress import trajectories
+from compare.cli.options import check_folder
 
 if TYPE_CHECKING:
     from compare.sweep.compute.executors import Executor
-    from compare.sweep.define.plan import Plan
-    from compare.sweep.store.files import Files
-    from compare.sweep.store.store import SweepStore
+    from compare.sweep.files import Files
+    from compare.sweep.plan import Plan
+    from compare.sweep.store import SweepStore
 
 STORE = "sweep.zarr"
 """Name of the store in its folder."""
@@ -43,8 +43,8 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     from compare.sweep.compute.executors import ClusterError
     from compare.sweep.compute.run import run
     from compare.sweep.compute.work import OtherCodeError
-    from compare.sweep.store.files import Files, StoreError
-    from compare.sweep.store.store import SweepStore
+    from compare.sweep.files import Files, StoreError
+    from compare.sweep.store import SweepStore
 
     folder, store = Files.at(place), None
     files = Files.at(folder.below(STORE))
@@ -86,7 +86,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
 @contextmanager
 def _looking() -> Iterator[None]:
     """Turn what is wrong with a place, or with what is there, into ``BadInputError``."""
-    from compare.sweep.store.files import StoreError
+    from compare.sweep.files import StoreError
 
     with refused():
         try:
@@ -97,7 +97,7 @@ def _looking() -> Iterator[None]:
 
 def _check_writable(folder: Files) -> None:
     """Raise ``ValueError`` or ``StoreError`` if no file can be written to the folder or URL."""
-    from compare.sweep.store.files import is_remote
+    from compare.sweep.files import is_remote
 
     if is_remote(folder.url):
         folder.write({f"{STORE}.try": b""})
@@ -108,7 +108,7 @@ def _check_writable(folder: Files) -> None:
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
-    from compare.sweep.store.store import SweepStore, is_free
+    from compare.sweep.store import SweepStore, is_free
 
     if is_free(files):
         return None
@@ -123,7 +123,7 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
 
 def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
     """Raise ``ValueError`` if a store is not that of ``plan``, or must not be gone on with."""
-    from compare.run.stamp import stamp
+    from compare.run.provenance import stamp
 
     if store.plan != plan:
         raise ValueError(f"{store.path!r} belongs to another sweep: take another --output")
@@ -157,8 +157,8 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
 
 def finish(store: SweepStore, folder: Files) -> int:
     """Print and draw the results; return 1 if the plain reference differs, 3 if most is undecided, else 0."""
-    from compare.sweep.show.figures import write_figures
-    from compare.sweep.show.summary import same_ends, summary, undecided
+    from compare.sweep.figures import write_figures
+    from compare.sweep.summary import same_ends, summary, undecided
 
     written = write_figures(store, folder)
     with printing():
@@ -177,8 +177,8 @@ def finish(store: SweepStore, folder: Files) -> int:
 
 def redraw(place: str) -> int:
     """Do as ``finish`` for a finished sweep; raise ``BadInputError`` for one that is not finished."""
-    from compare.sweep.store.files import Files
-    from compare.sweep.store.store import SweepStore
+    from compare.sweep.files import Files
+    from compare.sweep.store import SweepStore
 
     with _looking():
         folder = Files.at(place)

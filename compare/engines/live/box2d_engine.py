@@ -18,8 +18,7 @@ import math
 import Box2D
 import numpy as np
 
-from compare.engines.live.setting import Setting, inertia_of
-from compare.engines.live.top_down import TopDown
+from compare.engines.live.setting import Setting, TopDown, inertia_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50

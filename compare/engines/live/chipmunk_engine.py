@@ -20,8 +20,7 @@ from typing import Any
 
 import pymunk
 
-from compare.engines.live.setting import Setting, inertia_of
-from compare.engines.live.top_down import TopDown
+from compare.engines.live.setting import Setting, TopDown, inertia_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from types import MappingProxyType
 
-from compare.engines.by_name import ByName, one_of
 from compare.engines.engine import Engine
-from compare.engines.registry import Scheme, register_scheme
+from compare.engines.registry import ByName, Scheme, register_scheme
+from compare.output.outside_text import one_of
 
 
 @dataclass(frozen=True)

@@ -32,8 +32,7 @@ from compare.engines.outside.json_lines import (
     question,
 )
 from compare.engines.outside.program import own_name
-from compare.output.exit_codes import cause_of_end
-from compare.output.outside_text import printable
+from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 

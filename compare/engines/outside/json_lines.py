@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import PHASES
-from compare.engines.by_name import one_of
 from compare.engines.engine import UnsupportedSystemError
 from compare.engines.registry import DECLARED
-from compare.output.outside_text import one_line, printable
+from compare.output.outside_text import one_line, one_of, printable
 from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Phase, Trajectory, phases_of
 

@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import refined
+from compare.claims import Measured, answers_of, refined
 from compare.claims.linearised_flow import ComplexArray, matched, measured_eigenvalues, real_and_imaginary
-from compare.claims.measured import Measured, answers_of
 from compare.engines import Engine
 from reference_model.systems import FloatArray, System
 

@@ -14,14 +14,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.error_estimates import change_as_error
+from compare.claims import Measured, change_as_error
 from compare.claims.linearised_flow import ComplexArray
-from compare.claims.measured import Measured
-from reference_model import Annulus, DiscOnDisc
+from reference_model import (
+    Annulus,
+    DiscOnDisc,
+    SpinningEquilibrium,
+    SpinningWhirl,
+    self_centred_equilibria,
+    whirls,
+)
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel, EnergyBalance
+
 
 SOURCE = "the passenger car of exudyn_models.drivetrain.parameters; torque and slip: assumed"
 
@@ -170,3 +177,21 @@ def start_disc(model: DrivetrainModel, place: complex, velocity: complex) -> Non
 def centre(disc: FloatArray) -> ComplexArray:
     """Return x + iy of the disc's coordinates or velocities, shape (n,) from (n, 3)."""
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
+
+
+# --- Where the reference's reduced disc rests on the bench, and how it whirls.
+
+RINGS = 16
+"""Of the reference's annulus."""
+
+
+def rest_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningEquilibrium:
+    """Return the reference's equilibrium."""
+    (equilibrium,) = self_centred_equilibria(operation.reduced(car), facings(car, rings))
+    return equilibrium
+
+
+def whirl_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningWhirl:
+    """Return the reference's whirl."""
+    (whirl,) = whirls(operation.reduced(car), facings(car, rings))
+    return whirl

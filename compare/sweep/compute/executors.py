@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
-from compare.run.stamp import stamp
+from compare.run.provenance import stamp
 
 WAIT = 3.0
 """In s, for a scheduler to be reached, to answer, and to have a worker."""

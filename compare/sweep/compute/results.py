@@ -11,17 +11,14 @@ from numpy.typing import NDArray
 
 from compare.claims import shares
 from compare.claims.shares import Share
-from compare.sweep.compute.branches import known_branches
-from compare.sweep.compute.curves import curves
+from compare.sweep.arrays import Chunks, Group, Large, Round
+from compare.sweep.compute.known import curves, known_branches
 from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
-from compare.sweep.define.quantities import RESULTS, components, units
-from compare.sweep.define.refinement import Grid
-from compare.sweep.store.arrays import Group, Large
-from compare.sweep.store.round import Chunks, Round
-from compare.sweep.store.store import flags
+from compare.sweep.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
+from compare.sweep.quantities import RESULTS, Axis, components, units
+from compare.sweep.refinement import Grid
+from compare.sweep.store import flags
 from reference_model.ensemble import EndState
 from reference_model.systems import System
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 import numpy as np
 import xarray as xr
 
+from compare.sweep.arrays import Chunks, Round
 from compare.sweep.compute.executors import Executor, InProcess, Task
 from compare.sweep.compute.results import (
     Labelled,
@@ -21,11 +22,10 @@ from compare.sweep.compute.results import (
     parts_of,
 )
 from compare.sweep.compute.work import Plain, recompute, simulate_chunk
-from compare.sweep.define.plan import Continuation, Map, Plan
-from compare.sweep.define.quantities import components
-from compare.sweep.define.refinement import Grid
-from compare.sweep.store.round import Chunks, Round
-from compare.sweep.store.store import SweepStore, flags
+from compare.sweep.plan import Continuation, Map, Plan
+from compare.sweep.quantities import components
+from compare.sweep.refinement import Grid
+from compare.sweep.store import SweepStore, flags
 
 CHECKED = 20
 """Trajectories of a sweep that the plain reference simulates again."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compare.claims.shares import CONFIDENCE
-from compare.sweep.define.plan import BASES
+from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
 GROUPS = 16

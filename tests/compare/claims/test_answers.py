@@ -5,7 +5,7 @@ import pytest
 
 from compare.claims.claim import Claim, ErrorBudget, Verdict
 from compare.claims.measured import answers_of, asked
-from compare.report.worst import in_short
+from compare.report.numbers import in_short
 
 
 def of(*margins_and_errors, **more):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compare.claims.as_json import as_json, from_json
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from reference_model.systems import FloatArray, System
 
 

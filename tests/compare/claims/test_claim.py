@@ -3,7 +3,7 @@ import pytest
 from fake_studies import claim
 
 from compare.claims.claim import ErrorBudget, Grade, Verdict
-from compare.report.worst import in_short, worst
+from compare.report.numbers import in_short, worst
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,11 @@ import pytest
 
 from compare.claims.claim import THEORY, Verdict
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.engines import Engine, UnsupportedSystemError
-from compare.report.worst import worst
+from compare.report.numbers import worst
 from reference_model import simulate
 
 LOADS = (0.02, 0.05)

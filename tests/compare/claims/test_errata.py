@@ -9,7 +9,7 @@ import pytest
 
 from compare.claims import errata
 from compare.claims.errata import ERRATA
-from compare.claims.paper_parameters import CENTRED, FIG8, FIG9
+from compare.claims.parameters import CENTRED, FIG8, FIG9
 from reference_model import whirl_orbit
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas.disc import places_by_26

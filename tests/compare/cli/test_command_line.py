@@ -15,7 +15,7 @@ import pytest
 from processes import PATIENCE, REAL, environment
 
 from compare.claims.errata import ERRATA
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.claims.study import Findings
 from compare.cli import app as cli
 from compare.engines import EVERY_KIND

@@ -10,12 +10,12 @@ from processes import ROOT
 import compare.cli.sweep.run
 import compare.run.runner
 import compare.run.workers
-import compare.sweep.store.files
+import compare.sweep.files
 from compare.claims.errata import ERRATA
 from compare.cli import app as cli
 from compare.engines import INSTALLED, Engine, known_name
 from compare.run.plan import write_plan
-from compare.sweep.store.store import SweepStore
+from compare.sweep.store import SweepStore
 
 COMMAND = "friction-discs "
 
@@ -76,10 +76,10 @@ def idle(monkeypatch, tmp_path):
     monkeypatch.setattr(compare.run.workers.Workers, "finished", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
     monkeypatch.setattr(compare.cli.sweep.run, "_executor", stop)
-    monkeypatch.setattr(compare.sweep.store.files.Files, "write", stop)
+    monkeypatch.setattr(compare.sweep.files.Files, "write", stop)
     monkeypatch.setattr("reference_model.smallest_shock", stop)
     monkeypatch.setattr("fmu_models.export", stop)
-    monkeypatch.setattr("compare.report.machines.results_json.read_results", stop)
+    monkeypatch.setattr("compare.report.results_json.read_results", stop)
     monkeypatch.setattr(SweepStore, "open", stop)
     monkeypatch.setattr("compare.claims.errata.ERRATA", ERRATA[:1])
 

@@ -10,12 +10,20 @@ import pytest
 from stepping import box, cone, engine, pyramid
 
 from compare.diagnosis import run
-from compare.diagnosis.files import write_picture, write_rows
-from compare.diagnosis.findings import MOTIONS, Motion, creep, friction, lag, motion
-from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
+from compare.diagnosis.findings import (
+    MOTIONS,
+    RUNGS,
+    Ladder,
+    Motion,
+    creep,
+    friction,
+    lag,
+    motion,
+    tolerances,
+)
 from compare.diagnosis.laws import CONE, Friction, fitted
-from compare.diagnosis.recorded import recorded_rows
-from compare.diagnosis.row import Row
+from compare.diagnosis.row import Row, write_picture, write_rows
+from compare.diagnosis.run import recorded_rows
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, plain, reference
 from compare.run.workers import Workers
 from reference_model import Trajectory

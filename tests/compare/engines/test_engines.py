@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from compare.claims.error_estimates import refined
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.engines import (
     EVERY_KIND,
     BadTrajectoryError,

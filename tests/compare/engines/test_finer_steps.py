@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from compare.claims.claim import Verdict
+from compare.claims.error_estimates import LONGEST, SHORTER, decided
 from compare.claims.measured import Measured
 from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.engines import Engine
-from compare.engines.finer_steps import LONGEST, SHORTER, decided
 from reference_model import PinOnDisc, Trajectory
 
 STEP = 0.1
@@ -82,7 +82,7 @@ def test_only_a_fixed_step_becomes_shorter_and_as_long_as_there_is_time(monkeypa
     def asked(engine, seconds):
         """Return at which steps an engine is asked that leaves all open, and takes ``seconds`` for an answer."""
         clock, steps = itertools.count(0.0, seconds), []
-        monkeypatch.setattr("compare.engines.finer_steps.time.perf_counter", lambda: next(clock))
+        monkeypatch.setattr("compare.claims.error_estimates.time.perf_counter", lambda: next(clock))
         decided(
             engine, lambda engine: steps.append(engine and engine.step) or "open", lambda _: len(steps) < 4
         )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import reference_model
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import BadTrajectoryError, Engine, UnsupportedSystemError, engines
 from compare.studies import studies
 

@@ -7,7 +7,7 @@ import pytest
 
 import reference_model
 from compare.claims.error_estimates import COARSENING, refined
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine, reference
 from reference_model import Trajectory, whirl_orbit
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import reference_model
 from compare.claims.error_estimates import refined
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
 from reference_model import Phase, Trajectory, plain
 

@@ -9,7 +9,7 @@ from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, fake, measur
 
 from compare.claims.study import Findings
 from compare.cli.app import status
-from compare.report.machines.results_json import read_results
+from compare.report.results_json import read_results
 from compare.report.write import write_report
 from compare.run.runner import run
 

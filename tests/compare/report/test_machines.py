@@ -10,8 +10,8 @@ from fake_studies import AGREEMENT, GOOD, claim, fake, measure_verdicts
 
 from compare.claims.as_json import claim_from_json
 from compare.claims.study import Findings
-from compare.report.machines import arrays
-from compare.report.machines.results_json import read_results, schema
+from compare.report import results_json as arrays
+from compare.report.results_json import read_results, schema
 from compare.report.write import write_report
 from compare.run.runner import run
 

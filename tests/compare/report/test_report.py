@@ -16,10 +16,10 @@ from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli.app import status
 from compare.engines import EVERY_KIND, Engine
-from compare.report.machines.results_json import read_results
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.page import summary
 from compare.report.quotes import parts
+from compare.report.results_json import read_results
 from compare.report.write import write_report
 from compare.run.runner import run
 from compare.studies import STUDIES

@@ -6,9 +6,11 @@ import fake_studies as fake
 import numpy as np
 import pytest
 
-from compare.run import drawings, runner, stamp
-from compare.run.drawings import drawing_stamp
-from compare.run.engine_files import PACKAGES
+from compare.run import provenance as stamp
+from compare.run import runner
+from compare.run import store as drawings
+from compare.run.provenance import PACKAGES
+from compare.run.store import drawing_stamp
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.claims.prose import Prose
 from compare.claims.study import Study
 from compare.cli import app as cli

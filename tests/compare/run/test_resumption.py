@@ -10,13 +10,11 @@ from shutil import copytree, ignore_patterns
 import pytest
 
 from compare.engines import ByName, Engine, reference
-from compare.engines.outside.code_files import code_below
 from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
-from compare.engines.outside.program import Program
-from compare.run import stamp
-from compare.run.engine_files import PACKAGES
-from compare.run.stamp import engine_stamp
+from compare.engines.outside.program import Program, code_below
+from compare.run import provenance as stamp
+from compare.run.provenance import PACKAGES, engine_stamp
 from compare.studies import STUDIES
 
 

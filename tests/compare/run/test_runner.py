@@ -15,7 +15,7 @@ import pytest
 from processes import FAKE, PATIENCE, environment, interruptible, wait_for, wait_until
 
 from compare.claims.study import Findings
-from compare.cli.measure.report import store_of
+from compare.cli.report import store_of
 from compare.run import workers
 from compare.run.runner import run
 from compare.run.workers import Failure

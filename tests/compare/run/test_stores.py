@@ -14,8 +14,7 @@ from hypothesis.stateful import RuleBasedStateMachine, rule
 
 from compare.claims.as_json import claim_as_json
 from compare.claims.study import Findings
-from compare.run.drawings import Drawing, DrawingStore
-from compare.run.findings_store import Store
+from compare.run.store import Drawing, DrawingStore, Store
 
 KEYS = [
     ("fig03", "exec:./a.b"),

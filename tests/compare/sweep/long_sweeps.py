@@ -12,7 +12,7 @@ from processes import PATIENCE, REAL, environment
 from zarr.storage import ZipStore
 
 from compare.cli import app as cli
-from compare.sweep.define.quantities import RESULTS
+from compare.sweep.quantities import RESULTS
 
 LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
 SIGNALLING = Path(__file__).with_name("signalling_sweep.py")

@@ -11,8 +11,8 @@ import signal
 import sys
 import threading
 
+from compare.sweep.arrays import Chunks
 from compare.sweep.compute.executors import Cluster
-from compare.sweep.store.round import Chunks
 
 
 def signalling(name, process, chunk):

@@ -7,14 +7,14 @@ import pytest
 from long_sweeps import content
 from processes import ROOT
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.cli import app as cli
-from compare.cli.door.command import NOTHING_SHOWN
+from compare.cli.command import NOTHING_SHOWN
 from compare.cli.sweep.commands import MAPS, PLANES
 from compare.cli.sweep.run import STORE
-from compare.sweep.define.distributions import KINDS
-from compare.sweep.store.files import Files
-from compare.sweep.store.store import SweepStore
+from compare.sweep.distributions import KINDS
+from compare.sweep.files import Files
+from compare.sweep.store import SweepStore
 from reference_model.orbits.shock import Shock
 
 SMALL = ["--until", "20"]  # most are undecided then
@@ -87,7 +87,7 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(
 ):
     folder, arguments = finished
     if words.endswith("libraries"):
-        monkeypatch.setattr("compare.run.stamp.stamp", lambda: "other")
+        monkeypatch.setattr("compare.run.provenance.stamp", lambda: "other")
     before = files(folder)
     assert cli.status([*arguments, *more.split()]) == 2
     assert words in capsys.readouterr().err

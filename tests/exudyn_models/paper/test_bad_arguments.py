@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import eigenvalues, simulate, simulate_fixed_step, simulate_with_native_contact
 
 POINTS = replace(FIG11, contact_points=4)

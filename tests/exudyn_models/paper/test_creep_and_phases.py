@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import reference_model
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.studies.pin.sticking_domain.theory import pin_at
-from compare.studies.toolkit.sticking import safest_angle, stuck
+from compare.studies.toolkit.pins import safest_angle, stuck
 from exudyn_models import simulate
 from exudyn_models.forces.friction_laws import point_regularisation
 from exudyn_models.paper.creep import RegularisedContact

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from exudyn_models import eigenvalues
 from reference_model import plain, self_centred_equilibria
 from reference_model.contact.contact_law import contact_of

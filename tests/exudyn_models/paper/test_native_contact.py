@@ -21,7 +21,7 @@ from free_bodies import (
 )
 
 import reference_model
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import add_native_friction, add_ring_friction, simulate_with_native_contact
 from exudyn_models.paper.models import build as models
 from reference_model.systems import DiscOnDisc

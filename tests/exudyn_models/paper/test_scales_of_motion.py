@@ -8,8 +8,8 @@ import pytest
 
 import reference_model
 from compare.claims.error_estimates import refined
-from compare.claims.paper_parameters import FIG5, FIG11
-from compare.studies.engines.clutch_scale.study import Scale
+from compare.claims.parameters import FIG5, FIG11
+from compare.studies.engines.clutch_scale import Scale
 from exudyn_models import simulate, simulate_with_native_contact
 from exudyn_models.paper.models.build import build
 from exudyn_models.paper.recording import Recording

@@ -11,7 +11,7 @@ from plain_slip import slide
 from scipy.linalg import expm
 
 import reference_model
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from exudyn_models import add_ring_friction, simulate, simulate_fixed_step, simulate_with_native_contact
 from exudyn_models.paper.alternating_solvers import Friction
 from exudyn_models.paper.creep import RegularisedContact

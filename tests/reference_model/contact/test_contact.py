@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import (
     Pin,

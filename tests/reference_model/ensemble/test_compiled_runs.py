@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
 from reference_model import (
     DiscOnDisc,
     PinOnDisc,

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG8, FIG9, FIG11
+from compare.claims.parameters import FIG8, FIG9, FIG11
 from reference_model import DiscOnDisc, self_centred_equilibria, simulate, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core.records import layout

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from reference_model import PinOnDisc
 from reference_model.ensemble import EndState, simulate_ensemble
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from reference_model import (
     PinOnDisc,
     boundary_point,

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, simulate
 from reference_model.ensemble import chunks, simulate_ensemble
 from reference_model.ensemble.core import laws

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import FIG8, FIG11
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas import disc as formulas
 from reference_model.formulas import pin as pin_formulas

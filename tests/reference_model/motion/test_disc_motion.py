@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from plain_disc_engines import friction_of_pivot, just_released_disc, slide_disc, stuck_disc
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.path import Path
 
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import PinOnDisc, basin_boundary, boundary_point, simulate, stick_slip_orbits
 from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import ReleaseMap

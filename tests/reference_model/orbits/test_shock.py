@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from reference_model import (
     basin_boundary,
     self_centred_equilibria,

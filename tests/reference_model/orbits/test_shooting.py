@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, last_whirl, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas import pin as formulas

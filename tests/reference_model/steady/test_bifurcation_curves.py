@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
 from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
 from reference_model.formulas.disc import whirl_at

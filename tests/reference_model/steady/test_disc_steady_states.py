@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
-from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import FIG8, FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas.disc import held_pin, pin_of, semicircle_residual, shaft_torque

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.simulation import simulate
 from reference_model.steady.bifurcation_curves import ParameterPlane, crossings

@@ -14,7 +14,7 @@ from plain_engines import rates as rates_of_pin
 from scipy.optimize import brentq
 from test_stability import assert_same_eigenvalues, derivative
 
-from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import FIG8, FIG11
 from reference_model import (
     PinOnDisc,
     onset_load,

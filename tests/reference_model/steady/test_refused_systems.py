@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG8, FIG11
+from compare.claims.parameters import FIG5, FIG8, FIG11
 from reference_model import basin_boundary, boundary_point, simulate, stick_slip_orbits, whirl_orbit
 from reference_model.contact.contact_law import Pin, Ring
 from reference_model.formulas.disc import pin_of

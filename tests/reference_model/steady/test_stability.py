@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from plain_engines import in_units
 
-from compare.claims.paper_parameters import FIG8, FIG11
+from compare.claims.parameters import FIG8, FIG11
 from reference_model import plain
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,
     PURPLE,
     SKY,
+    Figure,
     axis,
     curve,
     engines_in,
     new_figure,
     points,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 RATIO = axis("U/W")
 

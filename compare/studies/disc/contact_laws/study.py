@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import ROUNDING, TIGHTEST, observed_exponent, refined
-from compare.claims.measured import Measured
-from compare.claims.study import Study
+from compare.claims import ROUNDING, TIGHTEST, Measured, Study, observed_exponent, refined
 from compare.engines import Engine
 from compare.studies.disc.contact_laws.theory import (
     ANGLE,

@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import ROUNDING
-from compare.claims.paper_parameters import FIG11
-from compare.claims.study import Data
+from compare.claims import ROUNDING, Data
+from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Contact, PointsOnRing, Ring, ThreeTermRing
 from reference_model.systems import FloatArray

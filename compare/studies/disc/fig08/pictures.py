@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Data, Figures
-from compare.output.figures import GREY, PALETTE, axis, curve, engines_in, new_figure, points
+from compare.claims import ByEngine, Data, Figures
+from compare.output.figures import GREY, PALETTE, Axes, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.disc.fig08.theory import RESOLUTION, RING, place_and_spin
-from compare.studies.toolkit.self_centred import last_load, with_load
+from compare.studies.toolkit.steady_motion import last_load, with_load
 from reference_model.formulas.disc import shaft_torque
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -10,35 +10,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import KroghInterpolator
 
+import compare.studies.disc.fig08.theory as theory
 from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING, Measurement, refined
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.study import Study
 from compare.engines import Engine
-from compare.studies.disc.fig08.theory import (
-    BALANCED,
-    DECAYS,
-    END_LOADS,
-    LOADS,
-    OFFSETS,
-    PAPER_LAW,
-    RESOLUTION,
-    RING,
-    SIX,
-    SOURCE,
-    SOURCE_OF_GRID,
-    STICKING_RATIOS,
-    STICKING_TIME,
-    TOLERANCE,
-    by_26,
-    curves,
-    grid,
-    last_load_by_26,
-    place_and_spin,
-    unbalanced,
-)
-from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
-from compare.studies.toolkit.steady_motion import steady_motion
+from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
 from reference_model.formulas.disc import places_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle
@@ -47,22 +25,23 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 STUDY = Study.beside(
     __file__,
     "fig08",
-    source=SOURCE,
-    system=RING,
+    source=theory.SOURCE,
+    system=theory.RING,
     seconds=2.5,
-    words={"own": f"{RING.offset:g}"},
+    words={"own": f"{theory.RING.offset:g}"},
 )
-STUDY.provides(curves=curves)
+STUDY.provides(curves=theory.curves)
 
 
 @functools.lru_cache(maxsize=4)
 def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
     """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), and one error of all."""
     found = refined(
-        lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
+        lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads],
+        theory.TOLERANCE,
     )
     # One number alone may be right by chance, and two runs may coincide to within the tolerance.
-    return Measurement(found.value, np.asarray(found.largest + TOLERANCE * disc.offset))
+    return Measurement(found.value, np.asarray(found.largest + theory.TOLERANCE * disc.offset))
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
@@ -76,17 +55,17 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     "On the continuous ring the engine's steady state is the self-centred equilibrium, at every friction force",
     equation="(19), (20)",
     unit="m, rad/s",
-    resolution=RESOLUTION,
+    resolution=theory.RESOLUTION,
     note="Measured: the state that the engine itself brings back after a sixth of a turn, found from the place by "
     "(26). Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
     basis="reference",
     swept=("friction_force",),
 )
-def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     """Compare the equilibria of the ring with root finding."""
-    found = means_of(engine, RING, loads)
+    found = means_of(engine, theory.RING, loads)
     return Measured(
-        predicted=[place_and_spin(with_load(RING, load)) for load in loads],
+        predicted=[theory.place_and_spin(with_load(theory.RING, load)) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
@@ -99,20 +78,20 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     "The self-centred equilibria of the continuous ring lie on the semicircle (4)",
     equation="(4)",
     unit="m²",
-    resolution=1e-9 * RING.offset**2,
+    resolution=1e-9 * theory.RING.offset**2,
     note="Left side minus right side of (4), at the places of the claim above.",
     implied_by=rests,
     swept=("friction_force",),
 )
-def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     """Put the equilibria of the ring into the equation of the circle."""
-    found = means_of(engine, RING, loads)
+    found = means_of(engine, theory.RING, loads)
     x, y, _ = found.value.T
     # ∂(4)/∂(x, y) is twice the way from the circle's centre, so of length X0 on the circle.
-    error = 2.0 * np.hypot(x - RING.offset / 2.0, y) * found.error + found.error**2
+    error = 2.0 * np.hypot(x - theory.RING.offset / 2.0, y) * found.error + found.error**2
     return Measured(
         predicted=np.zeros(len(loads)),
-        value=semicircle_residual(RING, x, y),
+        value=semicircle_residual(theory.RING, x, y),
         error=error,
         at={"μN in N": loads},
     )
@@ -125,24 +104,24 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     resolution=1e-4,
     note="Starts at rest where the springs are relaxed, with the spin of the shaft. Measured: growth of the slowest "
     "mode's part of the deviation, in the later half of "
-    + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in DECAYS)
+    + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in theory.DECAYS)
     + ". Error: the change against the earlier half, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
-def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = DECAYS) -> Measured:
+def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = theory.DECAYS) -> Measured:
     """Compare the decay of displaced discs, by μN in N and span in s, with the slowest eigenvalue."""
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
-            functools.partial(_decay, engine, with_load(RING, load), span), WORKING
+            functools.partial(_decay, engine, with_load(theory.RING, load), span), WORKING
         )
         measured.append(later)
         # What is not linear falls with the deviation, so that of the later half less is left than the change shows.
         errors.append(np.max(error) + np.hypot(*(later - earlier)))
     return Measured(
         predicted=real_and_imaginary(
-            [equilibrium_of(with_load(RING, load)).eigenvalues[0] for load, _ in spans]
+            [equilibrium_of(with_load(theory.RING, load)).eigenvalues[0] for load, _ in spans]
         ),
         value=measured,
         error=np.repeat(np.array(errors)[:, np.newaxis], 2, axis=1),
@@ -173,24 +152,27 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     equation="(5)",
     unit="N",
     resolution=1e-6,
-    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in END_LOADS)} N, μN as a polynomial of "
-    f"their distance from the axis. A pin's would end at C·X0 = {RING.stiffness * RING.offset:g} N; of the disc's "
-    "friction the moment of the shaft takes a part. Error: the change without the farthest, and at a smaller "
-    "tolerance.",
+    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in theory.END_LOADS)} N, μN as a polynomial "
+    "of their distance from the axis. A pin's would end at C·X0 = "
+    f"{theory.RING.stiffness * theory.RING.offset:g} N; of the disc's friction the moment of the shaft takes a "
+    "part. Error: the change without the farthest, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
 def ends(engine: Engine) -> Measured:
     """Extrapolate the friction forces of equilibria near the axis to the axis."""
     found = refined(
-        lambda tolerance: [_means(engine, with_load(RING, load), tolerance) for load in END_LOADS], TOLERANCE
+        lambda tolerance: [
+            _means(engine, with_load(theory.RING, load), tolerance) for load in theory.END_LOADS
+        ],
+        theory.TOLERANCE,
     )
     distance = np.hypot(found.value[:, 0], found.value[:, 1])
-    on_axis = _extrapolated(distance, END_LOADS)
-    moved = [_extrapolated(distance + found.largest * one, END_LOADS) for one in np.eye(len(distance))]
-    without_farthest = _extrapolated(distance[1:], END_LOADS[1:])
+    on_axis = _extrapolated(distance, theory.END_LOADS)
+    moved = [_extrapolated(distance + found.largest * one, theory.END_LOADS) for one in np.eye(len(distance))]
+    without_farthest = _extrapolated(distance[1:], theory.END_LOADS[1:])
     return Measured(
-        predicted=last_load(RING),
+        predicted=last_load(theory.RING),
         value=on_axis,
         error=np.sum(np.abs(np.array(moved) - on_axis)) + abs(on_axis - without_farthest),
     )
@@ -206,19 +188,19 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 @STUDY.claim(
     "A disc on the axis sticks to the master disc above the μN where the equilibrium ends, and not below",
     equation="(5)",
-    note=f"Whether it sticks after {STICKING_TIME:g} s, or does not, at "
-    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of that μN. Starts on the axis with 95 % of the "
+    note=f"Whether it sticks after {theory.STICKING_TIME:g} s, or does not, at "
+    f"{', '.join(f'{ratio:g}' for ratio in theory.STICKING_RATIOS)} of that μN. Starts on the axis with 95 % of the "
     "speed of the master disc.",
     basis="reference",
     swept=("friction_force",),
 )
-def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measured:
+def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> Measured:
     """See at friction forces about the end of the equilibrium, in units of it, whether a disc on the axis sticks."""
-    loads = np.array(ratios) * last_load(RING)
-    start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
+    loads = np.array(ratios) * last_load(theory.RING)
+    start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * theory.RING.disc_speed]
 
     def as_said(tolerance: float) -> list[bool]:
-        motions = [(with_load(RING, load), start, [0.0, STICKING_TIME]) for load in loads]
+        motions = [(with_load(theory.RING, load), start, [0.0, theory.STICKING_TIME]) for load in loads]
         runs = engine.simulate_many(motions, tolerance=tolerance)
         return [
             (run.phases[-1].kind == "stick") == (ratio > 1.0) for run, ratio in zip(runs, ratios, strict=True)
@@ -237,17 +219,19 @@ def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measure
     f"{TIGHTEST:g}.",
     swept=("friction_force",),
 )
-def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+def six_points(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     """Compare the means of the motion on six points with those of the reference."""
-    found = means_of(engine, SIX, loads)
-    beside_ring = np.abs(found.value - [place_and_spin(with_load(RING, load)) for load in loads])[:, 2]
+    found = means_of(engine, theory.SIX, loads)
+    beside_ring = np.abs(
+        found.value - [theory.place_and_spin(with_load(theory.RING, load)) for load in loads]
+    )[:, 2]
     return Measured(
         predicted=[_six_points_of_reference(load) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
         components=("x in m", "y in m", "spin in rad/s"),
-        system=SIX,
+        system=theory.SIX,
         note=f"The spin differs from that on the continuous ring by {np.min(beside_ring):.1g} to "
         f"{np.max(beside_ring):.1g} rad/s.",
         data={"load": loads, "six points": found.value},
@@ -256,7 +240,7 @@ def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.cache
 def _six_points_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(SIX, load), TIGHTEST))
+    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(theory.SIX, load), TIGHTEST))
 
 
 @STUDY.claim(
@@ -269,35 +253,37 @@ def _six_points_of_reference(load: float) -> tuple[float, ...]:
 )
 def corrected_26() -> Measured:
     """Compare places and spins of (26) with the equilibria of (23)."""
-    discs = grid()
-    places = np.array([by_26(disc) for disc in discs])
-    moved = np.array([by_26(with_load(disc, disc.friction_force * (1.0 + ROUNDING))) for disc in discs])
+    discs = theory.grid()
+    places = np.array([theory.by_26(disc) for disc in discs])
+    moved = np.array(
+        [theory.by_26(with_load(disc, disc.friction_force * (1.0 + ROUNDING))) for disc in discs]
+    )
     return Measured(
-        predicted=[place_and_spin(disc, PAPER_LAW) for disc in discs],
+        predicted=[theory.place_and_spin(disc, theory.PAPER_LAW) for disc in discs],
         value=places,
-        error=np.abs(moved - places) + ROUNDING * RING.offset,
+        error=np.abs(moved - places) + ROUNDING * theory.RING.offset,
         at={"X0, μN": [f"{disc.offset:g} m, {disc.friction_force:.4g} N" for disc in discs]},
         components=("x in m", "y in m", "spin in rad/s"),
-        source=SOURCE_OF_GRID,
+        source=theory.SOURCE_OF_GRID,
     )
 
 
 @STUDY.claim(
     "Springs and friction (23) balance at no place that (26) as printed gives",
     equation="(26)",
-    note=f"Whether the force that is left at a place is below {BALANCED:g}·μN by the corrected (26), and above by "
-    "the printed one.",
+    note=f"Whether the force that is left at a place is below {theory.BALANCED:g}·μN by the corrected (26), and "
+    "above by the printed one.",
     swept=("friction_force", "offset"),
 )
 def printed_26() -> Measured:
     """Count the places of (26) at which the disc would rest."""
-    discs = grid()
+    discs = theory.grid()
     corrected, printed = (
-        np.array([unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
+        np.array([theory.unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
     )
     return answers_of(
-        [*(BALANCED - corrected), *(printed - BALANCED)],
-        source=SOURCE_OF_GRID,
+        [*(theory.BALANCED - corrected), *(printed - theory.BALANCED)],
+        source=theory.SOURCE_OF_GRID,
         note=f"At {len(discs)} places each. By the corrected one it is at most {np.max(corrected):.1g}·μN, by the "
         f"printed one {np.min(printed):.2g} to {np.max(printed):.2g}·μN.",
     )
@@ -313,12 +299,12 @@ def printed_26() -> Measured:
 )
 def end_of_26() -> Measured:
     """Compare the friction force at which (26) ends with that at which friction (23) can hold the disc."""
-    discs = [replace(RING, offset=offset) for offset in OFFSETS]
-    predicted = np.array([last_load(disc, PAPER_LAW) for disc in discs])
+    discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
+    predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
     return Measured(
         predicted=predicted,
-        value=[last_load_by_26(disc) for disc in discs],
+        value=[theory.last_load_by_26(disc) for disc in discs],
         error=2.0 * ROUNDING * predicted,
-        at={"X0 in m": OFFSETS},
-        source=SOURCE_OF_GRID,
+        at={"X0 in m": theory.OFFSETS},
+        source=theory.SOURCE_OF_GRID,
     )

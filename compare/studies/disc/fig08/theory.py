@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import root
 
-from compare.claims.error_estimates import ROUNDING, WORKING
-from compare.claims.paper_parameters import FIG8
-from compare.claims.study import Data
-from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
+from compare.claims import ROUNDING, WORKING, Data
+from compare.claims.parameters import FIG8
+from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, with_load
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.formulas.disc import (
     places_by_26,

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,
     PURPLE,
+    Axes,
+    Figure,
     axis,
     beside,
     curve,
@@ -20,10 +22,6 @@ from compare.output.figures import (
     points,
 )
 from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING, radius_of_pin, spin_of_large_whirl
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 LEAST_LOAD = 2e-4
 UNSTABLE: dict[str, Any] = {"color": GREY, "linestyle": (0.0, (3.0, 1.5)), "linewidth": 1.4, "zorder": 2.5}

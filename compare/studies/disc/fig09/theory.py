@@ -13,11 +13,10 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING
-from compare.claims.paper_parameters import FIG9
-from compare.claims.study import Data
-from compare.studies.toolkit.self_centred import equilibrium_of, last_load, with_load
-from compare.studies.toolkit.sticking import safest_angle, stuck
+from compare.claims import ROUNDING, TIGHTEST, WORKING, Data, Study
+from compare.claims.parameters import FIG9
+from compare.studies.toolkit.pins import safest_angle, stuck
+from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, with_load
 from reference_model import Orbit, smallest_load_with_whirl, whirl_branch, whirl_orbit
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing, contact_of
 from reference_model.formulas.disc import held_pin, pin_of, whirl_at
@@ -348,3 +347,16 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),
     }
+
+
+# --- The study of Figs. 9 and 10, to which the modules beside this one add its claims.
+
+STUDY = Study.beside(
+    __file__,
+    "fig09",
+    source=SOURCE,
+    system=RING,
+    seconds=7.0,
+    words={"own": f"{RING.offset:g}"},
+)
+STUDY.provides(curves=curves)

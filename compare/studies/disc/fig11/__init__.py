@@ -1,5 +1,11 @@
 """Fig. 11: the whirl whose radius and spin swell and shrink, how it comes about, and for which offsets."""
 
-from compare.studies.disc.fig11.claims import STUDY
+# ruff: noqa: I001 - the order of the report
+from compare.studies.disc.fig11 import whirl, offsets, of_theory
+from compare.studies.disc.fig11.pictures import draw
+from compare.studies.disc.fig11.parameters import STUDY
+from compare.studies.disc.fig11.theory import curves
 
-__all__ = ["STUDY"]
+STUDY.provides(figures=draw, curves=curves)
+
+__all__ = ["STUDY", "of_theory", "offsets", "whirl"]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING
-from compare.claims.paper_parameters import FIG8, FIG11
-from compare.studies.toolkit.fig11_motion import RING, SOURCE, START
+from compare.claims import WORKING, Study
+from compare.claims.parameters import FIG8, FIG11
+from compare.studies.toolkit.fig11 import RING, SOURCE, START
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.systems import ANGLE
 
@@ -92,3 +92,15 @@ BRANCH = np.array(
 KINDS = ("rest", "whirl", "modulated")
 
 WITHOUT_ANGLE = [i for i in range(FIG11.state_size) if i != ANGLE]
+
+
+# --- The study of Fig. 11, to which the modules beside this one add its claims.
+
+STUDY = Study.beside(
+    __file__,
+    "fig11",
+    source=FROM_THE_CYCLE,
+    system=RING,
+    seconds=5.0,
+    words={"both_stable": f"{BOTH_STABLE:g}", "other_offset": f"{FIG8.offset:g}"},
+)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,
     PURPLE,
+    Axes,
+    Figure,
     axis,
     curve,
     engine_style,
@@ -22,12 +23,8 @@ from compare.output.figures import (
     points,
 )
 from compare.studies.disc.fig11.parameters import TIMES
-from compare.studies.toolkit.fig11_motion import DISCS, RING
+from compare.studies.toolkit.fig11 import DISCS, RING
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 K = RING.natural_frequency
 

@@ -14,22 +14,12 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import TRUTH
+import compare.studies.disc.fig11.parameters as parameters
+from compare.claims import TRUTH, Data
 from compare.claims.linearised_flow import ComplexArray, rotated
-from compare.claims.paper_parameters import FIG11
-from compare.claims.study import Data
+from compare.claims.parameters import FIG11
 from compare.engines import Engine
-from compare.studies.disc.fig11.parameters import (
-    BRANCH,
-    EXPANSION,
-    SAMPLES_A_TURN,
-    STEP,
-    TIMES,
-    TRIED,
-    UNTIL,
-    WITHOUT_ANGLE,
-)
-from compare.studies.toolkit.fig11_motion import DISCS, RING, START, integrated, rates
+from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated, rates
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import IsotropicContact
@@ -116,7 +106,7 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     def returned(state: FloatArray) -> FloatArray:
         return rotated(simulate(disc, state, [0.0, period], tolerance=TRUTH).at_end, -turn)
 
-    step = STEP * guess[0]
+    step = parameters.STEP * guess[0]
     columns = [
         (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
         for shift in step * np.eye(disc.state_size)
@@ -151,8 +141,8 @@ def modulations(states: FloatArray) -> FloatArray:
     In s, rad, m and rad/s, from one maximum of the radius to the next; no rows where there are no two.
     """
     x, y = states[:, 0], states[:, 1]
-    radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
-    angle = CubicSpline(TIMES, np.unwrap(np.arctan2(y, x)))
+    radius, spin = CubicSpline(parameters.TIMES, np.hypot(x, y)), CubicSpline(parameters.TIMES, states[:, 5])
+    angle = CubicSpline(parameters.TIMES, np.unwrap(np.arctan2(y, x)))
     turning, of_spin = (curve.derivative().roots(extrapolate=False) for curve in (radius, spin))
     largest = turning[radius(turning, 2) < 0.0]
     rows = []
@@ -177,7 +167,8 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
     """Return the last modulation of (19), integrated as it stands, and its error, both of shape (6,)."""
     fine, rough = (
-        last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
+        last_modulation(integrated(RING, START, parameters.UNTIL, len(parameters.TIMES), tolerance))
+        for tolerance in (1e-12, 1e-11)
     )
     return fine[0], np.abs(rough[0] - fine[0]) + fine[1]
 
@@ -213,7 +204,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     whirl, or none that is nearly critical.
     """
     orbits: list[Orbit] = []
-    for offset in TRIED:
+    for offset in parameters.TRIED:
         guess = orbits[-1] if orbits else _whirl_of_reference()
         orbits.append(
             whirl_orbit(
@@ -221,12 +212,15 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
                 simulate=engine.simulate,
                 guess=guess,
                 tolerance=tolerance,
-                samples=SAMPLES_A_TURN,
+                samples=parameters.SAMPLES_A_TURN,
                 precision=engine.precision,
             )
         )
-    middle = TRIED[1]
-    tried, moduli = np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits]
+    middle = parameters.TRIED[1]
+    tried, moduli = (
+        np.subtract(parameters.TRIED, middle),
+        [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits],
+    )
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
@@ -243,7 +237,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 @functools.cache
 def _whirl_of_reference() -> Orbit:
     """Return where shooting starts: the whirl at the first X0 of ``TRIED``."""
-    return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
+    return whirl_orbit(disc_at(parameters.TRIED[0]), tolerance=1e-8, samples=parameters.SAMPLES_A_TURN)
 
 
 @functools.cache
@@ -268,10 +262,10 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
         start = np.concatenate((state, np.eye(5).ravel()))
         run = solve_ivp(equations, (0.0, period), start, method="DOP853", rtol=tolerance, atol=tolerance)
         end, monodromy = run.y[:6, -1], run.y[6:, -1].reshape(5, 5)
-        miss = (end - state)[WITHOUT_ANGLE]
+        miss = (end - state)[parameters.WITHOUT_ANGLE]
         if float(np.max(np.abs(miss))) < 1e-10:
             return np.asarray(np.linalg.eigvals(monodromy), dtype=complex)
-        by_time = np.array(rates(disc, end))[WITHOUT_ANGLE]
+        by_time = np.array(rates(disc, end))[parameters.WITHOUT_ANGLE]
         by_start = (monodromy - np.eye(5))[:, [0, 2, 3, 4]]  # y = 0 at the start
         step = np.linalg.solve(np.column_stack((by_start, by_time)), miss)
         state[[0, 3, 4, 5]] -= step[:4]
@@ -301,15 +295,15 @@ def extents(run: Trajectory, last: int = 0) -> list[float]:
 # ---------------------------------------------------------------- what the figures show
 
 
-def curves(whirling: ArrayLike = BRANCH) -> Data:
+def curves(whirling: ArrayLike = parameters.BRANCH) -> Data:
     """Return eigenvalues and cycle of Fig. 11, and the branches over the offset: of whirls at ``whirling`` in m."""
-    whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
+    whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, parameters.EXPANSION)]
     return {
         "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in whirls_of]),
         "whirls": np.array([(whirl.radius, whirl.state[-1]) for whirl in whirls_of]),
         "modulation": predicted_modulation()[0],
-        "cycle": integrated(RING, START, UNTIL, len(TIMES), 1e-12),
-        "(23)": simulate(RING, START, TIMES, tolerance=1e-8, contact=EXPANSION).states,
+        "cycle": integrated(RING, START, parameters.UNTIL, len(parameters.TIMES), 1e-12),
+        "(23)": simulate(RING, START, parameters.TIMES, tolerance=1e-8, contact=parameters.EXPANSION).states,
         **branches(whirling),
     }
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import GREY, curve, engines_in, new_figure, points
 from compare.studies.disc.free_ring.theory import deviation
 

@@ -11,47 +11,17 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import Measurement, observed_exponent, refined
-from compare.claims.measured import Measured, answers_of
+import compare.studies.disc.free_ring.theory as theory
+from compare.claims import Measured, Measurement, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
-from compare.claims.study import Study
 from compare.engines import Engine
-from compare.studies.disc.free_ring.theory import (
-    CITED,
-    DECELERATION,
-    ENDING,
-    HEADING,
-    INERTIAS,
-    INTEGRATED,
-    LOPSIDED,
-    NEARNESSES,
-    OTHERS,
-    REMAINING,
-    RINGS,
-    SOURCE,
-    SPEED,
-    TABLE,
-    TOLERANCE,
-    Throw,
-    approach_times,
-    curves,
-    deviation,
-    expected_approach,
-    nearness,
-    rest_of,
-    roughly_rest,
-    speeds_at,
-    speeds_before_rest,
-    thrown,
-    uniform_times,
-)
 from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "free-ring", source=SOURCE, seconds=2.0)
-STUDY.provides(curves=curves)
+STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
+STUDY.provides(curves=theory.curves)
 
 
 # --- How sliding and spinning end: at once, and in a ratio that forgets the start.
@@ -61,36 +31,38 @@ STUDY.provides(curves=curves)
     "Sliding and spinning end at the same instant, whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note="Time by which sliding ends after spinning, over that to rest: U and W, extrapolated in straight lines from "
-    f"t/T = {REMAINING[1]:g}, {REMAINING[0]:g} of it before. Error: the change from twice as far away, and at a "
-    "smaller tolerance.",
+    note="Time by which sliding ends after spinning, over that to rest: U and W, extrapolated in straight lines "
+    f"from t/T = {theory.REMAINING[1]:g}, {theory.REMAINING[0]:g} of it before. Error: the change from twice as "
+    "far away, and at a smaller tolerance.",
 )
-def end_together(engine: Engine, throws: Sequence[Throw] = (*RINGS, *OTHERS)) -> Measured:
+def end_together(
+    engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
+) -> Measured:
     """Extrapolate both speeds to zero."""
-    rests = np.array([roughly_rest(engine, throw) for throw in throws])
+    rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
         """Return by how much the rest of the centre is later than that of the rim, from two pairs of samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
-            times = rest * (1.0 - REMAINING[:3])
-            speeds = speeds_at(thrown(engine, throw, tolerance), times)
+            times = rest * (1.0 - theory.REMAINING[:3])
+            speeds = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
             ends = [_zeros_between(times, speed) for speed in speeds]
             found.append((ends[0] - ends[1]) / rest)
         return np.array(found)
 
-    found = refined(apart, TOLERANCE)
+    found = refined(apart, theory.TOLERANCE)
     # A line through two speeds is zero to within three errors of a speed over its slope, which is above 0.4·g here.
-    noise = 2.0 * 3.0 * TOLERANCE / (0.4 * DECELERATION) / rests
+    noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds in a ratio that still changes are no straight lines: from farther away that is seen better.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=np.zeros(len(throws)),
         value=found.value[:, 0],
         error=found.largest + noise + bend,
         at={"throw": [throw.name for throw in throws]},
-        source=SOURCE + CITED,
+        source=theory.SOURCE + theory.CITED,
     )
 
 
@@ -103,35 +75,37 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
     "Sliding and rim speed of a ring with J = mR² end in the ratio 1, whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note=f"U/W when {REMAINING[0]:g} of the time to rest is left. Error: the tolerance of both speeds, and the "
-    "change at a smaller one. Model error: what the approach to 1 leaves.",
+    note=f"U/W when {theory.REMAINING[0]:g} of the time to rest is left. Error: the tolerance of both speeds, "
+    "and the change at a smaller one. Model error: what the approach to 1 leaves.",
 )
-def ratio_one(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
     """Compare the ratio at the last of the times with 1."""
 
     def ratio(tolerance: float) -> FloatArray:
-        speeds = [speeds_before_rest(engine, throw, tolerance, REMAINING[0]) for throw in throws]
+        speeds = [
+            theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[0]) for throw in throws
+        ]
         return np.array([sliding[0] / rim[0] for sliding, rim in speeds])
 
-    found = refined(ratio, TOLERANCE)
-    rests = np.array([roughly_rest(engine, throw) for throw in throws])
-    farthest = np.array([expected_approach(throw) for throw in throws]) / (REMAINING[0] * rests)
+    found = refined(ratio, theory.TOLERANCE)
+    rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
+    farthest = np.array([theory.expected_approach(throw) for throw in throws]) / (theory.REMAINING[0] * rests)
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=np.ones(len(throws)),
         value=found.value,
-        error=found.largest + ratio_noise(REMAINING[0] * rests),
-        model=float(np.max(deviation(farthest))),
+        error=found.largest + ratio_noise(theory.REMAINING[0] * rests),
+        model=float(np.max(theory.deviation(farthest))),
         at={"throw": [throw.name for throw in throws]},
-        source=SOURCE + CITED,
+        source=theory.SOURCE + theory.CITED,
         data={"ratio of rings": np.mean(found.value)},
     )
 
 
 def ratio_noise(left: ArrayLike) -> FloatArray:
     """Return the error of ln U/W that the tolerance of both speeds makes when so much time (s) is left, for c = 1."""
-    speed = 2.0 / math.pi * DECELERATION * np.asarray(left)
-    return np.asarray(2.0 * TOLERANCE / speed)
+    speed = 2.0 / math.pi * theory.DECELERATION * np.asarray(left)
+    return np.asarray(2.0 * theory.TOLERANCE / speed)
 
 
 @STUDY.claim(
@@ -143,49 +117,55 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
     "measurement.",
     basis="reference",
 )
-def approach(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
     """Compare A of the approach to the ratio 1 with the integrals."""
 
     def constants(tolerance: float) -> FloatArray:
         found = []
         for throw in throws:
-            trajectory = thrown(engine, throw, tolerance)
-            times = approach_times(engine, throw)
-            sliding, rim = speeds_at(trajectory, times)
-            found.append((rest_of(trajectory) - times) * nearness(np.log(sliding / rim)))
+            trajectory = theory.thrown(engine, throw, tolerance)
+            times = theory.approach_times(engine, throw)
+            sliding, rim = theory.speeds_at(trajectory, times)
+            found.append((theory.rest_of(trajectory) - times) * theory.nearness(np.log(sliding / rim)))
         return np.array(found)
 
-    found = refined(constants, TOLERANCE)
+    found = refined(constants, theory.TOLERANCE)
     there = np.isfinite(found.error)  # what comes and goes with the tolerance makes nothing else open
     largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
-    predicted = np.array([expected_approach(throw) for throw in throws])
+    predicted = np.array([theory.expected_approach(throw) for throw in throws])
     # An error of δ changes L by as much, relative to δ.
-    left = predicted[:, np.newaxis] / np.array(NEARNESSES)
-    noise = left * ratio_noise(left) / deviation(NEARNESSES)
+    left = predicted[:, np.newaxis] / np.array(theory.NEARNESSES)
+    noise = left * ratio_noise(left) / theory.deviation(theory.NEARNESSES)
     # The law of the approach is that of small δ: the integrals tell what it leaves out at the δ of the measurement.
     left_out = [
-        abs(expected_approach(throw, float(deviation(NEARNESSES[0]))) - expected_approach(throw))
+        abs(
+            theory.expected_approach(throw, float(theory.deviation(theory.NEARNESSES[0])))
+            - theory.expected_approach(throw)
+        )
         for throw in throws
     ]
     return Measured(
-        system=TABLE,
-        predicted=np.repeat(predicted[:, np.newaxis], len(NEARNESSES), axis=1),
+        system=theory.TABLE,
+        predicted=np.repeat(predicted[:, np.newaxis], len(theory.NEARNESSES), axis=1),
         value=found.value,
         error=largest + noise,
         model=max(left_out),
         resolution=1e-2 * float(np.min(predicted)),
-        at={"throw": [throw.name for throw in throws], "A/t": NEARNESSES},
+        at={"throw": [throw.name for throw in throws], "A/t": theory.NEARNESSES},
         data=_drawn(engine, throws),
     )
 
 
-def _drawn(engine: Engine, throws: Sequence[Throw]) -> dict[str, ArrayLike]:
+def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
     """Return both speeds in m/s, and A over the remaining time, from the start to rest."""
     speeds, approaches = [], []
     for throw in throws:
-        trajectory, times = thrown(engine, throw, TOLERANCE), uniform_times(engine, throw)
-        speeds.append(speeds_at(trajectory, times))
-        approaches.append(expected_approach(throw) / (rest_of(trajectory) - times))
+        trajectory, times = (
+            theory.thrown(engine, throw, theory.TOLERANCE),
+            theory.uniform_times(engine, throw),
+        )
+        speeds.append(theory.speeds_at(trajectory, times))
+        approaches.append(theory.expected_approach(throw) / (theory.rest_of(trajectory) - times))
     sliding, rim = zip(*speeds, strict=True)
     return {"sliding": sliding, "rim": rim, "approach": approaches}
 
@@ -194,30 +174,30 @@ def _drawn(engine: Engine, throws: Sequence[Throw]) -> dict[str, ArrayLike]:
     "For mR²/2 < J < 2mR² the ratio ends at the balance of both decelerations, whatever the start",
     equation="(19), (20)",
     resolution=1e-2,
-    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in REMAINING[:3])} of the time to rest, extrapolated to zero "
-    "as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: the change from twice as "
-    "far away, and at a smaller tolerance.",
+    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in theory.REMAINING[:3])} of the time to rest, "
+    "extrapolated to zero as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: "
+    "the change from twice as far away, and at a smaller tolerance.",
     basis="reference",
     swept=("polar_inertia",),
 )
-def other_ratios(engine: Engine, throws: Sequence[Throw] = OTHERS) -> Measured:
+def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
     """Extrapolate the ratio of other moments of inertia to the end."""
 
     def ratios(tolerance: float) -> FloatArray:
         found = []
         for throw in throws:
-            sliding, rim = speeds_before_rest(engine, throw, tolerance, REMAINING[:4])
+            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[:4])
             found.append([_limit(*(sliding / rim)[:3]), _limit(*(sliding / rim)[1:])])
         return np.array(found)
 
-    found = refined(ratios, TOLERANCE)
+    found = refined(ratios, theory.TOLERANCE)
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=[math.exp(Slowing(throw.inertia).terminal) for throw in throws],
         value=found.value[:, 0],
         error=found.largest + np.abs(found.value[:, 1] - found.value[:, 0]),
         at={"throw": [throw.name for throw in throws]},
-        source=SOURCE + CITED,
+        source=theory.SOURCE + theory.CITED,
         data={"inertia": [throw.inertia for throw in throws], "ratio": found.value[:, 0]},
     )
 
@@ -231,33 +211,35 @@ def _limit(last: float, middle: float, first: float) -> float:
     "As a power of the time left, the rim's share of the slip goes to zero for J < mR²/2, the centre's for J > 2mR²",
     equation="(19), (20)",
     resolution=0.05,
-    note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {ENDING[-1]:g} to {ENDING[0]:g} "
-    "of the time to rest, with the next term, whose size is the model error.",
+    note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {theory.ENDING[-1]:g} to "
+    f"{theory.ENDING[0]:g} of the time to rest, with the next term, whose size is the model error.",
     swept=("polar_inertia",),
 )
-def powers(engine: Engine, throws: Sequence[Throw] = LOPSIDED) -> Measured:
+def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> Measured:
     """Fit the power with which the ratio goes to zero or to infinity."""
     predicted, found = [], []
     for throw in throws:
         slow = throw.inertia < 0.5
         power = 0.5 / throw.inertia - 1.0 if slow else 0.5 * throw.inertia - 1.0
 
-        def shares(tolerance: float, throw: Throw = throw, slow: bool = slow) -> FloatArray:
-            sliding, rim = speeds_before_rest(engine, throw, tolerance, ENDING)
+        def shares(tolerance: float, throw: theory.Throw = throw, slow: bool = slow) -> FloatArray:
+            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.ENDING)
             return rim / sliding if slow else sliding / rim
 
-        share = refined(shares, TOLERANCE)
+        share = refined(shares, theory.TOLERANCE)
         predicted.append(power)
-        found.append(observed_exponent(ENDING, share.value, next_term=2.0 * power, noise=share.largest))
+        found.append(
+            observed_exponent(theory.ENDING, share.value, next_term=2.0 * power, noise=share.largest)
+        )
     exponents, errors, models = zip(*found, strict=True)
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=predicted,
         value=exponents,
         error=errors,
         model=max(models),
         at={"throw": [throw.name for throw in throws]},
-        source=SOURCE + "; limits as Goyal et al. 1991",
+        source=theory.SOURCE + "; limits as Goyal et al. 1991",
     )
 
 
@@ -273,14 +255,14 @@ def powers(engine: Engine, throws: Sequence[Throw] = LOPSIDED) -> Measured:
     basis="reference",
     swept=("polar_inertia",),
 )
-def stops(engine: Engine, throws: Sequence[Throw] = INTEGRATED) -> Measured:
+def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
     """Compare rest and ways with the integrals."""
     found = stops_of(engine, throws)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
     )
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=predicted,
         value=found.value,
         error=found.largest + float(np.max(np.abs(predicted - nearly))),
@@ -289,21 +271,21 @@ def stops(engine: Engine, throws: Sequence[Throw] = INTEGRATED) -> Measured:
     )
 
 
-def stops_of(engine: Engine, throws: Sequence[Throw]) -> Measurement:
+def stops_of(engine: Engine, throws: Sequence[theory.Throw]) -> Measurement:
     """Return the time to rest in s, and x, y in m and the angle in rad there, shape (n, 4)."""
 
     def found(tolerance: float) -> FloatArray:
-        trajectories = [thrown(engine, throw, tolerance) for throw in throws]
-        return np.array([[rest_of(trajectory), *trajectory.at_end[:3]] for trajectory in trajectories])
+        trajectories = [theory.thrown(engine, throw, tolerance) for throw in throws]
+        return np.array([[theory.rest_of(trajectory), *trajectory.at_end[:3]] for trajectory in trajectories])
 
-    return refined(found, TOLERANCE)
+    return refined(found, theory.TOLERANCE)
 
 
-def _integrated(throw: Throw, near: float) -> list[float]:
+def _integrated(throw: theory.Throw, near: float) -> list[float]:
     rest = Slowing(throw.inertia).stop(throw.sliding, abs(throw.rim), near)
-    place = cmath.rect(rest.slid / DECELERATION, HEADING)
-    turned = math.copysign(rest.turned, throw.rim) / DECELERATION / TABLE.contact_radius
-    return [rest.time / DECELERATION, place.real, place.imag, turned]
+    place = cmath.rect(rest.slid / theory.DECELERATION, theory.HEADING)
+    turned = math.copysign(rest.turned, throw.rim) / theory.DECELERATION / theory.TABLE.contact_radius
+    return [rest.time / theory.DECELERATION, place.real, place.imag, turned]
 
 
 @STUDY.claim(
@@ -315,18 +297,18 @@ def _integrated(throw: Throw, near: float) -> list[float]:
     "second sample left out of the quadrature of μN·P(U, W).",
     basis="reference",
 )
-def heat(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
+def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
     """Compare the energy that is lost with the integral of the friction power."""
 
     def imbalance(tolerance: float) -> FloatArray:
         """Return the largest difference in time, as a fraction of all energy, by all samples and by every second."""
         found = []
         for throw in throws:
-            times = uniform_times(engine, throw)
-            sliding, rim = speeds_at(thrown(engine, throw, tolerance), times)
-            energy = 0.5 * TABLE.mass * (sliding**2 + throw.inertia * rim**2)
+            times = theory.uniform_times(engine, throw)
+            sliding, rim = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
+            energy = 0.5 * theory.TABLE.mass * (sliding**2 + throw.inertia * rim**2)
             shares = [mean_directions(*both) for both in zip(sliding, rim, strict=True)]
-            power = TABLE.friction_force * np.sum(np.column_stack((sliding, rim)) * shares, axis=1)
+            power = theory.TABLE.friction_force * np.sum(np.column_stack((sliding, rim)) * shares, axis=1)
             row = []
             for step in (1, 2):
                 heat = make_interp_spline(times[::step], power[::step], k=5).antiderivative()
@@ -334,13 +316,13 @@ def heat(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
             found.append(row)
         return np.array(found)
 
-    found = refined(imbalance, TOLERANCE)
+    found = refined(imbalance, theory.TOLERANCE)
     halved = np.abs(found.value[:, 1] - found.value[:, 0])
     return Measured(
-        system=TABLE,
+        system=theory.TABLE,
         predicted=np.zeros(len(throws)),
         value=found.value[:, 0],
-        error=found.largest + 2.0 * TOLERANCE / SPEED + halved,
+        error=found.largest + 2.0 * theory.TOLERANCE / theory.SPEED + halved,
         at={"throw": [throw.name for throw in throws]},
     )
 
@@ -352,7 +334,7 @@ def heat(engine: Engine, throws: Sequence[Throw] = RINGS) -> Measured:
     "Both speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
     equation="(20)",
     note="Whether the closed form of (20) has a balance of both decelerations, or has none, for "
-    f"{at_each('J/mR²', INERTIAS)}.",
+    f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
     """Look for a balance of both decelerations."""
@@ -362,7 +344,7 @@ def ratio_exists() -> Measured:
         return slowing.unevenness(-LARGEST) < 0.0 < slowing.unevenness(LARGEST)
 
     return answers_of(
-        [has_ratio(inertia) == (0.5 < inertia < 2.0) for inertia in INERTIAS],
+        [has_ratio(inertia) == (0.5 < inertia < 2.0) for inertia in theory.INERTIAS],
         source="assumption: J/(mR²) from 0.1 to 10; limits as Goyal, Ruina and Papadopoulos 1991",
     )
 

@@ -20,9 +20,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.error_estimates import WORKING
-from compare.claims.paper_parameters import FIG8
-from compare.claims.study import Data
+from compare.claims import WORKING, Data
+from compare.claims.parameters import FIG8
 from compare.engines import Engine
 from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory

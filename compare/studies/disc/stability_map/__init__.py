@@ -1,5 +1,10 @@
 """Where steady motions of the centred disc are stable, and where the modulated cycle of Fig. 11 takes their place."""
 
-from compare.studies.disc.stability_map.claims import STUDY
+# ruff: noqa: I001 - the order of the report
+from compare.studies.disc.stability_map import regions, borders
+from compare.studies.disc.stability_map.pictures import draw
+from compare.studies.disc.stability_map.theory import STUDY
 
-__all__ = ["STUDY"]
+STUDY.provides(figures=draw)
+
+__all__ = ["STUDY", "borders", "regions"]

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG11
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
+from compare.claims.parameters import FIG11
 from compare.output.figures import (
     BLACK,
     GREEN,
     GREY,
     PURPLE,
     SKY,
+    Axes,
+    Figure,
     axis,
     beside,
     engine_style,
@@ -24,10 +26,6 @@ from compare.output.figures import (
 )
 from compare.studies.disc.stability_map.theory import ENDS
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl die out": "v"}

@@ -12,14 +12,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Data, Measured, Study, answers_of, asked
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
-from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG11
-from compare.claims.parameters import at_each
-from compare.claims.study import Data
+from compare.claims.parameters import FIG11, at_each
 from compare.engines import Simulate
-from compare.studies.toolkit.fig11_planes import KINDS, LAWS, PLANES, curves_in
+from compare.studies.toolkit.fig11 import KINDS, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
 from reference_model.steady.bifurcation_curves import Boundary, Kind
@@ -311,3 +308,34 @@ def changes(disc: DiscOnDisc) -> str:
         f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
     return ", ".join(differing) or "Fig. 11"
+
+
+# --- The study of the stability map, to which the modules beside this one add its claims.
+
+
+def border(name: str, unit: str, digits: int = 3) -> str:
+    """Return the quote of a border in one parameter, "lower friction_force", and how far that is from Fig. 11."""
+    here = getattr(DISC, name.split()[1])
+    return f"{{{name}, {digits} digits}} {unit} ({{{name}, % from {here!r}, 2 digits}} %)"
+
+
+def borders(parameter: str, unit: str, digits: int = 3) -> str:
+    """Return the quotes of both borders in one parameter."""
+    return " and ".join(border(f"{side} {parameter}", unit, digits) for side in ("lower", "upper"))
+
+
+STUDY = Study.beside(
+    __file__,
+    "stability-map",
+    source=SOURCE,
+    system=DISC,
+    seconds=7.5,
+    words={
+        "borders_of_load": borders("friction_force", "N"),
+        "borders_of_shaft_damping": borders("shaft_damping", "N m s/rad"),
+        "borders_of_damping": borders("damping", "N s/m"),
+        "borders_of_shaft_speed": borders("shaft_speed", "rad/s", 4),
+        "border_of_inertia": border("lower polar_inertia", "kg m²", 2),
+    },
+)
+STUDY.provides(curves=curves)

@@ -8,11 +8,22 @@ import math
 
 import numpy as np
 
-from compare.claims.error_estimates import observed_exponent
-from compare.claims.measured import Measured
+from compare.claims import ByEngine, Data, Figures, Measured, Study, observed_exponent
 from compare.claims.parameters import at_each
-from compare.claims.study import Data, Study
 from compare.engines import Engine, UnsupportedSystemError
+from compare.output.figures import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    Axes,
+    Figure,
+    axis,
+    engine_style,
+    engines_in,
+    new_figure,
+)
 from compare.studies.drivetrain.coupled_clutches.theory import (
     ACCUMULATED,
     ALL_SLIP_UNTIL,
@@ -68,7 +79,6 @@ STUDY = Study.beside(
     contact=True,
     seconds=2.0,
 )
-STUDY.provides(curves=curves)
 
 
 def _speeds(t: FloatArray) -> FloatArray:
@@ -318,3 +328,54 @@ def published_switches() -> Measured:
         ]
         found.append(min(changes, key=lambda at: abs(at - time), default=np.nan))
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
+
+
+# --- Figure of the coupled clutches: speeds, what runs are off by, and how that falls.
+
+EXACT = 1e-7
+"""In rad/s: below this the axis of errors ends."""
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw what is there."""
+    return {"coupled-clutches": _draw(data)} if data else {}
+
+
+def _draw(data: ByEngine) -> Figure:
+    figure, (speeds, errors) = new_figure(nrows=2, width=9.0, height=6.4, sharex=True, height_ratios=(3, 2))
+    theory = data.get("theory", {})
+    if "t" in theory:
+        for number, (colour, speed) in enumerate(
+            zip((BLUE, ORANGE, GREEN, PURPLE), theory["speeds"].T, strict=True), 1
+        ):
+            speeds.plot(theory["t"], speed, color=colour, linewidth=1.6, label=f"rotor {number}")
+        speeds.legend(loc="upper right")
+        _error(errors, theory["published t"], theory["published"], "Modelica, as published", GREY)
+    for engine in engines_in(data):
+        found = data[engine]
+        if "run t" in found:
+            _error(errors, found["run t"], found["run off"], engine, engine_style(engine).colour)
+    for time, clutch, mode in switches():
+        for panel in (speeds, errors):
+            panel.axvline(time, color=GREY, linewidth=0.6, linestyle="-" if mode == STUCK else ":")
+        words = f"{clutch + 1} {'holds' if mode == STUCK else 'lets go'}"
+        speeds.annotate(words, (time, 10.6), rotation=90, ha="right", va="top", fontsize=8.0, color="0.3")
+    speeds.set(ylabel="speed in rad/s", ylim=(-0.3, 10.8))
+    errors.set(
+        xlabel=axis("t", "s"),
+        ylabel="largest error of a speed\nin rad/s",
+        yscale="log",
+        ylim=(EXACT, 0.1),
+        xlim=(0.0, 1.5),
+    )
+    if errors.get_legend_handles_labels()[0]:
+        errors.legend(loc="upper left", ncols=3, fontsize=9.0)
+    return figure
+
+
+def _error(panel: Axes, t: np.ndarray, off: np.ndarray, label: str, colour: str) -> None:
+    """Draw the largest of what speeds are off by."""
+    panel.plot(t, np.maximum(np.max(np.abs(off), axis=1), EXACT), color=colour, linewidth=1.0, label=label)
+
+
+STUDY.provides(figures=draw, curves=curves)

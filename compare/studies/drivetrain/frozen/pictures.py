@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import expm
 
-from compare.claims.study import ByEngine, Data, Figures
-from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
+from compare.claims import ByEngine, Data, Figures
+from compare.output.figures import BLACK, GREY, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.drivetrain.frozen.theory import (
     MODULATED,
     PUSH,
@@ -20,9 +19,6 @@ from compare.studies.drivetrain.frozen.theory import (
     whirls_of,
 )
 from compare.studies.toolkit.drivetrain_bench import passenger_car
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MM = 1e3
 

@@ -16,30 +16,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Data, Study
 from compare.claims.linearised_flow import ComplexArray
-from compare.claims.study import Data
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,
     RPM,
+    SOURCE,
     Operation,
     centred_car,
     facings,
     natural_frequency,
     onset_speed,
     passenger_car,
+    rest_of,
     start_disc,
+    whirl_of,
 )
-from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support
 from reference_model.systems import FloatArray
 
-# --- At which speeds, torques and loads the car's clutch is looked at, and how exactly.
-
 if TYPE_CHECKING:
-    from exudyn_models import Drivetrain
+    from exudyn_models import Drivetrain, DrivetrainModel
+
+
+# --- At which speeds, torques and loads the car's clutch is looked at, and how exactly.
 
 
 def balanced_car() -> Drivetrain:
@@ -110,9 +112,6 @@ SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 SURPLUS, SPEED = 0.1, 6000.0
 """Of the map over speeds, and of that over surpluses."""
 
-
-if TYPE_CHECKING:
-    from exudyn_models import Drivetrain
 
 ENGINE, VEHICLE, ANGLE = 0, 1, 4
 """Places of θ, ψ and φ among the coordinates; x and y lie between them."""
@@ -300,9 +299,6 @@ def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -
 
 # --- The car's drivetrain in Exudyn, in a whirl.
 
-if TYPE_CHECKING:
-    from exudyn_models import Drivetrain, DrivetrainModel
-
 
 def build(
     car: Drivetrain, whirl: CarWhirl, *, deviation: float = 0.0, regularisation: float = EPSILON
@@ -325,3 +321,20 @@ def build(
     )
     start_disc(model, (1.0 + deviation) * whirl.place, (1.0 + deviation) * whirl.velocity)
     return model
+
+
+# --- The study that the claims are declared in.
+
+STUDY = Study.beside(
+    __file__,
+    "drivetrain-frozen",
+    words={
+        "surplus": f"{100.0 * BORDER_SURPLUS:g}",
+        "low": f"{BORDER_TORQUES[0]:g}",
+        "high": f"{BORDER_TORQUES[-1]:g}",
+    },
+    source=SOURCE,
+    only=("exudyn",),
+    seconds=4.0,
+)
+STUDY.provides(curves=curves)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     BLUE,
     GREY,
     ORANGE,
+    Axes,
+    Figure,
     axis,
     curve,
     engine_style,
@@ -24,10 +26,6 @@ from compare.report.animation import gif
 from compare.studies.drivetrain.run_up.study import order_spectrum
 from compare.studies.toolkit.drivetrain_bench import RPM, centre, natural_frequency, passenger_car
 from reference_model.systems import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MM = 1e3
 

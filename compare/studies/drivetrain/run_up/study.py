@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from compare.claims.error_estimates import COARSENING, change_as_error
-from compare.claims.measured import Measured
-from compare.claims.study import Data, Study
+from compare.claims import COARSENING, Data, Measured, Study, change_as_error
 from compare.engines import Engine
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,
@@ -25,9 +23,10 @@ from compare.studies.toolkit.drivetrain_bench import (
     onset_speed,
     parameters_of,
     passenger_car,
+    rest_of,
     rotating_damping,
+    whirl_of,
 )
-from compare.studies.toolkit.drivetrain_steady import rest_of, whirl_of
 from reference_model.systems import FloatArray
 
 # --- The run-up: how the engine pulls, and how the slip of the clutch is held.

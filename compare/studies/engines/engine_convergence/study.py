@@ -9,33 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, TRUTH, extrapolated_order, observed_exponent
-from compare.claims.measured import Measured
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
-from compare.claims.parameters import at_each
-from compare.claims.study import Data, Study
+import compare.studies.engines.engine_convergence.theory as theory
+from compare.claims import COARSENING, TRUTH, Data, Measured, Study, extrapolated_order, observed_exponent
+from compare.claims.parameters import FIG5, FIG5_STARTS, at_each
 from compare.engines import Engine
-from compare.studies.engines.engine_convergence.theory import (
-    CREEP_REGULARISATIONS,
-    FIRST_REGULARISATIONS,
-    REGULARISATIONS,
-    SCANS,
-    SLIDING_SOURCE,
-    SOLVERS,
-    STICKING_STARTS,
-    STICKING_UNTIL,
-    TOLERANCE,
-    WORK_STEPS,
-    Simulate,
-    Solver,
-    gap,
-    of_sliding,
-    of_stick_slip,
-    release_shift_by_creep,
-    root_mean_square,
-    sliding_truth,
-    smallest_regularisation,
-)
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
@@ -57,22 +34,22 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
 )
 def sliding(engine: Engine, with_work: bool = True) -> Measured:
     """Find the exponent with which the error of sliding pins falls with the tolerance."""
-    scan = SCANS[engine.name]
-    errors = np.array([of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
+    scan = theory.SCANS[engine.name]
+    errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
-        scan.sliding, errors, next_term=1.0 / scan.order, noise=sliding_truth()[1]
+        scan.sliding, errors, next_term=1.0 / scan.order, noise=theory.sliding_truth()[1]
     )
     data: Data = {"sliding: tolerances": scan.sliding, "sliding: errors": errors}
     if with_work:
         data["work: sliding"] = np.array(
-            [of_sliding(engine.simulate, tolerance=t) for t in scan.work.tolist()]
+            [theory.of_sliding(engine.simulate, tolerance=t) for t in scan.work.tolist()]
         )
     return Measured(
         predicted=1.0,
         value=exponent,
         error=numerical,
         model=model,
-        source=SLIDING_SOURCE + f"; {_range_of(scan.sliding, 'tolerance')}",
+        source=theory.SLIDING_SOURCE + f"; {_range_of(scan.sliding, 'tolerance')}",
         note=f"Here n is {scan.order}.",
         data=data,
     )
@@ -89,10 +66,13 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
     """Find the exponent with which the errors of stick and release times fall with the tolerance."""
-    scan = SCANS[engine.name]
+    scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(
-        [root_mean_square(gap(_events(engine.simulate, t), exact)) for t in scan.sticking.tolist()]
+        [
+            theory.root_mean_square(theory.gap(_events(engine.simulate, t), exact))
+            for t in scan.sticking.tolist()
+        ]
     )
     exponent, numerical, model = observed_exponent(
         scan.sticking, errors, next_term=scan.sticking_term, noise=noise
@@ -100,25 +80,25 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
     data: Data = {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
     if with_work:
         data["work: stick-slip"] = np.array(
-            [of_stick_slip(engine.simulate, tolerance=t) for t in scan.work.tolist()]
+            [theory.of_stick_slip(engine.simulate, tolerance=t) for t in scan.work.tolist()]
         )
     return Measured(
         predicted=1.0,
         value=exponent,
         error=numerical,
         model=model,
-        parameters={"until": STICKING_UNTIL},
-        source=f"Fig. 5 with {len(STICKING_STARTS)} starts x = 0.1, vx from 0 to 0.06; "
+        parameters={"until": theory.STICKING_UNTIL},
+        source=f"Fig. 5 with {len(theory.STICKING_STARTS)} starts x = 0.1, vx from 0 to 0.06; "
         + _range_of(scan.sticking, "tolerance"),
         data=data,
     )
 
 
-def _events(run: Simulate, tolerance: float) -> FloatArray:
+def _events(run: theory.Simulate, tolerance: float) -> FloatArray:
     """Return when pins stick and let go, in s, from one of ``STICKING_STARTS`` after the other."""
-    times = (0.0, STICKING_UNTIL)
+    times = (0.0, theory.STICKING_UNTIL)
     return np.concatenate(
-        [run(FIG5, start, times, tolerance=tolerance).stick_times for start in STICKING_STARTS]
+        [run(FIG5, start, times, tolerance=tolerance).stick_times for start in theory.STICKING_STARTS]
     )
 
 
@@ -126,7 +106,7 @@ def _events(run: Simulate, tolerance: float) -> FloatArray:
 def _exact_events() -> tuple[FloatArray, float]:
     """Return the same times as exactly as the reference has them, and how far they are off."""
     exact = _events(simulate, TRUTH)
-    return exact, root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
+    return exact, theory.root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
 
 # ---------------------------------------------------------------- in the step
@@ -142,28 +122,30 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
             resolution=0.2,
             note="Orders observed while halving the step are extrapolated to h = 0. Model error: the extrapolation's "
             "own step; numerical error: its change from one step to the next.",
-            each={solver.name: solver for solver in SOLVERS if solver.order == order},
+            each={solver.name: solver for solver in theory.SOLVERS if solver.order == order},
         )(function)
     return function
 
 
 @of_every_order
-def steps(engine: Engine, solver: Solver, with_work: bool = True) -> Measured | None:
+def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
     """Find the order of one of Exudyn's solvers at a fixed step."""
     if engine.name != "exudyn":
         return None
     import exudyn_models  # the command line must start without it
 
     run = exudyn_models.simulate_fixed_step
-    rows = np.array([of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
-    order, numerical, model = extrapolated_order(rows[:, 0], sliding_truth()[1])
+    rows = np.array([theory.of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
+    order, numerical, model = extrapolated_order(rows[:, 0], theory.sliding_truth()[1])
     observed = ", ".join(f"{value:.3f}" for value in np.log2(rows[:-1, 0] / rows[1:, 0]))
     data: Data = {f"{solver.name}: steps": np.array(solver.steps), f"{solver.name}: sliding": rows}
     if with_work and solver.sticks:
         data[f"{solver.name}: stick-slip"] = np.array(
             [
-                of_stick_slip(run, integrator=solver.name, step=h, regularisation=smallest_regularisation(h))
-                for h in WORK_STEPS
+                theory.of_stick_slip(
+                    run, integrator=solver.name, step=h, regularisation=theory.smallest_regularisation(h)
+                )
+                for h in theory.WORK_STEPS
             ]
         )
     return Measured(
@@ -171,7 +153,7 @@ def steps(engine: Engine, solver: Solver, with_work: bool = True) -> Measured | 
         value=order,
         error=numerical,
         model=model,
-        source=SLIDING_SOURCE,
+        source=theory.SLIDING_SOURCE,
         note=f"{at_each('h', solver.steps)} s: {observed}.",
         data=data,
     )
@@ -180,9 +162,9 @@ def steps(engine: Engine, solver: Solver, with_work: bool = True) -> Measured | 
 # ---------------------------------------------------------------- in the slip speed that smooths friction
 
 HOW = (
-    f"Against the reference at tolerance {TRUTH:g}. Least squares with a term smaller by ε; numerical error: 95 % "
-    f"interval from the scatter, and the change at tolerance {COARSENING * TOLERANCE:g}; model error: what the term "
-    "changes."
+    f"Against the reference at tolerance {TRUTH:g}. Least squares with a term smaller by ε; numerical error: 95 "
+    f"% interval from the scatter, and the change at tolerance {COARSENING * theory.TOLERANCE:g}; model error: "
+    "what the term changes."
 )
 
 
@@ -205,20 +187,24 @@ def first_stick(engine: Engine) -> Measured | None:
 
     def error(epsilon: float, tolerance: float) -> float:
         found = exudyn_models.simulate(FIG5, start, (0.0, 5.0), tolerance=tolerance, regularisation=epsilon)
-        return float(gap(found.stick_times[:1], first)[0])
+        return float(theory.gap(found.stick_times[:1], first)[0])
 
-    errors = np.array([error(epsilon, TOLERANCE) for epsilon in FIRST_REGULARISATIONS.tolist()])
+    errors = np.array([error(epsilon, theory.TOLERANCE) for epsilon in theory.FIRST_REGULARISATIONS.tolist()])
     # The tolerance weighs most at the smallest ε.
-    noise = abs(error(float(FIRST_REGULARISATIONS[-1]), COARSENING * TOLERANCE) - float(errors[-1]))
-    exponent, numerical, model = observed_exponent(FIRST_REGULARISATIONS, errors, next_term=1.0, noise=noise)
+    noise = abs(
+        error(float(theory.FIRST_REGULARISATIONS[-1]), COARSENING * theory.TOLERANCE) - float(errors[-1])
+    )
+    exponent, numerical, model = observed_exponent(
+        theory.FIRST_REGULARISATIONS, errors, next_term=1.0, noise=noise
+    )
     return Measured(
         predicted=2.0,
         value=exponent,
         error=numerical,
         model=model,
-        parameters={"tolerance": TOLERANCE},
-        source="Fig. 5, first start; " + _range_of(FIRST_REGULARISATIONS, "ε", "m/s"),
-        data={"first regularisations": FIRST_REGULARISATIONS, "first stick": errors},
+        parameters={"tolerance": theory.TOLERANCE},
+        source="Fig. 5, first start; " + _range_of(theory.FIRST_REGULARISATIONS, "ε", "m/s"),
+        data={"first regularisations": theory.FIRST_REGULARISATIONS, "first stick": errors},
     )
 
 
@@ -252,9 +238,9 @@ def later_events(engine: Engine) -> Measured | None:
         error=found.numerical[:-1],
         model=float(np.max(found.model[:-1])),
         components=[f"{('release', 'stick')[i % 2]} {(i + 1) // 2 + 1}" for i in range(events)],
-        parameters={"tolerance": TOLERANCE},
-        source="Fig. 5, second start to 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
-        data={"regularisations": REGULARISATIONS, "later events and state": found.errors},
+        parameters={"tolerance": theory.TOLERANCE},
+        source="Fig. 5, second start to 20 s; " + _range_of(theory.REGULARISATIONS, "ε", "m/s"),
+        data={"regularisations": theory.REGULARISATIONS, "later events and state": found.errors},
     )
 
 
@@ -277,28 +263,30 @@ def state(engine: Engine) -> Measured | None:
         value=found.exponents[-1],
         error=found.numerical[-1],
         model=float(found.model[-1]),
-        parameters={"tolerance": TOLERANCE},
-        source="Fig. 5, second start at 20 s; " + _range_of(REGULARISATIONS, "ε", "m/s"),
+        parameters={"tolerance": theory.TOLERANCE},
+        source="Fig. 5, second start at 20 s; " + _range_of(theory.REGULARISATIONS, "ε", "m/s"),
     )
 
 
 @functools.lru_cache(maxsize=1)
-def smoothing(simulate_smoothed: Simulate) -> Smoothing:
+def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
     """Return the errors of events and state over ε, which two claims share; takes the simulation to be measured."""
     start, until = FIG5_STARTS["whirl"], (0.0, 20.0)
     exact = simulate(FIG5, start, until, tolerance=TRUTH)
 
     def errors(epsilon: float, tolerance: float) -> FloatArray:
         found = simulate_smoothed(FIG5, start, until, tolerance=tolerance, regularisation=epsilon)
-        state = root_mean_square(found.at_end - exact.at_end)
-        return np.append(gap(found.stick_times, exact.stick_times), state)[1:]  # the first stick falls faster
+        state = theory.root_mean_square(found.at_end - exact.at_end)
+        return np.append(theory.gap(found.stick_times, exact.stick_times), state)[
+            1:
+        ]  # the first stick falls faster
 
-    by_epsilon = np.array([errors(epsilon, TOLERANCE) for epsilon in REGULARISATIONS.tolist()])
+    by_epsilon = np.array([errors(epsilon, theory.TOLERANCE) for epsilon in theory.REGULARISATIONS.tolist()])
     # The tolerance weighs most at the smallest ε.
-    noise = np.abs(errors(float(REGULARISATIONS[-1]), COARSENING * TOLERANCE) - by_epsilon[-1])
+    noise = np.abs(errors(float(theory.REGULARISATIONS[-1]), COARSENING * theory.TOLERANCE) - by_epsilon[-1])
     exponents, numerical, model = np.transpose(
         [
-            observed_exponent(REGULARISATIONS, column, next_term=1.0, noise=part)
+            observed_exponent(theory.REGULARISATIONS, column, next_term=1.0, noise=part)
             for column, part in zip(by_epsilon.T, noise, strict=True)
         ]
     )
@@ -333,13 +321,13 @@ def creep(engine: Engine) -> Measured | None:
         ends = [trajectory.stick_times[1] if trajectory.stick_phases else math.nan for trajectory in found]
         return np.array([(end - phase.end) / epsilon for end, phase in zip(ends, exact, strict=True)])
 
-    measured = np.array([shifts(epsilon, 4.0) for epsilon in CREEP_REGULARISATIONS])
-    rough = shifts(CREEP_REGULARISATIONS[-1], 2.0)
+    measured = np.array([shifts(epsilon, 4.0) for epsilon in theory.CREEP_REGULARISATIONS])
+    rough = shifts(theory.CREEP_REGULARISATIONS[-1], 2.0)
     extrapolated = 2.0 * measured[1:] - measured[:-1]
     numerical = np.abs(rough - measured[-1]) + np.abs(extrapolated[-1] - extrapolated[-2])
     model = np.abs(measured[-1] - measured[-2])
     finite = bool(np.all(np.isfinite(extrapolated)))
-    predicted = np.array([release_shift_by_creep(FIG5, phase) for phase in exact])
+    predicted = np.array([theory.release_shift_by_creep(FIG5, phase) for phase in exact])
     return Measured(
         predicted=predicted,
         value=extrapolated[-1],
@@ -347,7 +335,7 @@ def creep(engine: Engine) -> Measured | None:
         model=float(np.max(model)) if finite else 0.0,
         resolution=0.05 * float(np.min(np.abs(predicted))),
         components=[f"start of the way to the {end}" for end in FIG5_STARTS],
-        source="Fig. 5, both starts; " + at_each("ε", CREEP_REGULARISATIONS) + " m/s",
+        source="Fig. 5, both starts; " + at_each("ε", theory.CREEP_REGULARISATIONS) + " m/s",
     )
 
 

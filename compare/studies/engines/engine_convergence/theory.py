@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims import TRUTH, WORKING
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
 from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form

@@ -6,24 +6,10 @@ import functools
 
 import numpy as np
 
-from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
-from compare.claims.measured import Measured
-from compare.claims.study import Study
+import compare.studies.engines.error_estimates.theory as theory
+from compare.claims import COARSENING, ROUNDING, SAFETY, ByEngine, Figures, Measured, Study
 from compare.engines import Engine
-from compare.studies.engines.error_estimates.theory import (
-    EXACT,
-    KNOWN,
-    LEAST_COVERAGE,
-    MOST_OVER_ESTIMATE,
-    MOTIONS,
-    PROBLEMS,
-    SEED,
-    SOURCE,
-    TOLERANCES,
-    Calibration,
-    Problem,
-    calibrated,
-)
+from compare.output.figures import BLACK, Axes, Figure, curve, engine_style, engines_in, new_figure, points
 from compare.studies.toolkit.random_systems import between
 
 PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
@@ -31,7 +17,7 @@ PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
 
 KNOWN_FROM = (
     "Every number with the estimate that all claims take. True errors are against closed forms, or the reference at "
-    f"tolerance {EXACT:g}."
+    f"tolerance {theory.EXACT:g}."
 )
 
 STUDY = Study.beside(
@@ -40,30 +26,30 @@ STUDY = Study.beside(
     words={
         "safety": f"{SAFETY:g}",
         "coarsening": f"{COARSENING:g}",
-        "low": f"{100 - 100 * LEAST_COVERAGE:g}",
-        "high": f"{100 * LEAST_COVERAGE:g}",
-        "most": f"{MOST_OVER_ESTIMATE:g}",
+        "low": f"{100 - 100 * theory.LEAST_COVERAGE:g}",
+        "high": f"{100 * theory.LEAST_COVERAGE:g}",
+        "most": f"{theory.MOST_OVER_ESTIMATE:g}",
     },
-    source=SOURCE,
+    source=theory.SOURCE,
     seconds=3.5,
 )
 
 
 @STUDY.claim(
-    f"In at least {100 * LEAST_COVERAGE:g} % of random cases the true error lies within its estimate: {{}}",
+    f"In at least {100 * theory.LEAST_COVERAGE:g} % of random cases the true error lies within its estimate: {{}}",
     kind="trajectory",
-    resolution=1.0 - LEAST_COVERAGE,
+    resolution=1.0 - theory.LEAST_COVERAGE,
     note=KNOWN_FROM,
-    each=tuple(PROBLEMS),
+    each=tuple(theory.PROBLEMS),
 )
-def coverage(engine: Engine, kind: str, motions: int = MOTIONS) -> Measured:
+def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
     """Count the numbers whose true error lies within the estimate, in one kind of motion."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=1.0,
         value=found.coverage,
-        model=1.0 - LEAST_COVERAGE,
-        parameters={"motions": found.motions, "seed": SEED},
+        model=1.0 - theory.LEAST_COVERAGE,
+        parameters={"motions": found.motions, "seed": theory.SEED},
         note=f"{len(found.errors)} numbers from {found.motions} motions; standard error of the coverage: "
         f"{100.0 * found.coverage_noise:.2f} %.",
         data={f"{kind}: errors": found.errors, f"{kind}: estimates": found.estimates},
@@ -71,39 +57,41 @@ def coverage(engine: Engine, kind: str, motions: int = MOTIONS) -> Measured:
 
 
 @STUDY.claim(
-    f"In the median the estimate is not more than {MOST_OVER_ESTIMATE:g} times the true error: {{}}",
+    f"In the median the estimate is not more than {theory.MOST_OVER_ESTIMATE:g} times the true error: {{}}",
     kind="trajectory",
-    resolution=MOST_OVER_ESTIMATE - PROPORTIONAL,
-    note=f"{KNOWN_FROM} Where errors are in proportion to the tolerance the ratio is "
-    f"{SAFETY:g}·(1 − 1/{COARSENING:g}) = {PROPORTIONAL:g} by construction; where no error depends on the tolerance, "
-    f"as in the closed form of stick, it is rounding as allowed for over rounding as known, {ROUNDING / KNOWN:g}.",
-    each=tuple(PROBLEMS),
+    resolution=theory.MOST_OVER_ESTIMATE - PROPORTIONAL,
+    note=f"{KNOWN_FROM} Where errors are in proportion to the tolerance the ratio is {SAFETY:g}·(1 − "
+    f"1/{COARSENING:g}) = {PROPORTIONAL:g} by construction; where no error depends on the tolerance, as in the "
+    f"closed form of stick, it is rounding as allowed for over rounding as known, {ROUNDING / theory.KNOWN:g}.",
+    each=tuple(theory.PROBLEMS),
 )
-def over_estimate(engine: Engine, kind: str, motions: int = MOTIONS) -> Measured:
+def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
     """Take the median of the estimate over the true error, in one kind of motion."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=PROPORTIONAL,
         value=found.over_estimate,
-        model=MOST_OVER_ESTIMATE - PROPORTIONAL,
-        parameters={"motions": found.motions, "seed": SEED},
+        model=theory.MOST_OVER_ESTIMATE - PROPORTIONAL,
+        parameters={"motions": found.motions, "seed": theory.SEED},
         note=f"{len(found.errors)} numbers from {found.motions} motions.",
         data={f"{kind}: ratios": found.ratios},
     )
 
 
-@functools.lru_cache(maxsize=len(PROBLEMS))
-def calibration(engine: Engine, kind: str, motions: int) -> Calibration:
+@functools.lru_cache(maxsize=len(theory.PROBLEMS))
+def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
     """Return the calibration of one kind of problem, in its part of ``motions`` over all that can be simulated."""
     each = -(-motions // len(simulated(engine)))
-    return calibrated(engine, drawn(kind, each))
+    return theory.calibrated(engine, drawn(kind, each))
 
 
-@functools.lru_cache(maxsize=len(PROBLEMS))
-def drawn(kind: str, motions: int) -> tuple[tuple[Problem, float], ...]:
+@functools.lru_cache(maxsize=len(theory.PROBLEMS))
+def drawn(kind: str, motions: int) -> tuple[tuple[theory.Problem, float], ...]:
     """Return ``motions`` problems of a kind, each with its tolerance: every engine is asked the same."""
-    random = np.random.default_rng([SEED, list(PROBLEMS).index(kind)])  # of its own for each kind
-    return tuple((PROBLEMS[kind](random), between(random, *TOLERANCES)) for _ in range(motions))
+    random = np.random.default_rng(
+        [theory.SEED, list(theory.PROBLEMS).index(kind)]
+    )  # of its own for each kind
+    return tuple((theory.PROBLEMS[kind](random), between(random, *theory.TOLERANCES)) for _ in range(motions))
 
 
 @functools.lru_cache(maxsize=1)
@@ -111,6 +99,80 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     """Return the kinds of problems that ``engine`` promises to simulate."""
     return tuple(
         kind
-        for kind, problem in PROBLEMS.items()
-        if engine.simulates(problem(np.random.default_rng(SEED)).system)
+        for kind, problem in theory.PROBLEMS.items()
+        if engine.simulates(problem(np.random.default_rng(theory.SEED)).system)
     )
+
+
+# --- Estimates beside true errors, for each kind of motion.
+
+SMALLEST, LARGEST = 0.3, 3e3
+"""Ratios of estimate and true error that the figure shows; an arrow says that there are others beyond."""
+
+COLUMNS = 3
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw estimates over true errors, and how far they lie above."""
+    return {"error-estimates": _scatter(data), "error-estimates-spread": _spread(data)}
+
+
+def _scatter(data: ByEngine) -> Figure:
+    kinds = list(theory.PROBLEMS)
+    rows = -(-len(kinds) // COLUMNS)
+    figure, panels = new_figure(ncols=COLUMNS, nrows=rows, width=10.0, height=2.9 * rows)
+    for panel, kind in zip(panels, kinds, strict=False):
+        panel.set_title(kind)
+        seen = []
+        for engine in engines_in(data):
+            if f"{kind}: errors" in data[engine]:
+                errors, estimates = (data[engine][f"{kind}: {what}"] for what in ("errors", "estimates"))
+                right = errors > 0.0  # what is right to the last bit has no place here
+                seen += [errors[right], estimates[right]]
+                look = points(engine, markersize=3.0, markeredgewidth=0.6)
+                panel.loglog(errors[right], estimates[right], **look)
+        if seen:
+            _draw_bounds(panel, np.concatenate(seen))
+    for panel in panels[len(kinds) :]:
+        panel.axis("off")
+    figure.supxlabel("true error, over the largest number", fontsize=11.0)
+    figure.supylabel("estimate, over the largest number", fontsize=11.0)
+    panels[0].legend(loc="upper left", fontsize=9.0)
+    return figure
+
+
+def _draw_bounds(panel: Axes, seen: np.ndarray) -> None:
+    ends = np.array([0.3 * np.min(seen), 3.0 * np.max(seen)])
+    panel.plot(ends, ends, **curve("theory", "equal"))
+    label = f"{theory.MOST_OVER_ESTIMATE:g} times"
+    panel.plot(ends, theory.MOST_OVER_ESTIMATE * ends, **curve("theory", label, linestyle=":"))
+    panel.set(xlim=ends, ylim=ends)
+
+
+def _spread(data: ByEngine) -> Figure:
+    figure, (panel,) = new_figure(width=7.0, height=4.4)
+    names, kinds = engines_in(data), list(theory.PROBLEMS)
+    shares = (1.0 - theory.LEAST_COVERAGE, 0.5, theory.LEAST_COVERAGE)
+    for i, engine in enumerate(names):
+        shift, colour = 0.5 * ((i + 0.5) / len(names) - 0.5), engine_style(engine).colour
+        label = engine
+        for row, kind in enumerate(kinds):
+            if f"{kind}: ratios" not in data[engine]:
+                continue
+            low, middle, high = np.quantile(data[engine][f"{kind}: ratios"], shares)
+            panel.plot([low, min(high, LARGEST)], 2 * [row + shift], color=colour, linewidth=0.9)
+            panel.plot(middle, row + shift, **points(engine, label, markersize=5.0))
+            if high > LARGEST:
+                panel.plot(LARGEST, row + shift, ">", color=colour, markersize=6.0, clip_on=False)
+            label = "_"
+    for ratio, linestyle in ((1.0, "-"), (theory.MOST_OVER_ESTIMATE, ":")):
+        panel.axvline(ratio, color=BLACK, linewidth=0.8, linestyle=linestyle)
+    panel.set(xscale="log", xlim=(SMALLEST, LARGEST), xlabel="estimate / true error")
+    panel.set_yticks(range(len(kinds)), kinds)
+    panel.invert_yaxis()
+    if names:
+        panel.legend(loc="lower right")
+    return figure
+
+
+STUDY.provides(figures=draw)

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from compare.claims.error_estimates import TRUTH, refined
+from compare.claims import TRUTH, refined
 from compare.engines import Engine
 from compare.studies.toolkit.free_bodies import Slowing
+from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import (
     any_disc,
     any_pin,
@@ -24,7 +25,6 @@ from compare.studies.toolkit.random_systems import (
     state_of,
     vector,
 )
-from compare.studies.toolkit.sticking import farthest
 from reference_model import simulate
 from reference_model.formulas.pin import (
     first_order_whirl_response,

@@ -1,8 +1,5 @@
 """What foreign engines make of the paper's systems, from data recorded with them: laws, orders, errors over time."""
 
-from compare.studies.engines.foreign_engines.pictures import draw
 from compare.studies.engines.foreign_engines.study import STUDY
-
-STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

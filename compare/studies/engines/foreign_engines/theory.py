@@ -11,13 +11,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from compare.claims.claim import Claim, ErrorBudget
-from compare.claims.error_estimates import COARSENING, ROUNDING, refined
+from compare.claims import COARSENING, ROUNDING, Claim, ErrorBudget, Recorded, refined
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Table
-from compare.claims.study import Recorded
-from compare.foreign.cases import CASES, Case
-from compare.foreign.records import ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
+from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Case, Recording, estimate, recordings
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 

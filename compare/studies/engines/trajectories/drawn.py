@@ -12,22 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from compare.claims.error_estimates import WORKING
-from compare.studies.engines.trajectories.parameters import (
-    LEAST_SAMPLES,
-    LEAST_SLIP,
-    MOST_PHASES,
-    MOST_TURN,
-    PANEL,
-    SEED,
-    SPEEDS,
-    STICKS_FOR,
-    UNTIL,
-    Motion,
-)
+import compare.studies.engines.trajectories.parameters as parameters
+from compare.claims import WORKING
 from compare.studies.engines.trajectories.theory import by_reference
+from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import between, sign
-from compare.studies.toolkit.sticking import farthest
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.formulas.pin import release_time
 from reference_model.systems import System
@@ -98,16 +87,19 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
     return (z.real, z.imag, random.uniform(-math.pi, math.pi), v.real, v.imag, spin)
 
 
-def _slides(motion: Motion) -> bool:
+def _slides(motion: parameters.Motion) -> bool:
     """Return whether forces are smooth: all slips, nothing is near to rest, a stop is always touched or never."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
         speed = np.abs(speed - system.contact_radius * np.abs(system.disc_speed - run.states[:, 5]))
-        if system.contact_points is not None and PANEL * np.max(np.abs(run.states[:, 5])) > MOST_TURN:
+        if (
+            system.contact_points is not None
+            and parameters.PANEL * np.max(np.abs(run.states[:, 5])) > parameters.MOST_TURN
+        ):
             return False
     beyond = np.hypot(run.states[:, 0] - system.offset, run.states[:, 1]) - system.stop_gap
-    smooth = len(run.phases) == 1 and np.min(speed) > LEAST_SLIP * np.max(speed)
+    smooth = len(run.phases) == 1 and np.min(speed) > parameters.LEAST_SLIP * np.max(speed)
     return bool(smooth and (np.all(beyond > 0.0) or np.all(beyond < 0.0)))
 
 
@@ -124,20 +116,22 @@ def _stuck(random: Generator, pin: PinOnDisc) -> tuple[float, ...]:
     return (z.real, z.imag, v.real, v.imag)
 
 
-def _sticks(motion: Motion) -> bool:
+def _sticks(motion: parameters.Motion) -> bool:
     """Return whether (7) lets the pin go before long, and it comes to stick again for more than moments if at all."""
     pin, (x, y, *_) = motion.system, motion.start
     if not (
         isinstance(pin, PinOnDisc)
-        and STICKS_FOR[0] < release_time(pin, math.hypot(x, y), math.atan2(y, x)) < STICKS_FOR[1]
+        and parameters.STICKS_FOR[0]
+        < release_time(pin, math.hypot(x, y), math.atan2(y, x))
+        < parameters.STICKS_FOR[1]
     ):
         return False
     run = by_reference(motion)
     inside = [np.sum((run.times > p.start) & (run.times < p.end)) for p in run.stick_phases]
     return (
         run.phases[-1].kind == "slip"
-        and len(run.phases) <= MOST_PHASES
-        and bool(min(inside) >= LEAST_SAMPLES)
+        and len(run.phases) <= parameters.MOST_PHASES
+        and bool(min(inside) >= parameters.LEAST_SAMPLES)
     )
 
 
@@ -152,30 +146,30 @@ class Drawn:
     body: Callable[[Generator, float], System]
     start: Callable[[Generator, Any], tuple[float, ...]]
 
-    def __iter__(self) -> Iterator[Motion]:
+    def __iter__(self) -> Iterator[parameters.Motion]:
         """Yield the motions."""
         return iter(_drawn(self))
 
 
 @functools.cache
-def _drawn(kind: Drawn) -> tuple[Motion, ...]:
-    random = np.random.default_rng([SEED, kind.number])
-    return tuple(_one(random, kind, sense, speeds) for speeds in SPEEDS for sense in (1.0, -1.0))
+def _drawn(kind: Drawn) -> tuple[parameters.Motion, ...]:
+    random = np.random.default_rng([parameters.SEED, kind.number])
+    return tuple(_one(random, kind, sense, speeds) for speeds in parameters.SPEEDS for sense in (1.0, -1.0))
 
 
-def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, float]) -> Motion:
+def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, float]) -> parameters.Motion:
     """Draw until the motion is one that claims can be made for."""
     sticks = kind.start is _stuck
     while True:
         system = kind.body(random, sense * random.uniform(*speeds))
-        motion = Motion(
+        motion = parameters.Motion(
             system,
             kind.start(random, system),
-            UNTIL,
+            parameters.UNTIL,
             sticks,
             tolerance=WORKING if sticks else WORKING / 10,
             resolution=1e-4 if sticks else 1e-7,
-            source=f"assumption: parameters and start are random, with seed {SEED}",
+            source=f"assumption: parameters and start are random, with seed {parameters.SEED}",
         )
         if _sticks(motion) if sticks else _slides(motion):
             return motion

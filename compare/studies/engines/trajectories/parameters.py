@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from compare.claims.error_estimates import WORKING
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims import WORKING
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.systems import System
 

@@ -7,8 +7,7 @@ import textwrap
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH
-from compare.claims.study import ByEngine, Figures
+from compare.claims import TRUTH, ByEngine, Figures
 from compare.output.figures import GREY, axis, curve, engine_style, engines_in, new_figure
 from compare.studies.engines.trajectories.parameters import MOTIONS
 

@@ -3,70 +3,135 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, Measurement, open_where_coarse, refined
-from compare.claims.measured import Measured
-from compare.claims.parameters import components_of
-from compare.claims.study import Findings, Study
-from compare.engines import Engine
-from compare.studies.engines.trajectories.drawn import DRAWN
-from compare.studies.engines.trajectories.parameters import (
-    MOTIONS,
-    PANEL,
-    PINS,
-    PINS_THAT_STICK,
-    POINTS,
-    RINGS,
-    STICK_RESOLUTION,
-    Motion,
-)
-from compare.studies.engines.trajectories.pooling import MeasureAll, Motions, together
-from compare.studies.engines.trajectories.stick import as_many, late, samples_in_stick, stick_times
+import compare.studies.engines.trajectories.parameters as parameters
+from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
+from compare.claims.parameters import at_each, components_of, parameters_of
+from compare.engines import Engine, UnsupportedSystemError
+from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
+from compare.studies.engines.trajectories.parameters import MOTIONS, ONE_OF_EACH_KIND, UNTIL, Motion
 from compare.studies.engines.trajectories.theory import (
     NODES,
+    as_many,
     at_bounds,
     at_nodes,
     by_reference,
     equation_of,
     forces,
     gauss,
+    late,
+    samples_in_stick,
+    stick_times,
     times_of,
 )
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.systems import FloatArray
 
+# --- One claim of several motions: with all their numbers, each with its own error bar.
+
+Motions = Iterable[Motion]
+"""Those of which one claim is made."""
+
+Measure = Callable[[Engine, Motion], "Measured | None"]
+MeasureAll = Callable[[Engine, Motions], "Measured | None"]
+
+
+def together(measure: Measure) -> MeasureAll:
+    """Let ``measure``, which looks at one motion, look at all of which one claim is made."""
+
+    @functools.wraps(measure)
+    def measure_all(engine: Engine, motions: Motions) -> Measured | None:
+        if engine.contact_only and (isinstance(motions, Drawn) or not set(motions) <= set(ONE_OF_EACH_KIND)):
+            return None
+        if not all(engine.simulates(motion.system) for motion in motions):
+            # All that is missing in one sentence, not one for each claim.
+            raise UnsupportedSystemError(engine.lacking(motion.system for motion in MOTIONS.values()))
+        parts = [part for motion in motions if (part := measure(engine, motion)) is not None]
+        return pooled(parts) if parts else None
+
+    return measure_all
+
+
+def pooled(parts: Sequence[Measured]) -> Measured:
+    """Return what was measured of several systems of one kind as one, with all numbers and their error bars."""
+    first, *others = parts
+    if not others:
+        return first
+    systems = [part.system for part in parts if part.system is not None]
+    speeds = [system.disc_speed for system in systems]
+    return Measured(
+        predicted=np.concatenate([np.ravel(part.predicted) for part in parts]),
+        value=np.concatenate([np.ravel(part.value) for part in parts]),
+        error=np.concatenate([np.broadcast_to(part.error, np.shape(part.value)).ravel() for part in parts]),
+        size=np.concatenate([_sizes(part) for part in parts]),
+        resolution=first.resolution,
+        components=[
+            ", ".join((f"ω = {speed:g} rad/s", *place))
+            for part, speed in zip(parts, speeds, strict=True)
+            for place in itertools.product(*part.axes)
+        ],
+        parameters=_ranges([parameters_of(system) for system in systems]),
+        source=first.source,
+        note=f"{len(parts)} motions to t = {UNTIL:g} s, for {at_each('ω', speeds)} rad/s.",
+    )
+
+
+def _sizes(part: Measured) -> FloatArray:
+    """Return the size beside which errors of each number are small."""
+    size = np.max(np.abs(part.predicted)) if part.size is None else part.size
+    return np.broadcast_to(size, np.shape(part.value)).ravel()
+
+
+def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
+    """Return the smallest and the largest value of each parameter in words, or the one that all have."""
+    found: dict[str, float | str] = {}
+    for name, value in parameters[0].items():
+        values = [one[name] for one in parameters]
+        numbers = [one for one in values if not isinstance(one, str)]
+        spread = len(set(values)) > 1
+        found[name] = f"{min(numbers):.3g} … {max(numbers):.3g}" if spread else value
+    return found
+
+
+# --- Plain motions: state by state beside the reference, and whether velocities and forces add up along them.
+
 STUDY = Study.beside(
     __file__,
     "trajectories",
-    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{parameters.Motion.tolerance:g}"},
     seconds=2.0,
     quick=True,
     contact=True,
 )
 
 INTEGRATED = (
-    f"What is missing in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its error from how "
-    "the Legendre coefficients of what is integrated fall. The tolerance counts as an error of both states besides."
+    f"What is missing in every {parameters.PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its "
+    "error from how the Legendre coefficients of what is integrated fall. The tolerance counts as an error of "
+    "both states besides."
 )
 
-NAMES = {motion: name for name, motion in MOTIONS.items()}
+NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
 
 
-def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
+def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
     """Return motions by hand each for itself, and those that are drawn by kinds."""
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
 
 
-SLIDING = by_name(PINS, "pins", "pins on stops")
-STICKING = by_name(PINS_THAT_STICK, "pins that stick")
-OF_DISCS = {"(19), (20)": by_name(RINGS, "rings"), "(19), (21)": by_name(POINTS, "points")}
+SLIDING = by_name(parameters.PINS, "pins", "pins on stops")
+STICKING = by_name(parameters.PINS_THAT_STICK, "pins that stick")
+OF_DISCS = {
+    "(19), (20)": by_name(parameters.RINGS, "rings"),
+    "(19), (21)": by_name(parameters.POINTS, "points"),
+}
 """By the equations that they follow."""
 
 
@@ -97,12 +162,12 @@ def of_bodies(
 
 
 @functools.lru_cache(maxsize=256)  # of all motions, at the tolerances of an error estimate
-def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+def run(engine: Engine, motion: parameters.Motion, tolerance: float) -> Trajectory:
     """Return the motion at ``times_of(motion)``, for all claims on it."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
-def states_of(engine: Engine, motion: Motion) -> Measurement:
+def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
     """Return the states of a motion, and their errors."""
     return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
 
@@ -116,7 +181,7 @@ def states_of(engine: Engine, motion: Motion) -> Measurement:
     note=f"Predicted: the reference at tolerance {TRUTH:g}.",
 )
 @together
-def moves(engine: Engine, motion: Motion) -> Measured:
+def moves(engine: Engine, motion: parameters.Motion) -> Measured:
     """Compare all states with the reference's."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
@@ -150,7 +215,7 @@ def moves(engine: Engine, motion: Motion) -> Measured:
     note=INTEGRATED,
 )
 @together
-def kinematics(engine: Engine, motion: Motion) -> Measured | None:
+def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the change of places and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
     return balance(
@@ -172,7 +237,7 @@ def kinematics(engine: Engine, motion: Motion) -> Measured | None:
     note=INTEGRATED,
 )
 @together
-def momentum(engine: Engine, motion: Motion) -> Measured | None:
+def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the change of momentum and spin in each panel with the integral of forces and moments."""
     body = motion.system
     half = body.state_size // 2
@@ -190,7 +255,7 @@ def momentum(engine: Engine, motion: Motion) -> Measured | None:
 
 def balance(
     engine: Engine,
-    motion: Motion,
+    motion: parameters.Motion,
     amounts: Callable[[FloatArray], FloatArray],
     rates: Callable[[FloatArray], FloatArray],
     components: Sequence[str],
@@ -226,12 +291,12 @@ def balance(
     "A body sticks and lets go when the reference does: {}",
     kind="trajectory",
     unit="s",
-    resolution=STICK_RESOLUTION,
-    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, beside those of the reference.",
+    resolution=parameters.STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {parameters.STICK_RESOLUTION:g} s, beside those of the reference.",
     each=STICKING,
 )
 @together
-def phases(engine: Engine, motion: Motion) -> Measured | None:
+def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare beginnings and ends of all stick phases with the reference's."""
     if not motion.sticks:
         return None
@@ -247,12 +312,12 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
     "A body half way through a stick phase is let go when (7) says: {}",
     equation="(7)",
     unit="s",
-    resolution=STICK_RESOLUTION,
+    resolution=parameters.STICK_RESOLUTION,
     note="End of each stick phase, less what (7) says for the place in the middle of it.",
     each=STICKING,
 )
 @together
-def release(engine: Engine, motion: Motion) -> Measured | None:
+def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
     """Compare the ends of stick phases with (7), where the reference finds any."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
@@ -262,7 +327,9 @@ def release(engine: Engine, motion: Motion) -> Measured | None:
     return of_stick(motion, np.zeros(len(middles)), found, ("release",))
 
 
-def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]) -> Measured:
+def of_stick(
+    motion: parameters.Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]
+) -> Measured:
     """Return what is measured of a pin's stick phases; the numbers are of each ``kind`` in turn."""
     return Measured(
         predicted=predicted,
@@ -277,7 +344,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
     )
 
 
-def started(motion: Motion) -> str:
+def started(motion: parameters.Motion) -> str:
     """Return from where, and until when, a motion is followed."""
     return f"To t = {motion.until:g} s from {motion.start}."
 
@@ -285,7 +352,7 @@ def started(motion: Motion) -> str:
 # ---------------------------------------------------------------- of other motions
 
 
-def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
+def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
     """Measure what the study claims, of each of the given motions in place of its own."""
     declared = []
     for one in STUDY.declared:

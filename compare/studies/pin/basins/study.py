@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import functools
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from compare.claims.error_estimates import WORKING, known, refined
-from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG5
+from compare.claims import WORKING, ByEngine, Figures, Measured, Study, answers_of, asked, known, refined
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.claims.shares import of_grid
-from compare.claims.study import Study
 from compare.engines import Engine
+from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
 from compare.studies.pin.basins.theory import (
     AFTER,
     ASIDE,
@@ -58,6 +58,10 @@ from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
 
+if TYPE_CHECKING:
+    pass
+
+
 STUDY = Study.beside(
     __file__,
     "basins",
@@ -66,7 +70,6 @@ STUDY = Study.beside(
     system=FIG5,
     seconds=4.5,
 )
-STUDY.provides(curves=curves)
 
 
 @STUDY.claim(
@@ -263,3 +266,53 @@ def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measure
         note=f"All come to the equilibrium up to ω = {speeds[last]:.3g} rad/s; {100.0 * rest[-1]:.2g} % still do at "
         f"{speeds[-1]:g} rad/s.",
     )
+
+
+# --- Figure of the basins of Fig. 5.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw ends and boundary in the plane of starts, the saddle, and shares over the speed."""
+    if "theory" not in data:
+        return {}
+    from matplotlib.colors import ListedColormap
+
+    found = data["theory"]
+    figure, (plane, orbit, share) = new_figure(ncols=3, width=13.0, height=4.0)
+    whirls = found["ends"] == EndState.WHIRL
+    plane.imshow(
+        np.where(found["ends"] == EndState.SELF_CENTRED, 0.0, np.where(whirls, 1.0, 2.0)),
+        origin="lower",
+        extent=(*PLANE[0], *PLANE[1]),
+        cmap=ListedColormap([SKY, "#f3ead7", PURPLE]),
+        vmin=0.0,
+        vmax=2.0,
+        interpolation="nearest",
+        aspect="equal",
+    )
+    plane.plot(*found["curve"].T, **curve("theory", "stable set of the saddle"))
+    for x, _, vx, _ in FIG5_STARTS.values():
+        plane.plot(x, vx, "+", color=BLACK, markersize=7.0)
+    plane.text(0.065, -0.11, "equilibrium", ha="center")
+    plane.text(-0.13, 0.25, "whirl", ha="center")
+    plane.set(xlabel=axis("x_0", "m"), ylabel=axis(r"\dot x_0", "m/s"))
+    plane.legend(loc="lower left")
+
+    x, y, held = found["saddle"].T
+    orbit.plot(x, y, color=BLACK, linewidth=1.0)
+    orbit.plot(*np.where(held > 0.0, (x, y), np.nan), color=PURPLE, linewidth=4.0, label="sticks")
+    orbit.plot(0.0, 0.0, "+", color=BLACK, markersize=8.0)
+    orbit.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
+    orbit.legend(loc="best")
+
+    value, low, high = found["whirl"].T
+    share.fill_between(
+        found["speeds"], low, high, color=GREEN, alpha=0.35, linewidth=0.0, label="95 % interval"
+    )
+    share.plot(found["speeds"], value, color=GREEN, linewidth=1.2, label="whirl")
+    share.set(xlabel=axis(r"\omega", "rad/s"), ylabel="share of the starts", ylim=(0.0, 1.0))
+    share.legend(loc="lower right")
+    return {"basins": figure}
+
+
+STUDY.provides(figures=draw, curves=curves)

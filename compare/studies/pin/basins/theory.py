@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from compare.claims.error_estimates import TIGHTEST
-from compare.claims.paper_parameters import FIG5
+from compare.claims import TIGHTEST, Data
+from compare.claims.parameters import FIG5
 from compare.claims.shares import Ends, mixed, of_sample
-from compare.claims.study import Data
 from reference_model import StickSlipOrbit, basin_boundary, self_centred_equilibria, stick_slip_orbits
 from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
 from reference_model.systems import FloatArray, PinOnDisc

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG5
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
+from compare.claims.parameters import FIG5
 from compare.output.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
 from reference_model.systems import FloatArray
 

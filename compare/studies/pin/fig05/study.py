@@ -12,8 +12,7 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import TIGHTEST, TRUTH, WORKING, Measurement, open_where_coarse, refined
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
-from compare.claims.parameters import components_of
+from compare.claims.parameters import FIG5, FIG5_STARTS, components_of
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.toolkit.deviations import remaining_transient

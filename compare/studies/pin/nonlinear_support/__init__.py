@@ -1,8 +1,5 @@
 """A support that hardens or has a stop: what limits the amplitude "in practical application"."""
 
-from compare.studies.pin.nonlinear_support.pictures import draw
 from compare.studies.pin.nonlinear_support.study import STUDY
-
-STUDY.provides(figures=draw)
 
 __all__ = ["STUDY"]

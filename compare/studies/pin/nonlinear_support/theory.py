@@ -8,11 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.error_estimates import TRUTH, WORKING
-from compare.claims.paper_parameters import CENTRED, FIG5, FIG9
-from compare.claims.study import Data
+from compare.claims import TRUTH, WORKING, Data
+from compare.claims.parameters import CENTRED, FIG5, FIG9
 from compare.engines import Engine
-from compare.studies.toolkit.whirls import whirl_of
+from compare.studies.toolkit.pins import whirl_of
 from reference_model import Orbit, simulate
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import PinOnDisc

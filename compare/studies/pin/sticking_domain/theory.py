@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims.paper_parameters import FIG4
-from compare.claims.study import Data
-from compare.studies.toolkit.sticking import safest_angle
+from compare.claims import Data
+from compare.claims.parameters import FIG4
+from compare.studies.toolkit.pins import safest_angle
 from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 

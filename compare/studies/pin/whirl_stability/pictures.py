@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Data, Figures
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.whirl_stability.theory import DEVIATION_TIMES, PIN, K
 from reference_model.formulas.pin import variational_matrix

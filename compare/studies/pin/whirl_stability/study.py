@@ -8,38 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from compare.claims.error_estimates import TIGHTEST, WORKING, Measurement, refined
+import compare.studies.pin.whirl_stability.theory as theory
+from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
-from compare.claims.measured import Measured, answers_of
-from compare.claims.study import Study
 from compare.engines import Engine
-from compare.studies.pin.whirl_stability.theory import (
-    CAUGHT,
-    CAUGHT_TOLERANCE,
-    DAMPINGS,
-    DELAY,
-    DEVIATION,
-    DEVIATION_TIMES,
-    DISPLACED,
-    DURATION,
-    FLOW_DURATION,
-    FORWARD,
-    INTERVAL,
-    PIN,
-    POINTS,
-    RATIOS,
-    SOURCE,
-    SPEEDS,
-    STARTS,
-    TOLERANCE,
-    K,
-    curves,
-    grid,
-    largest_real_parts,
-    linear_deviation,
-    on_circle,
-    pin_at,
-)
+from compare.studies.pin.whirl_stability.theory import K, linear_deviation
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
 from reference_model.formulas.pin import (
     characteristic_coefficients,
@@ -56,13 +29,13 @@ from reference_model.trajectory import Trajectory
 STUDY = Study.beside(
     __file__,
     "whirl-stability",
-    source=SOURCE,
-    system=PIN,
+    source=theory.SOURCE,
+    system=theory.PIN,
     seconds=2.5,
     quick=True,
     contact=True,
 )
-STUDY.provides(curves=curves)
+STUDY.provides(curves=theory.curves)
 
 
 # --- Eq. 12 to 16 against each other: the conditions of stability.
@@ -82,7 +55,7 @@ BoolArray = NDArray[np.bool_]
 def same_eigenvalues() -> Measured:
     """Compare the roots of corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
     pins = [
-        pin_at(float(speed), float(damping))
+        theory.pin_at(float(speed), float(damping))
         for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
         for damping in np.geomspace(0.03, 3.0, 9)
     ]
@@ -112,20 +85,21 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
     return answers_of(
         margins,
         errors,
-        may_be_open=len(DAMPINGS) * len(RATIOS) // 1000,
-        source=f"assumption: a grid of {len(RATIOS)} values of ω/k = {RATIOS[0]:g} … {RATIOS[-1]:g} and "
-        f"{len(DAMPINGS)} of β/(mk) = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g}",
+        may_be_open=len(theory.DAMPINGS) * len(theory.RATIOS) // 1000,
+        source=f"assumption: a grid of {len(theory.RATIOS)} values of ω/k = {theory.RATIOS[0]:g} … "
+        f"{theory.RATIOS[-1]:g} and {len(theory.DAMPINGS)} of β/(mk) = {theory.DAMPINGS[0]:g} … "
+        f"{theory.DAMPINGS[-1]:g}",
     )
 
 
 def in_14() -> BoolArray:
     """Return at which points of the grid (14) holds."""
-    return np.array([min(coefficient_margins(pin)) > 0.0 for pin in grid()])
+    return np.array([min(coefficient_margins(pin)) > 0.0 for pin in theory.grid()])
 
 
 def in_16() -> BoolArray:
     """Return at which points of the grid (16) holds."""
-    return np.array([upper_branch_margin(pin) > 0.0 for pin in grid()])
+    return np.array([upper_branch_margin(pin) > 0.0 for pin in theory.grid()])
 
 
 @STUDY.claim(
@@ -137,7 +111,7 @@ def in_16() -> BoolArray:
 )
 def hurwitz() -> Measured:
     """Compare (16) with the largest real part of the eigenvalues."""
-    largest, error = largest_real_parts()
+    largest, error = theory.largest_real_parts()
     return counted(np.where(in_16(), -largest, largest), error)
 
 
@@ -162,15 +136,16 @@ def implied() -> Measured:
 )
 def incompatible() -> Measured:
     """Look for points where both hold."""
-    in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in grid()])
+    in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in theory.grid()])
     return counted(~(in_14() & in_15))
 
 
 # --- Eq. 11 and 12: what engines show of the whirl without offset, and how deviations from it develop.
 
 SETTLING = (
-    f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s. Error: the change at a smaller "
-    f"tolerance, and what is left of the transient by its change in the last {DELAY:g} s."
+    f"Starts on a circle {theory.DISPLACED:g} times as large; state after {theory.DURATION:g} s. Error: the "
+    "change at a smaller tolerance, and what is left of the transient by its change in the last "
+    f"{theory.DELAY:g} s."
 )
 
 
@@ -185,18 +160,18 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     """Return radius in m and frequency in rad/s in the end of long simulations, shape (n, 2)."""
 
     def track(speed: float, times: list[float], tolerance: float) -> FloatArray:
-        pin = pin_at(speed)
-        run = engine.simulate(pin, on_circle(pin, DISPLACED), times, tolerance=tolerance)
+        pin = theory.pin_at(speed)
+        run = engine.simulate(pin, theory.on_circle(pin, theory.DISPLACED), times, tolerance=tolerance)
         return np.column_stack((run.radius, turning_speed(run.states)))[1:]
 
     ends = [
         settled(
             functools.partial(track, speed),
-            duration=DURATION,
-            delay=DELAY,
+            duration=theory.DURATION,
+            delay=theory.DELAY,
             period=np.pi / K,  # of the deviations in the frame that turns with the whirl, nearly
-            rate=-whirl_eigenvalues(pin_at(speed))[1].real,
-            tolerance=TOLERANCE,
+            rate=-whirl_eigenvalues(theory.pin_at(speed))[1].real,
+            tolerance=theory.TOLERANCE,
         )
         for speed in speeds
     ]
@@ -209,15 +184,15 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     "A pin that starts beside the whirl comes to its radius μN/(βk) where ω > k",
     equation="(11)",
     unit="m",
-    resolution=1e-9 * whirl_radius(PIN),
+    resolution=1e-9 * whirl_radius(theory.PIN),
     note=SETTLING,
     swept=("disc_speed",),
 )
-def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     """Compare the radius in the end with (11)."""
     found = whirls(engine, speeds)
     return Measured(
-        predicted=np.full(len(speeds), whirl_radius(PIN)),
+        predicted=np.full(len(speeds), whirl_radius(theory.PIN)),
         value=found.value[:, 0],
         error=found.error[:, 0],
         at={"ω in rad/s": speeds},
@@ -232,7 +207,7 @@ def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
     note=SETTLING,
     swept=("disc_speed",),
 )
-def frequency(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     """Compare the frequency in the end with k."""
     found = whirls(engine, speeds)
     return Measured(
@@ -252,26 +227,26 @@ def frequency(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
     "tolerance and at a larger interval.",
     swept=("disc_speed",),
 )
-def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
+def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
     """Measure at which rate the angular momentum of a pin put on the circle (11) changes."""
     if engine.contact_only:
         return None
 
     def rates_of(interval: float, tolerance: float) -> FloatArray:
-        pins = [pin_at(speed) for speed in starts]
+        pins = [theory.pin_at(speed) for speed in starts]
         runs = engine.simulate_many(
-            [(pin, on_circle(pin), interval * np.arange(5)) for pin in pins], tolerance=tolerance
+            [(pin, theory.on_circle(pin), interval * np.arange(5)) for pin in pins], tolerance=tolerance
         )
         found = []
         for pin, run in zip(pins, runs, strict=True):
             x, y, vx, vy = run.states.T
-            moment = FORWARD @ (pin.mass * (x * vy - y * vx)) / interval
-            found.append(moment / (pin.friction_force * on_circle(pin)[0]))
+            moment = theory.FORWARD @ (pin.mass * (x * vy - y * vx)) / interval
+            found.append(moment / (pin.friction_force * theory.on_circle(pin)[0]))
         return np.array(found)
 
-    found = refined(functools.partial(rates_of, INTERVAL), 10.0 * TIGHTEST)
-    wide = np.abs(rates_of(2.0 * INTERVAL, 10.0 * TIGHTEST) - found.value)
-    rounding = 8.0 * np.finfo(float).eps * PIN.mass * K / (PIN.damping * INTERVAL)
+    found = refined(functools.partial(rates_of, theory.INTERVAL), 10.0 * TIGHTEST)
+    wide = np.abs(rates_of(2.0 * theory.INTERVAL, 10.0 * TIGHTEST) - found.value)
+    rounding = 8.0 * np.finfo(float).eps * theory.PIN.mass * K / (theory.PIN.damping * theory.INTERVAL)
     return Measured(
         predicted=[0.0 if speed > K else -2.0 for speed in starts],
         value=found.value,
@@ -284,10 +259,10 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
     "Where ω < k a pin put on the circle (11) leaves it and ends turning with the disc",
     equation="(11)",
     resolution=1e-3,
-    note=f"Speed at which it turns after {CAUGHT:g} s, over ω.",
+    note=f"Speed at which it turns after {theory.CAUGHT:g} s, over ω.",
     swept=("disc_speed",),
 )
-def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
+def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
     """Measure how fast a pin that left the circle (11) below k turns in the end."""
     if engine.contact_only:
         return None
@@ -295,11 +270,12 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
 
     def ends(tolerance: float) -> list[FloatArray]:
         return [
-            turning_speed(_leave(engine, speed, [0.0, CAUGHT], tolerance).at_end) / speed for speed in below
+            turning_speed(_leave(engine, speed, [0.0, theory.CAUGHT], tolerance).at_end) / speed
+            for speed in below
         ]
 
-    found = refined(ends, CAUGHT_TOLERANCE)
-    times = np.linspace(0.0, CAUGHT, 181)
+    found = refined(ends, theory.CAUGHT_TOLERANCE)
+    times = np.linspace(0.0, theory.CAUGHT, 181)
     return Measured(
         predicted=np.ones(len(below)),
         value=found.value,
@@ -308,26 +284,26 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
         data={
             "start": starts,
             "leaving_time": times,
-            "leaving": [_leave(engine, speed, times, CAUGHT_TOLERANCE).radius for speed in starts],
+            "leaving": [_leave(engine, speed, times, theory.CAUGHT_TOLERANCE).radius for speed in starts],
         },
     )
 
 
 def _leave(engine: Engine, speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
     """Return the motion of a pin put on the circle (11)."""
-    pin = pin_at(speed)
-    return engine.simulate(pin, on_circle(pin), times, tolerance=tolerance)
+    pin = theory.pin_at(speed)
+    return engine.simulate(pin, theory.on_circle(pin), times, tolerance=tolerance)
 
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     """Return the eigenvalues of the whirl at ``points``, ω in rad/s and β in N s/m."""
-    pins = [pin_at(*point) for point in points]
+    pins = [theory.pin_at(*point) for point in points]
     return measured_rates(
         engine,
-        [(pin, on_circle(pin)) for pin in pins],
+        [(pin, theory.on_circle(pin)) for pin in pins],
         [whirl_eigenvalues(pin) for pin in pins],
-        duration=FLOW_DURATION,
+        duration=theory.FLOW_DURATION,
         frame_speed=K,
     )
 
@@ -337,18 +313,18 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     equation="(12)",
     unit="1/s",
     resolution=1e-6 * K,
-    note=f"Central differences of the motion over {FLOW_DURATION:g} s, in the frame that turns with the whirl, "
-    "extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
+    note=f"Central differences of the motion over {theory.FLOW_DURATION:g} s, in the frame that turns with the "
+    "whirl, extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
     swept=("disc_speed", "damping"),
 )
-def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
+def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
     """Compare all four eigenvalues with those of (12) and zero."""
     if engine.contact_only:
         return None
     found = rates(engine, points)
     return found.compared(
         {"(ω, β)": [f"({speed:g} rad/s, {damping:g} N s/m)" for speed, damping in points]},
-        source=f"{SOURCE}; β too where it is not {PIN.damping:g}",
+        source=f"{theory.SOURCE}; β too where it is not {theory.PIN.damping:g}",
         data={"point": points, "eigenvalue": real_and_imaginary(found.measured)},
     )
 
@@ -361,40 +337,45 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) 
     implied_by=eigenvalues,
     swept=("disc_speed", "damping"),
 )
-def stable(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
+def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
     """See whether all measured deviations but that of the phase decay."""
     if engine.contact_only:
         return None
-    return rates(engine, points).decaying(but=1, source=f"{SOURCE}; β too where it is not {PIN.damping:g}")
+    return rates(engine, points).decaying(
+        but=1, source=f"{theory.SOURCE}; β too where it is not {theory.PIN.damping:g}"
+    )
 
 
 @STUDY.claim(
     "A small deviation of the radius decays over time as the linear equations (12) say",
     equation="(12)",
     resolution=1e-4,
-    note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {DEVIATION:g}·ρ_c; half the difference of the radii over a. "
-    "Model error: the change with a twice as large, three times what the next order of the deviation amounts to.",
+    note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {theory.DEVIATION:g}·ρ_c; half the difference of the "
+    "radii over a. Model error: the change with a twice as large, three times what the next order of the "
+    "deviation amounts to.",
 )
 def history(engine: Engine) -> Measured | None:
     """Follow a deviation of the radius in time."""
     if engine.contact_only:
         return None
-    circle = whirl_radius(PIN)
+    circle = whirl_radius(theory.PIN)
     shift = np.array([circle, 0.0, K * circle, K * circle])
 
     def deviation(amplitude: float, tolerance: float) -> FloatArray:
-        starts = (on_circle(PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
-        runs = engine.simulate_many([(PIN, start, DEVIATION_TIMES) for start in starts], tolerance=tolerance)
+        starts = (theory.on_circle(theory.PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
+        runs = engine.simulate_many(
+            [(theory.PIN, start, theory.DEVIATION_TIMES) for start in starts], tolerance=tolerance
+        )
         outwards, inwards = (run.radius for run in runs)
         return np.asarray((outwards - inwards) / (2.0 * amplitude * circle))
 
-    found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
-    nonlinear = np.abs(deviation(2.0 * DEVIATION, WORKING / 10) - found.value)
+    found = refined(functools.partial(deviation, theory.DEVIATION), WORKING / 10)
+    nonlinear = np.abs(deviation(2.0 * theory.DEVIATION, WORKING / 10) - found.value)
     return Measured(
-        predicted=linear_deviation(DEVIATION_TIMES),
+        predicted=linear_deviation(theory.DEVIATION_TIMES),
         value=found.value,
-        error=np.full(len(DEVIATION_TIMES), found.largest),
+        error=np.full(len(theory.DEVIATION_TIMES), found.largest),
         model=float(np.max(nonlinear)),
-        at={"t in s": DEVIATION_TIMES},
-        data={"history_time": DEVIATION_TIMES, "history": found.value},
+        at={"t in s": theory.DEVIATION_TIMES},
+        data={"history_time": theory.DEVIATION_TIMES, "history": found.value},
     )

@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import expm
 
-from compare.claims.error_estimates import WORKING
+from compare.claims import WORKING, Data
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
-from compare.claims.paper_parameters import CENTRED
-from compare.claims.study import Data
+from compare.claims.parameters import CENTRED
 from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.systems import FloatArray, PinOnDisc

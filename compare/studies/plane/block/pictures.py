@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from compare.claims.study import ByEngine, Figures
+from compare.claims import ByEngine, Figures
 from compare.output.figures import BLACK, GREY, axis, curve, engines_in, new_figure, points
 from compare.studies.plane.block.study import HEADINGS, SPEED, STOPPING_DISTANCE, direction
 

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import lambertw
 
-from compare.claims.error_estimates import WORKING, Measurement, refined
-from compare.claims.measured import Measured, answers_of, asked
+from compare.claims import WORKING, Data, Measured, Measurement, Study, answers_of, asked, refined
 from compare.claims.parameters import at_each
-from compare.claims.study import Data, Study
 from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
 

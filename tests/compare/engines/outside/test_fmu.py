@@ -15,7 +15,7 @@ fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed")
 pytest.importorskip("fmpy.fmi3")
 
 from compare.claims.claim import Verdict  # noqa: E402
-from compare.claims.paper_parameters import FIG5, FIG11  # noqa: E402
+from compare.claims.parameters import FIG5, FIG11  # noqa: E402
 from compare.engines import UnsupportedSystemError, engines  # noqa: E402
 from compare.engines.outside import fmu  # noqa: E402
 from compare.engines.outside.fmu import FmuError  # noqa: E402

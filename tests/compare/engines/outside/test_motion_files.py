@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.cli.trajectory_files import write_csv
 from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
 from compare.engines.outside.json_lines import question

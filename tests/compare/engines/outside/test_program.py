@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from processes import wait_until
 
-from compare.claims.paper_parameters import FIG5, FIG11
+from compare.claims.parameters import FIG5, FIG11
 from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
 from compare.engines.outside import conversation, json_lines
 from compare.engines.outside.program import name_of

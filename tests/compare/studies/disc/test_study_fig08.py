@@ -14,7 +14,7 @@ from compare.engines import EVERY_KIND, Engine
 from compare.studies.disc.fig08 import theory
 from compare.studies.disc.fig08.study import STUDY
 from compare.studies.disc.fig08.theory import RING
-from compare.studies.toolkit.self_centred import last_load, with_load
+from compare.studies.toolkit.steady_motion import last_load, with_load
 from reference_model.contact.contact_law import Ring, Shares
 from reference_model.formulas.disc import places_by_26
 

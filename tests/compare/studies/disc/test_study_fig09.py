@@ -10,10 +10,9 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import Engine
-from compare.studies.disc.fig09 import theory
-from compare.studies.disc.fig09.claims import STUDY, of_theory
+from compare.studies.disc.fig09 import STUDY, of_theory, theory
 from compare.studies.disc.fig09.theory import LARGEST_LOAD, OFFSETS, RING
-from compare.studies.toolkit.self_centred import last_load
+from compare.studies.toolkit.steady_motion import last_load
 from reference_model.contact.contact_law import Ring, Shares, Slopes
 from reference_model.formulas.disc import pin_of, whirl_at
 from reference_model.formulas.pin import first_order_whirl_shift

@@ -12,10 +12,9 @@ from study_harness import LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.studies.disc.fig11 import pictures, theory
-from compare.studies.disc.fig11.claims import STUDY, whirl
+from compare.studies.disc.fig11 import STUDY, pictures, theory, whirl
 from compare.studies.disc.fig11.parameters import EXPANSION, TIMES, UNTIL
-from compare.studies.toolkit.fig11_motion import DISCS, RING
+from compare.studies.toolkit.fig11 import DISCS, RING
 from reference_model import Trajectory, self_centred_equilibria, whirl_orbit, whirls
 
 NO_PASS = (SEES, OPEN)

@@ -6,7 +6,7 @@ from study_harness import StudyTests
 
 from compare.claims.claim import Verdict
 from compare.output.figures import paper_style, saved
-from compare.studies.disc.simulated_map.study import DAMPING, SHAFT_DAMPING, STUDY, simulated
+from compare.studies.disc.simulated_map import DAMPING, SHAFT_DAMPING, STUDY, simulated
 from reference_model.ensemble import EndState
 
 CLAIMS = ("leaves_axis", "no_unstable_whirl")

@@ -11,10 +11,9 @@ from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
 from compare.report.numbers import with_digits
 from compare.report.quotes import filled
-from compare.studies.disc.stability_map import theory
-from compare.studies.disc.stability_map.claims import STUDY, borders, regions
+from compare.studies.disc.stability_map import STUDY, borders, regions, theory
 from compare.studies.disc.stability_map.theory import DISC
-from compare.studies.toolkit.fig11_planes import LAWS, PLANES, curves_in
+from compare.studies.toolkit.fig11 import LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.steady.bifurcation_curves import crossings
 

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES
 from wrong_parts import WrongPartTests
 
-import compare.studies.drivetrain.clutch_parts.study as study
-from compare.studies.drivetrain.clutch_parts.study import STUDY, held, slipping_time
+import compare.studies.drivetrain.clutch_parts as study
+from compare.studies.drivetrain.clutch_parts import STUDY, held, slipping_time
 from exudyn_models import add_ring_friction, add_thermal_node
 
 

@@ -10,7 +10,7 @@ from wrong_parts import WrongPartTests
 
 import exudyn_models
 from compare.claims.claim import Verdict
-from compare.studies.drivetrain.frozen.claims import STUDY, whirls
+from compare.studies.drivetrain.frozen import STUDY, whirls
 from compare.studies.drivetrain.frozen.theory import (
     of_modulation,
     state_matrix_of,

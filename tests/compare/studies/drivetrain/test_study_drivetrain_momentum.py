@@ -9,7 +9,7 @@ from study_harness import BLIND, SEES
 from wrong_parts import WrongPartTests
 
 import exudyn_models
-from compare.studies.drivetrain.momentum.study import DRAWN, DRIVETRAINS, KINDS, STUDY
+from compare.studies.drivetrain.momentum import DRAWN, DRIVETRAINS, KINDS, STUDY
 
 items: Any = exudyn.itemInterface
 

@@ -5,9 +5,9 @@ from studies_under_test import altered
 from study_harness import LEFT_OUT, OPEN, SEES, StudyTests
 
 import exudyn_models
-from compare.claims.paper_parameters import FIG5, FIG8
+from compare.claims.parameters import FIG5, FIG8
 from compare.engines import EVERY_KIND, Engine
-from compare.studies.engines.clutch_scale.study import CLUTCH, STUDY
+from compare.studies.engines.clutch_scale import CLUTCH, STUDY
 
 NO_PASS = (SEES, OPEN)
 

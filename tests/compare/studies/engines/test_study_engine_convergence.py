@@ -10,7 +10,7 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 import exudyn_models
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
-from compare.claims.paper_parameters import FIG5, FIG5_STARTS
+from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine
 from compare.studies import STUDIES
 from compare.studies.engines.engine_convergence.study import STUDY

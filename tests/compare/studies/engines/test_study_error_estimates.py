@@ -10,7 +10,7 @@ from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.engines import EVERY_KIND, Engine, engines
 from compare.studies.engines.error_estimates.study import STUDY, simulated
 from compare.studies.engines.error_estimates.theory import KNOWN, PROBLEMS, Calibration, Problem, calibrated

@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import compare.foreign.records
+import compare.foreign
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG11
+from compare.claims.parameters import FIG11
 from compare.engines import UnsupportedSystemError, engines
 from compare.engines.live import setting
-from compare.foreign.cases import CASES
-from compare.foreign.records import CHANGE, COLUMNS, ERROR, SECONDS, STEPS, estimate, recordings
+from compare.foreign import CASES, CHANGE, COLUMNS, ERROR, SECONDS, STEPS, estimate, recordings
 from compare.output.figures import paper_style
 from compare.report.write import write_report
 from compare.run.runner import run
@@ -256,7 +255,7 @@ def test_creep_other_than_along_tangents_differs(monkeypatch):
 
 def test_columns_of_a_file_that_are_others_are_refused(tmp_path, monkeypatch):
     (tmp_path / "odd.json").write_text(json.dumps({"columns": ["tolerance"]}), encoding="utf-8")
-    monkeypatch.setattr(compare.foreign.records, "FOLDER", tmp_path)
+    monkeypatch.setattr(compare.foreign, "FOLDER", tmp_path)
     with pytest.raises(ValueError, match=r"odd.json: columns = \['tolerance'\]: they must be"):
         recordings()
 

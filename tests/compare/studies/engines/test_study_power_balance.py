@@ -10,8 +10,8 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
-from compare.studies.engines.power_balance import study as study
-from compare.studies.engines.power_balance.study import (
+from compare.studies.engines import power_balance as study
+from compare.studies.engines.power_balance import (
     all_motions,
     motions_of_the_disc,
     motions_of_the_pin,

@@ -12,10 +12,16 @@ from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
-from compare.studies.engines.trajectories.pooling import pooled
-from compare.studies.engines.trajectories.stick import samples_in_stick, stick_times
-from compare.studies.engines.trajectories.study import STUDY, measure, moves
-from compare.studies.engines.trajectories.theory import NODES, by_reference, forces, gauss, times_of
+from compare.studies.engines.trajectories.study import STUDY, measure, moves, pooled
+from compare.studies.engines.trajectories.theory import (
+    NODES,
+    by_reference,
+    forces,
+    gauss,
+    samples_in_stick,
+    stick_times,
+    times_of,
+)
 from reference_model.systems import DiscOnDisc
 
 PIN, RING, SIX = "a pin", "a disc on the continuous ring", "a disc on six points"

@@ -8,7 +8,7 @@ from studies_under_test import altered
 from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.output.figures import paper_style, saved
 from compare.studies.pin.basins import study, theory
 from compare.studies.pin.basins.study import STUDY

@@ -5,8 +5,8 @@ import pytest
 from studies_under_test import GROSS
 from study_harness import LEFT_OUT, SEES, StudyTests
 
-from compare.studies.pin.fig03 import study
-from compare.studies.pin.fig03.study import STUDY
+from compare.studies.pin import fig03 as study
+from compare.studies.pin.fig03 import STUDY
 
 LOADS = {"loads": (0.02, 0.06)}
 

@@ -8,9 +8,9 @@ from studies_under_test import GROSS, altered, verdicts
 from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG4
-from compare.studies.pin.fig04 import study
-from compare.studies.pin.fig04.study import STUDY
+from compare.claims.parameters import FIG4
+from compare.studies.pin import fig04 as study
+from compare.studies.pin.fig04 import STUDY
 from reference_model.formulas.pin import first_order_whirl_response, first_order_whirl_shift, whirl_shift
 
 NO_WHIRL = "no whirl near the guess"

@@ -13,7 +13,7 @@ from studies_under_test import GROSS, altered, fault
 from study_harness import BLIND, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.claims.paper_parameters import FIG5_STARTS
+from compare.claims.parameters import FIG5_STARTS
 from compare.engines import Engine
 from compare.studies.pin.fig05 import study
 from compare.studies.pin.fig05.pictures import animate

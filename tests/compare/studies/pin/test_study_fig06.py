@@ -8,9 +8,9 @@ from studies_under_test import GROSS, altered
 from study_harness import BLIND, LEFT_OUT, OPEN, SEES, StudyTests, engine_named
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.fig06 import study
-from compare.studies.pin.fig06.study import STUDY
-from compare.studies.toolkit.whirls import extent
+from compare.studies.pin import fig06 as study
+from compare.studies.pin.fig06 import STUDY
+from compare.studies.toolkit.pins import extent
 from reference_model import whirl_orbit
 from reference_model.formulas.pin import equilibrium_radius, sticking_radius
 

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from studies_under_test import altered
 from study_harness import BLIND, SEES, StudyTests
 
-from compare.claims.paper_parameters import CENTRED
+from compare.claims.parameters import CENTRED
 from compare.studies.pin.nonlinear_support import theory
 from compare.studies.pin.nonlinear_support.study import STUDY
 

@@ -10,7 +10,7 @@ from compare.engines import Engine
 from compare.studies.pin.sticking_domain import study, theory
 from compare.studies.pin.sticking_domain.study import STUDY
 from compare.studies.pin.sticking_domain.theory import vertex
-from compare.studies.toolkit.sticking import safest_angle
+from compare.studies.toolkit.pins import safest_angle
 from reference_model import Phase, Trajectory
 from reference_model.formulas.pin import squared_holding_force
 

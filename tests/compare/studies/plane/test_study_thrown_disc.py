@@ -9,8 +9,8 @@ from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
 
 import exudyn_models
 from compare.engines import Engine
-from compare.studies.plane.thrown_disc import study
-from compare.studies.plane.thrown_disc.study import STUDY
+from compare.studies.plane import thrown_disc as study
+from compare.studies.plane.thrown_disc import STUDY
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
 

@@ -8,8 +8,7 @@ import pytest
 
 from compare.claims.error_estimates import TIGHTEST
 from compare.claims.linearised_flow import matched, measured_eigenvalues, rotated
-from compare.claims.paper_parameters import FIG5, FIG8, FIG9, FIG11
-from compare.claims.parameters import parameters_of
+from compare.claims.parameters import FIG5, FIG8, FIG9, FIG11, parameters_of
 from compare.engines import engines
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.steady.steady_states import self_centred_equilibria, whirls

@@ -14,8 +14,8 @@ from long_sweeps import assert_same, content
 from compare.cli import app as cli
 from compare.cli.sweep import run
 from compare.cli.sweep.run import STORE
-from compare.sweep.store import store
-from compare.sweep.store.store import SweepStore
+from compare.sweep import store
+from compare.sweep.store import SweepStore
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
 
@@ -39,7 +39,7 @@ def whole(tmp_path_factory):
 
 @pytest.fixture
 def copied(whole, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("compare.sweep.show.figures.write_figures", lambda store, folder: ())
+    monkeypatch.setattr("compare.sweep.figures.write_figures", lambda store, folder: ())
     monkeypatch.setattr(store, "SMALL", 0)
     folder = shutil.copytree(whole[0], tmp_path / "copied")
     capsys.readouterr()

@@ -9,25 +9,24 @@ from local_cluster import cluster
 from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed
 from signalling_sweep import signalling
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.cli import app as cli
+from compare.sweep.arrays import DESCRIPTION, Chunks
 from compare.sweep.compute import executors
 from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 from compare.sweep.compute.run import finished, run
 from compare.sweep.compute.work import OtherCodeError
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import RandomBasin
-from compare.sweep.store.arrays import DESCRIPTION
-from compare.sweep.store.files import StoreError
-from compare.sweep.store.round import Chunks
-from compare.sweep.store.store import SweepStore
+from compare.sweep.files import StoreError
+from compare.sweep.plan import RandomBasin
+from compare.sweep.quantities import Axis
+from compare.sweep.store import SweepStore
 
 
 def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
     undisturbed, tmp_path, monkeypatch, capsys
 ):
     """In an object store, that of fsspec for files, which needs no server."""
-    monkeypatch.setattr("compare.sweep.store.store.SMALL", 0)  # the chunks stay files
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # the chunks stay files
     url = f"file://{tmp_path}"
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(url, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))

@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.claims.shares import of_counts
-from compare.sweep.compute.branches import known_branches
 from compare.sweep.compute.executors import InProcess
+from compare.sweep.compute.known import known_branches
 from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.run import run
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.distributions import Uncertain
-from compare.sweep.define.plan import Continuation, plan_as_json, plan_from_json
-from compare.sweep.show.summary import summary
-from compare.sweep.store.store import SweepStore
+from compare.sweep.distributions import Uncertain
+from compare.sweep.plan import Continuation, plan_as_json, plan_from_json
+from compare.sweep.quantities import Axis
+from compare.sweep.store import SweepStore
+from compare.sweep.summary import summary
 from reference_model import whirls
 from reference_model.ensemble import EndState
 

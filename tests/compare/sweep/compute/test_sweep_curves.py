@@ -2,10 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from compare.claims.paper_parameters import FIG5, FIG11
-from compare.sweep.compute.curves import MEANINGS, NODES, PIN, curves
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import Map
+from compare.claims.parameters import FIG5, FIG11
+from compare.sweep.compute.known import MEANINGS, NODES, PIN, curves
+from compare.sweep.plan import Map
+from compare.sweep.quantities import Axis
 from reference_model.steady.bifurcation_curves import ParameterPlane, crossings
 
 COMMON = {"duration": 100.0, "tolerance": 1e-9, "seed": 1}

@@ -5,12 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import CENTRED, FIG5, FIG5_STARTS, FIG11
+from compare.claims.parameters import CENTRED, FIG5, FIG5_STARTS, FIG11
 from compare.sweep.compute import work
-from compare.sweep.compute.plain import LEAST_TURNS, end_of, plain_trajectory, twice_as_long, watched_until
-from compare.sweep.compute.work import DOUBLINGS, recompute
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import RandomBasin
+from compare.sweep.compute.work import (
+    DOUBLINGS,
+    LEAST_TURNS,
+    end_of,
+    plain_trajectory,
+    recompute,
+    twice_as_long,
+    watched_until,
+)
+from compare.sweep.plan import RandomBasin
+from compare.sweep.quantities import Axis
 from reference_model import PinOnDisc, simulate, sticking_radius, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
 

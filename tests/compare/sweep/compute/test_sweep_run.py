@@ -10,16 +10,15 @@ import xarray as xr
 import zarr
 from long_sweeps import assert_same, content
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
-from compare.sweep.compute.plain import end_of, plain_trajectory
 from compare.sweep.compute.run import run
-from compare.sweep.compute.work import Plain, compute, simulate_chunk
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.distributions import Uncertain
-from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty
-from compare.sweep.show.summary import same_ends, summary
-from compare.sweep.store.store import SweepStore
+from compare.sweep.compute.work import Plain, compute, end_of, plain_trajectory, simulate_chunk
+from compare.sweep.distributions import Uncertain
+from compare.sweep.plan import Basin, Map, RandomBasin, Uncertainty
+from compare.sweep.quantities import Axis
+from compare.sweep.store import SweepStore
+from compare.sweep.summary import same_ends, summary
 from reference_model import simulate
 from reference_model.ensemble import EndState
 

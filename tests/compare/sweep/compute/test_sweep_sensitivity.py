@@ -2,7 +2,7 @@ import numpy as np
 from scipy.stats import sobol_indices
 
 from compare.sweep.compute.sensitivity import GROUPS, indices, moments
-from compare.sweep.define.distributions import uniform_rows
+from compare.sweep.distributions import uniform_rows
 
 
 def ishigami(x):

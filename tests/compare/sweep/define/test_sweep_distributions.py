@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from compare.claims.paper_parameters import FIG5, FIG11
-from compare.sweep.define.distributions import Uncertain, uniform_rows
+from compare.claims.parameters import FIG5, FIG11
+from compare.sweep.distributions import Uncertain, uniform_rows
 
 DRAWS = 20_000
 NEVER = 1e-6

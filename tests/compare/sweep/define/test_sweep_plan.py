@@ -4,10 +4,10 @@ import re
 import numpy as np
 import pytest
 
-from compare.claims.paper_parameters import FIG5, FIG11
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.distributions import Uncertain
-from compare.sweep.define.plan import Basin, Map, RandomBasin, Uncertainty, plan_as_json, plan_from_json
+from compare.claims.parameters import FIG5, FIG11
+from compare.sweep.distributions import Uncertain
+from compare.sweep.plan import Basin, Map, RandomBasin, Uncertainty, plan_as_json, plan_from_json
+from compare.sweep.quantities import Axis
 
 PIN = {"system": FIG5, "duration": 100.0, "tolerance": 1e-9, "seed": 4}
 DISC = PIN | {"system": FIG11}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.sweep.define.refinement import first_stride, mixed, refined
+from compare.sweep.refinement import first_stride, mixed, refined
 
 
 def disc(x, y):

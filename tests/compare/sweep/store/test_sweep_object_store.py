@@ -5,7 +5,7 @@ import pytest
 from long_sweeps import LONG, assert_same, content
 
 from compare.cli import app as cli
-from compare.sweep.store.files import Files, StoreError
+from compare.sweep.files import Files, StoreError
 
 
 def test_a_sweep_into_memory_is_there_and_drawn(undisturbed, tmp_path, capsys):

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 from long_sweeps import assert_same, content
 
-from compare.claims.paper_parameters import FIG5
+from compare.claims.parameters import FIG5
 from compare.sweep.compute.executors import InProcess
 from compare.sweep.compute.run import finished, run
 from compare.sweep.compute.work import simulate_chunk
-from compare.sweep.define.axes import Axis
-from compare.sweep.define.plan import Basin
-from compare.sweep.store.store import SweepStore
+from compare.sweep.plan import Basin
+from compare.sweep.quantities import Axis
+from compare.sweep.store import SweepStore
 
 X, Y = Axis("x", -0.3, 0.5, 5), Axis("vx", -0.4, 0.4, 5)
 PLAN = Basin(

@@ -1,0 +1,69 @@
+"""``friction-discs diff``: what parts two reports."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from compare.cli.command import FINE, NOTHING_MEASURED, SOMETHING_DIFFERS, printing, refused, say
+
+Old = Annotated[Path, typer.Argument(metavar="OLD", help="Folder or results.json of a report.")]
+New = Annotated[Path, typer.Argument(metavar="NEW", help="Folder or results.json of a later one.")]
+Baseline = Annotated[
+    Path | None,
+    typer.Option(
+        "--baseline",
+        metavar="FILE",
+        help="Claims that are known to fail: what happens to them is told, and does not count.",
+        show_default=False,
+    ),
+]
+WriteBaseline = Annotated[
+    Path | None,
+    typer.Option(
+        "--write-baseline",
+        metavar="FILE",
+        help="Write what fails in NEW as a baseline.",
+        show_default=False,
+    ),
+]
+
+
+def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBaseline = None) -> int:
+    """Tell what parts two reports: what moved by more than its error bars, what is new, what is gone.
+
+    The exit status is 0 when no claim moved, got worse or is gone, but for those of the baseline, 1 when one did,
+    2 on bad input, and 4 when an engine of NEW has no verdict, so nothing was compared.
+
+    \b
+    Examples:
+      friction-discs diff report-of-main report
+      friction-discs diff report report --write-baseline known.json
+      friction-discs diff old new --baseline known.json
+    """
+    from compare.report.comparison import Kind, changes, failures, read_baseline, without_verdict
+    from compare.report.comparison import write_baseline as write
+    from compare.report.results_json import read_results
+
+    with refused():
+        before, after = read_results(old), read_results(new)
+        known = read_baseline(baseline) if baseline is not None else frozenset()
+    found = changes(before, after, known)
+    counts = Counter(change.kind for change in found)
+    failing = failures(after)
+    with printing():
+        for change in found:
+            print(change)
+        for claim, engine in sorted(known - failing.keys()):
+            print(f"no longer fails: {claim} {engine}: leave it out of {baseline}")
+        print(", ".join(f"{counts[kind]} {kind.value}" for kind in Kind))
+    if write_baseline is not None:
+        write(write_baseline, failing)
+    if any(change.counts for change in found):
+        return SOMETHING_DIFFERS
+    if empty := without_verdict(after):
+        return say(f"{new} has no verdict on {', '.join(empty)}: nothing was compared", NOTHING_MEASURED)
+    return FINE

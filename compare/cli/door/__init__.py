@@ -1,1 +1,0 @@
-"""What every command needs at its door: options, refusals in a sentence, progress."""

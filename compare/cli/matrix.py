@@ -1,0 +1,131 @@
+"""``friction-discs matrix``: which law of friction an engine has, how fast its errors fall, and to what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from compare.cli.command import (
+    FINE,
+    INTERRUPTED,
+    NOTHING_MEASURED,
+    SOMETHING_DIFFERS,
+    measurements,
+    printing,
+    refused,
+    say,
+)
+from compare.cli.options import Folder, Jobs, check_folder, cores, positive
+from compare.cli.report import Engines
+
+if TYPE_CHECKING:
+    from compare.diagnosis.row import Row
+
+Limit = Annotated[
+    float,
+    typer.Option(
+        metavar="SECONDS",
+        help="Time after which a part of an engine's row is given up.",
+        parser=positive("limit", "s"),
+    ),
+]
+Recorded = Annotated[
+    bool,
+    typer.Option("--recorded", help="Show the engines of other people besides, as they are recorded."),
+]
+
+LIMIT = 60.0
+"""In s."""
+
+
+def matrix(
+    engine: Engines = None,
+    limit: Limit = LIMIT,
+    recorded: Recorded = False,
+    output: Folder = Path("matrix"),
+    jobs: Jobs = None,
+) -> int:
+    """Find out which law of friction engines have, how fast their errors fall, and to what.
+
+    Blocks that slide, that are pulled and whose slip turns tell the law in seconds; then come the motions by which
+    the recorded engines are measured, each at four steps or tolerances. Prints a few sentences for each engine and a
+    table, and writes matrix.json, as rows come in, and matrix.svg and matrix.png. The exit status is 0 when no engine
+    has anything that a smaller step does not cure, 1 otherwise, 2 on bad input, 4 when an engine simulates none of
+    this, and 130 after Ctrl-C.
+
+    \b
+    Examples:
+      friction-discs matrix --engine reference
+      friction-discs matrix --engine reference --engine exudyn --recorded
+    """
+    from compare.run.runner import loaded
+    from compare.run.workers import Workers
+
+    with refused(), Workers() as workers:
+        chosen = loaded(engine or [], workers)
+        check_folder(output)
+
+    from compare.diagnosis.row import write_picture, write_rows
+    from compare.diagnosis.run import diagnosed, recorded_rows
+
+    rows: list[Row] = list(recorded_rows()) if recorded else []
+    others = len(rows)
+    try:
+        with measurements() as progress:
+            for row in diagnosed(chosen, jobs=jobs or cores(), limit=limit, progress=progress):
+                rows.append(row)
+                write_rows(rows, output)
+                with printing():
+                    _print_row(row)
+    except KeyboardInterrupt:
+        done = len(rows) - others
+        return say(f"Interrupted; {done} of {len(chosen)} rows are in {output}.", INTERRUPTED)
+    write_picture(rows, output)
+    with printing():
+        _print_table(rows)
+        print(output / "matrix.png")
+    if any(row.wrong or row.gaps for row in rows[others:]):
+        return SOMETHING_DIFFERS
+    empty = [row.engine for row in rows[others:] if row.empty]
+    if empty:
+        return say(
+            f"nothing was measured: {', '.join(empty)} simulates none of these motions", NOTHING_MEASURED
+        )
+    return FINE
+
+
+def _print_row(row: Row) -> None:
+    print(f"{row.engine} {row.version}".rstrip())
+    for sentence in row.sentences:
+        print(f"  {sentence}")
+
+
+def _print_table(rows: Sequence[Row]) -> None:
+    """Print how far each engine is off each motion."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from compare.diagnosis.findings import MOTIONS
+
+    names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
+    table = Table(
+        "engine",
+        *names,
+        caption="✓ error in m and the engine's own estimate of it; ✗ it is not explained "
+        "by that; ? the estimate is too large to tell another law; ! no result",
+        highlight=False,
+    )
+    for row in rows:
+        table.add_row(row.engine, *(_cell(row, name) for name in names))
+    Console(highlight=False).print(table)
+
+
+def _cell(row: Row, name: str) -> str:
+    if name not in row.motions:
+        return "!" if name in row.gaps else ""
+    motion = row.motions[name]
+    mark = "✗" if not motion.converges else "✓" if motion.conclusive else "?"
+    return f"{mark} {motion.error:.0e} ± {motion.estimate:.0e}"

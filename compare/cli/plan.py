@@ -1,0 +1,85 @@
+"""``friction-discs plan``: the motions that studies ask for as files, for engines that nobody else can start."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, measurements, printing, refused, say
+from compare.cli.options import Folder, Jobs, check_folder, cores, studies_of
+from compare.cli.report import Level
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="STUDY", help="Studies to plan; all without any.", show_default=False),
+]
+Kinds = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--kind",
+        metavar="KIND",
+        help="What your engine simulates: block, pin, points or ring; several times for several.",
+        show_default="pin",
+    ),
+]
+
+
+def plan(
+    context: typer.Context,
+    names: Names = None,
+    kind: Kinds = None,
+    level: Level = "full",
+    output: Folder = Path("plan"),
+    jobs: Jobs = None,
+) -> int:
+    """Write the motions that studies ask for into a folder, each as a file, for an engine that answers with files.
+
+    Put NAME.csv beside each NAME.json, as simulate --output writes it: a line for each time with the time and the
+    state. Then judge them with report --engine files:DIR. What is missing or cut short is not scored. Claims whose
+    motions depend on the answers are left out.
+
+    \b
+    Examples:
+      friction-discs plan --level quick
+      friction-discs plan trajectories --kind pin --kind ring --output motions
+    """
+    from compare.engines import KINDS, one_of
+
+    studies = studies_of(context, names or [], level)
+    with refused():
+        kinds = tuple(dict.fromkeys(one_of("kind of system", one, KINDS) for one in kind or ["pin"]))
+        check_folder(output)
+
+    from compare.run.plan import Planned, planned, write_plan
+    from compare.run.workers import Failure, Workers
+
+    for study in studies:
+        if names and study.only:
+            say(f"{study.name} is about {' and '.join(study.only)} only: nothing is planned", FINE)
+    studies = tuple(study for study in studies if not study.only)
+    found: dict[str, Planned | Failure] = {}
+    with Workers(jobs or cores()) as workers, measurements() as progress:
+        for study in sorted(studies, key=lambda study: -study.seconds):
+            workers.submit(study.name, planned, study, kinds)
+        for count, done in enumerate(workers.finished(), 1):
+            found[str(done.key)] = done.value
+            progress(count, len(studies), str(done.key))
+    plans = {study.name: one for study in studies if isinstance(one := found[study.name], Planned)}
+    motions = dict.fromkeys(line for one in plans.values() for line in one.motions)
+    for name, failure in found.items():
+        if isinstance(failure, Failure):
+            say(f"{name} can't be planned: {failure}", SOMETHING_DIFFERS)
+    if not motions and len(plans) < len(found):
+        return SOMETHING_DIFFERS
+    if not motions:
+        raise BadInputError("no study of these asks for motions that do not depend on the answers")
+    write_plan(output, kinds, motions)
+    with printing():
+        for name, one in plans.items():
+            print(f"{name}: {len(one.motions)} motions for {one.claims} claims, {one.adaptive} left out")
+        print(
+            f"{len(motions)} motions ({output}); judge them with friction-discs report --engine files:{output}"
+        )
+    return FINE if len(plans) == len(found) else SOMETHING_DIFFERS

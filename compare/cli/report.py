@@ -1,0 +1,328 @@
+"""``friction-discs report``: measure the studies and write the report."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from compare.cli.command import (
+    FINE,
+    INTERRUPTED,
+    NOTHING_MEASURED,
+    NOTHING_SHOWN,
+    SOMETHING_DIFFERS,
+    measurements,
+    printing,
+    refused,
+    say,
+)
+from compare.cli.options import (
+    Folder,
+    Jobs,
+    Resume,
+    check_folder,
+    chosen_from,
+    cores,
+    positive,
+    studies_of,
+    whole,
+)
+from compare.output.outside_text import one_of
+
+if TYPE_CHECKING:
+    from compare.claims.study import Study
+    from compare.engines import Engine
+    from compare.report.matrix import Matrix
+    from compare.run.runner import Run
+    from compare.run.workers import Failure
+
+
+MOST_LISTED = 10
+"""Measurements that a sentence names."""
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="STUDY", help="Studies to run; all without any.", show_default=False),
+]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME",
+        help="Engine to measure, several times for several; all without any. "
+        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, files:DIR "
+        "answers to what plan has asked for, and fmu:FILE a model for co-simulation.",
+        show_default=False,
+    ),
+]
+Level = Annotated[
+    str,
+    typer.Option(
+        metavar="LEVEL",
+        help="quick takes only studies of seconds, with something of every kind of claim; full takes all.",
+        parser=chosen_from("level", ("quick", "full")),
+    ),
+]
+
+Limit = Annotated[
+    float | None,
+    typer.Option(
+        "--study-limit",
+        metavar="SECONDS",
+        help="Time after which a study of an engine is given up; without it, never.",
+        parser=positive("study-limit", "s"),
+        show_default=False,
+    ),
+]
+
+
+LeastConclusive = Annotated[
+    int,
+    typer.Option(
+        "--min-conclusive",
+        metavar="N",
+        help="How many claims have to agree; the theory's own algebra does not count.",
+        parser=whole("min-conclusive", 0, 1_000_000),
+    ),
+]
+
+
+OneClaim = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ID",
+        help="Measure this one claim, as the report calls it, and print its numbers.",
+        show_default=False,
+    ),
+]
+
+
+def report(
+    context: typer.Context,
+    names: Names = None,
+    claim: OneClaim = None,
+    engine: Engines = None,
+    level: Level = "full",
+    study_limit: Limit = None,
+    min_conclusive: LeastConclusive = 1,
+    output: Folder = Path("report"),
+    jobs: Jobs = None,
+    resume: Resume = False,
+) -> int:
+    """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+
+    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
+    few claims agree, 4 when an engine that --engine names has no verdict or gives no reason for one that is missing,
+    and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
+    Files of data that an engine of your own reads are not looked at by that: when they change, measure anew.
+
+    The whole report goes into the folder report. A part of it (some studies or engines, one claim, the quick level)
+    goes into the folder report-part and leaves the whole report as it is. --output names another folder.
+
+    \b
+    Examples:
+      friction-discs report
+      friction-discs report --level quick
+      friction-discs report fig03 fig05 --engine exudyn --output fig
+      friction-discs report --claim fig06/rests --engine exudyn
+    """
+    from compare.run.runner import loaded
+    from compare.run.workers import Workers
+
+    studies = _asked(context, names or [], claim, level, resume)
+    output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
+    with refused(), Workers() as workers:
+        chosen = loaded(engine or [], workers)
+        check_folder(output)
+        check_folder(store := store_of(output))
+
+    from compare.claims.errata import ERRATA
+    from compare.run.runner import run
+
+    part = context.obj is not None or names or claim is not None or level != "full"
+    with measurements() as progress:
+        result = run(
+            studies,
+            chosen,
+            folder=store,
+            jobs=jobs or cores(),
+            limit=study_limit,
+            resume=resume,
+            errata=() if part else ERRATA,
+            progress=progress,
+        )
+    matrix = _write(result, output)
+    with printing():
+        if claim is not None:
+            _print_numbers(matrix)
+        _print_summary(result, matrix, output / "index.html")
+    if not result.interrupted:
+        _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
+    return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
+
+
+def store_of(output: Path) -> Path:
+    """Return the folder beside the report's in which --resume finds what was measured: no reader needs it."""
+    return output.resolve().with_name(f"{output.resolve().name}.data")
+
+
+def _asked(
+    context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
+) -> tuple[Study, ...]:
+    """Return the studies to measure, or the one that makes a claim; refuse what doesn't go with it."""
+    studies = studies_of(context, names, level)
+    if claim is None:
+        return studies
+    with refused():
+        if names or level != "full" or resume:
+            raise ValueError(
+                f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
+            )
+        return (with_claim(studies, claim),)
+
+
+def _folder(context: typer.Context, output: Path, part: bool) -> Path:
+    """Return the folder that the user named, or by default "report-part" for a part, which keeps the whole report."""
+    source = context.get_parameter_source("output")
+    return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
+
+
+def _write(result: Run, output: Path) -> Matrix:
+    """Write the report, without an interruption: that takes seconds, and then nothing is half written."""
+    from compare.report.write import write_report
+    from compare.run.workers import interrupts_ignored
+
+    with interrupts_ignored():
+        return write_report(result, output)
+
+
+def _print_numbers(matrix: Matrix) -> None:
+    """Print the numbers that decide each claim."""
+    from compare.report.numbers import account
+
+    for claim in matrix.claims:
+        print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
+
+
+def _is_suspect(matrix: Matrix, engine: str) -> bool:
+    """Return whether any claim of an engine differs or has no result."""
+    from compare.report.matrix import State
+
+    found = matrix.count(engine)
+    return bool(found[State.DIFFERS] or found[State.FAILED])
+
+
+def _print_diagnoses(suspects: Iterable[Engine]) -> None:
+    """Print what is behind the claims of engines that differ, in a few sentences."""
+    from compare.diagnosis.run import IN_SHORT, in_short
+    from compare.run.workers import Workers
+
+    with Workers(1, IN_SHORT) as workers:
+        for engine in suspects:
+            row = in_short(engine, workers)
+            with printing():
+                print(f"{row.engine}: {' '.join(row.sentences)}")
+
+
+def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
+    """Return the exit status of a report; print what is missing, also for the engines that --engine ``named``."""
+    from compare.report.matrix import State
+
+    if result.interrupted:
+        missing = _listed([f"{study} {column}" for study, column in result.missing]) or "figures"
+        return say(
+            f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
+        )
+    wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
+    if wrong:
+        return SOMETHING_DIFFERS
+    if unexplained := "; ".join(_unexplained(result, matrix, named)):
+        return say(unexplained, NOTHING_MEASURED)
+    conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
+    if conclusive < least_conclusive:
+        return say(f"{conclusive} verdicts are conclusive: {least_conclusive} are asked for", NOTHING_SHOWN)
+    return FINE
+
+
+def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterator[str]:
+    """Yield a sentence for each named engine without a verdict, and for claims left out without a reason."""
+    from compare.claims.study import Findings
+    from compare.report.matrix import VERDICTS
+
+    for name in named:
+        if not any(matrix.count(name)[state] for state in VERDICTS):
+            yield f"nothing was measured with {name}"
+    for study in result.studies:
+        for name in named:
+            found = result.outcomes.get((study.name, name))
+            if not isinstance(found, Findings) or found.not_simulated or study.only:
+                continue
+            if missing := study.sentences().keys() - {claim.sentence for claim in found.claims}:
+                yield f"{study.name} {name}: not measured, and no reason given: {_listed(sorted(missing))}"
+
+
+def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
+    """Print a line for all that is no agreement, and the totals."""
+    from compare.report.matrix import State
+    from compare.report.page import summary
+
+    lines = []
+    for row in matrix.rows:
+        for column, cell in row.cells.items():
+            line = f"{row.study.name} {column} {cell.state.value}"
+            if cell.state is State.FAILED:
+                lines.append(f"{line}: {result.outcomes[row.study.name, column]}")
+            elif cell.state is State.NOT_SIMULATED:
+                lines.append(f"{line}: {cell.reason}")
+            elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
+                lines.append(f"{line}: {row.sentence}")
+    for line in dict.fromkeys(lines):  # an engine gives the same reason for all claims of a study
+        print(line)
+    for what, failure in _failures(result).items():
+        print(f"{what}: {failure}")
+    print(f"{summary(matrix)} ({index})")
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    return ", ".join(names[:MOST_LISTED]) + more
+
+
+def _failures(result: Run) -> dict[str, Failure]:
+    """Return what failed besides the measurements, by a name that can be printed."""
+    from compare.run.workers import Failure
+
+    work: dict[str, object] = {
+        f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()
+    }
+    work |= {
+        f"errata: no evidence for {result.errata[i].equation}": evidence
+        for i, evidence in result.evidence.items()
+    }
+    return {name: value for name, value in work.items() if isinstance(value, Failure)}
+
+
+# --- One claim of a study, to measure it by itself.
+
+
+def with_claim(studies: Sequence[Study], identity: str) -> Study:
+    """Return the study that makes the claim ``identity``, "fig06/rests", with no other claim and no figures.
+
+    Raises ``ValueError`` for a claim that no study declares.
+    """
+    found = {
+        declared.identity(study.name, case): (study, declared, case)
+        for study in studies
+        for declared in study.declared
+        for case, _ in declared.cases()
+    }
+    name, _, _ = identity.partition("/")
+    one_of("study", name, [study.name for study in studies])
+    study, declared, case = found[
+        one_of("claim", identity, (one for one in found if one.startswith(f"{name}/")))
+    ]
+    alone = replace(declared, each={case: declared.each[case]}) if declared.each else declared
+    return replace(study, prose=replace(study.prose, finding="", figures={}), declared=[alone], provided={})

@@ -1,0 +1,328 @@
+"""``results.json``: the report for programs, described by ``results.schema.json``.
+
+It has the verdict of each claim and engine with the numbers that decide it. All other numbers are in tables beside
+it; ``read_results`` puts both together.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import lzma
+import sys
+from collections.abc import Iterator, Mapping
+from importlib.resources import files
+from itertools import count, cycle, repeat
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from compare.claims.as_json import as_json, claim_as_json
+from compare.claims.claim import EVIDENCE, Claim
+from compare.claims.errata import Erratum, Evidence
+from compare.claims.prose import slug
+from compare.claims.study import Study
+from compare.output.outside_text import all_printable, printable
+from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, Row, State
+from compare.report.numbers import worst
+from compare.report.quotes import filled
+from compare.run.runner import Run
+from compare.run.store import Drawing
+from compare.run.workers import Failure
+from reference_model.systems import FloatArray
+
+# --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
+#
+# Where an engine makes a claim several times, ``measurement`` counts them from 1. Numbers come back to the last bit;
+# "nan" and "inf" are what they are called. Large tables are compressed (xz), which pandas and R read as they are.
+
+FOLDER = "arrays"
+
+COLUMNS = (
+    "engine",
+    "measurement",
+    "element",
+    "place",
+    "unit",
+    "predicted",
+    "measured",
+    "numerical_error",
+    "size",
+)
+"""``element`` counts from 0, ``place`` says in words which it is, ``size`` is empty where a claim has none."""
+
+LARGE = 32_768
+"""Bytes from which a table is compressed."""
+
+
+def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
+    """Return the path in the report's folder and the content of each claim's file, by the claim's identity."""
+    return {row.identity: table(row) for row in matrix.rows if row.claims}
+
+
+def table(row: Row) -> tuple[str, bytes]:
+    """Return the path of a claim's file in the report's folder, and what is in it."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for engine, cell in row.cells.items():
+        for i, claim in enumerate(cell.claims, 1):
+            writer.writerows((engine, i, *element) for element in _elements(claim))
+    content = stream.getvalue().encode()
+    path = f"{FOLDER}/{row.identity}.csv"
+    return (f"{path}.xz", lzma.compress(content, preset=2)) if len(content) > LARGE else (path, content)
+
+
+def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
+    """Yield the columns from ``element`` on of each element."""
+    shape = claim.predicted.shape
+    numbers = [
+        repeat("")
+        if array is None
+        else map(repr, np.broadcast_to(array, shape).astype(float).ravel().tolist())
+        for array in (claim.predicted, claim.measured, claim.budget.numerical, claim.size)
+    ]
+    return zip(count(), claim.elements(), cycle(claim.units), *numbers)
+
+
+def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return ``results.json`` of the report in ``folder`` with the arrays of each claim in it.
+
+    They are as in ``compare.claims.as_json.claim_as_json``; ``places`` has the name and the unit of each element.
+    Raises ``OSError`` or ``ValueError`` for a file that is not there, or is no such table.
+    """
+    studies = []
+    for study in results["studies"]:
+        tables: dict[str, dict[tuple[str, str], list[dict[str, str]]]] = {}
+        claims = []
+        for claim in study["claims"]:
+            if not (folder / claim["arrays"]).resolve().is_relative_to(folder.resolve()):
+                raise ValueError(f"the table {claim['arrays']!r} is not in the folder of the report")
+            if claim["arrays"] not in tables:
+                tables[claim["arrays"]] = _read(folder / claim["arrays"])
+            rows = tables[claim["arrays"]].get((claim["engine"], str(claim["measurement"])), [])
+            claims.append(claim | _arrays(rows, claim))
+        studies.append(study | {"claims": claims})
+    return {**results, "studies": studies}
+
+
+def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str]]:
+    """Return names of the last axis, which say the units where they are mixed."""
+    if "," not in claim["unit"]:
+        return []
+    return [[]] * (len(claim["shape"]) - 1) + [[row["place"] for row in rows[: claim["shape"][-1]]]]
+
+
+def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
+    """Return the rows of a table by engine and measurement."""
+    raw = path.read_bytes()
+    text = (lzma.decompress(raw) if path.suffix == ".xz" else raw).decode()
+    found: dict[tuple[str, str], list[dict[str, str]]] = {}
+    for row in csv.DictReader(io.StringIO(printable(text, sys.maxsize))):
+        found.setdefault((row["engine"], row["measurement"]), []).append(row)
+    return found
+
+
+def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, Any]:
+    if len(rows) != int(np.prod(claim["shape"], dtype=int)):
+        raise ValueError(
+            f"{claim['arrays']} has {len(rows)} numbers of {claim['engine']}: is it of this report?"
+        )
+
+    def column(name: str) -> FloatArray:
+        return np.array([float(row[name]) for row in rows]).reshape(claim["shape"])
+
+    predicted, measured = column("predicted"), column("measured")
+    return {
+        "predicted": predicted.tolist(),
+        "measured": measured.tolist(),
+        "difference": np.abs(measured - predicted).tolist(),
+        "numerical_error": column("numerical_error").tolist(),
+        "size": column("size").tolist() if rows[0]["size"] else None,
+        "places": [(row["place"], row["unit"]) for row in rows],
+        "axes": _axes(rows, claim),
+    }
+
+
+# --- The report as one file.
+
+FORMAT, VERSION = "friction-discs results", 1
+"""What the file says of itself; the version rises when a reader of the old one would be misled."""
+
+FILE = "results.json"
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of ``results.json``."""
+    content = files("compare.report").joinpath("results.schema.json").read_text(encoding="utf-8")
+    found: dict[str, Any] = json.loads(content)
+    return found
+
+
+def read_results(path: Path) -> dict[str, Any]:
+    """Return a report's results with the arrays of each claim, from ``results.json`` or the folder that it is in.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not there or is no such file, of another version too.
+
+    """
+    file = path / FILE if path.is_dir() else path
+    try:
+        content = all_printable(json.loads(file.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise ValueError(f"can't read {str(file)!r}: {error.strerror}") from None
+    except ValueError:
+        content = None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise ValueError(f"{str(file)!r} is no results.json of a report")
+    if content["version"] != VERSION:
+        raise ValueError(
+            f"{str(file)!r} has version {content['version']}: this program reads version {VERSION}"
+        )
+    try:
+        return with_arrays(content, file.parent)
+    except OSError as error:
+        raise ValueError(
+            f"can't read {str(error.filename)!r}, a table of {str(file)!r}: {error.strerror}"
+        ) from None
+
+
+def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
+    """Return the content of ``results.json``; numbers that JSON doesn't know are "nan", "inf", "-inf".
+
+    ``paths`` are those of the claims' tables, by identity.
+    """
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "stamp": dict(stamp),
+        "engines": list(run.engines),
+        "engine_versions": {name: run.versions.get(name, "") for name in run.engines},
+        "interrupted": run.interrupted,
+        "totals": {state.value: matrix.totals[state] for state in State},
+        "evidence": {
+            evidence: {state.value: matrix.of_evidence(evidence)[state] for state in VERDICTS}
+            for evidence in EVIDENCE
+        },
+        "studies": [_study(run, study, matrix.of(study), paths) for study in matrix.studies],
+        "recorded": [
+            {
+                "study": recorded.study.name,
+                "engine": setting.engine,
+                "setting": setting.setting,
+                "version": setting.version,
+                "date": setting.date,
+                "claims": [_recorded(recorded, claim) for claim in setting.claims],
+            }
+            for recorded in matrix.recorded
+            for setting in recorded.settings
+        ],
+        "errata": [
+            {
+                "id": erratum_id(erratum),
+                "equation": erratum.equation,
+                "printed": erratum.printed,
+                "correct": erratum.correct,
+                "explanation": erratum.explanation,
+                "evidence": _evidence(run.evidence.get(i)),
+            }
+            for i, erratum in enumerate(run.errata)
+        ],
+    }
+
+
+def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dict[str, Any]:
+    drawing = run.drawings.get(study.name)
+    return {
+        "name": study.name,
+        "title": study.title,
+        "finding": filled(study.prose.finding, own.claims),
+        "units": {column: _unit(run, study.name, column) for column in run.columns(study)},
+        "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
+        "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",
+        "claims": [
+            _verdict(claim, cell, i, row.identity, paths[row.identity])
+            for row in own.rows
+            for cell in row.cells.values()
+            for i, claim in enumerate(cell.claims, 1)
+        ],
+    }
+
+
+def _verdict(claim: Claim, cell: Cell, measurement: int, identity: str, path: str) -> dict[str, Any]:
+    """Return a claim with its kind of evidence in this report, and where its numbers are."""
+    said = _without_arrays(claim)
+    more = {
+        "measurement": measurement,
+        "evidence": cell.evidence,
+        "follows_from": cell.implied_by,
+        "arrays": path,
+    }
+    return {"id": identity} | said | more | _deciding(claim)
+
+
+def _recorded(recorded: RecordedMatrix, claim: Claim) -> dict[str, Any]:
+    return {"id": f"{recorded.study.name}/{slug(claim.sentence)}"} | _without_arrays(claim) | _deciding(claim)
+
+
+def _without_arrays(claim: Claim) -> dict[str, Any]:
+    content = claim_as_json(claim)
+    for name in ("predicted", "measured", "difference", "numerical_error", "size", "axes", "id"):
+        del content[name]
+    return content | {"shape": list(claim.predicted.shape)}
+
+
+def _deciding(claim: Claim) -> dict[str, Any]:
+    """Return the numbers of the element that decides, and the largest difference in each unit."""
+    element = worst(claim)
+    return {
+        "decided_by": as_json(
+            {
+                "element": element.index,
+                "name": element.name,
+                "unit": element.unit,
+                "predicted": element.predicted,
+                "measured": element.measured,
+                "difference": element.difference,
+                "numerical_error": element.numerical,
+                "allowed": element.total,
+            }
+        ),
+        "largest": [
+            {"element": one.index, "name": one.name, "unit": one.unit, "difference": as_json(one.difference)}
+            for one in element.largest
+        ],
+    }
+
+
+def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
+    outcome = run.outcomes.get((study, column))
+    state, reason = State.MISSING.value, ""
+    if isinstance(outcome, Failure):
+        state, reason = State.FAILED.value, outcome.reason
+    elif outcome is not None:
+        reason = outcome.not_simulated
+        state = State.NOT_SIMULATED.value if reason else "finished"
+    return {
+        "state": state,
+        "reason": reason,
+        "seconds": run.seconds.get((study, column)),
+    }
+
+
+def erratum_id(erratum: Erratum) -> str:
+    """Return what an erratum is called for good, as "erratum-13"."""
+    return f"erratum-{slug(erratum.equation)}"
+
+
+def _evidence(evidence: Evidence | Failure | None) -> dict[str, Any] | None:
+    if evidence is None:
+        return None
+    if isinstance(evidence, Failure):
+        return {"failed": evidence.reason}
+    content: dict[str, Any] = as_json(evidence)
+    return content

@@ -1,0 +1,349 @@
+"""The self-centred disc, sticking, and six points of contact in place of the ring."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+import compare.studies.disc.fig09.theory as theory
+from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement, answers_of, asked, refined
+from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.engines import Engine
+from compare.studies.disc.fig09.theory import STUDY
+from compare.studies.disc.fig09.whirls import circle, circles_of, rest, rests_of
+from compare.studies.toolkit.pins import first_release
+from compare.studies.toolkit.steady_motion import mode_growth, with_load
+from reference_model import Trajectory, simulate
+from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- The self-centred equilibrium, and small deviations from it and from the whirl.
+
+FOLLOWED = (
+    f"Half the difference of two simulations that start {theory.DISPLACED:g} of the way from the axis to either "
+    "side. Error: the change at a smaller tolerance, and with twice the deviation, which is three times what is "
+    "not linear."
+)
+
+
+@STUDY.claim(
+    "Place and spin of the self-centred disc are those of the balance of forces and moments, stable or not",
+    equation="(19), (20)",
+    resolution=1e-7,
+    note="In units of X0 and ω. Measured: the state that the engine itself brings back.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
+    """Compare the equilibria with the balance of forces and moments."""
+    found = rests_of(engine, theory.RING, loads)
+    exact = [theory.rest_of(load) for load in loads]
+    return Measured(
+        predicted=[
+            (one.x / theory.RING.offset, one.y / theory.RING.offset, one.spin / theory.RING.disc_speed)
+            for one in exact
+        ],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        data={"rest load": loads, "rest": found.value},
+    )
+
+
+@STUDY.claim(
+    "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues say",
+    equation="(19), (20)",
+    unit="1/s",
+    resolution=1e-6,
+    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. Not in the paper, which has this "
+    "equilibrium stable at every speed: that of the pin is. The friction of a ring grows with its slip, which on a "
+    f"master disc faster than k drives the disc around more than β damps it. {FOLLOWED}",
+    basis="reference",
+    swept=("friction_force",),
+)
+def deviations_grow(engine: Engine) -> Measured:
+    """Compare the growth of deviations from the equilibrium with its slowest eigenvalue."""
+    loads = [load for load, _ in theory.GROWTHS]
+    motions = [
+        (with_load(theory.RING, load), theory.rest_of(load), duration) for load, duration in theory.GROWTHS
+    ]
+    found = _growth(engine, motions, [theory.DISPLACED * theory.RING.offset * np.eye(6)[0]] * len(motions))
+    return Measured(
+        predicted=real_and_imaginary([theory.rest_of(load).eigenvalues[0] for load in loads]),
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("real part", "imaginary part"),
+    )
+
+
+@STUDY.claim(
+    "A disc beside the whirl approaches it at the rate of the slowest eigenvalue",
+    equation="(19), (20)",
+    unit="1/s",
+    resolution=1e-6,
+    note=f"Over {theory.DECAY[1]:g} s. X0 = 0 here. {FOLLOWED}",
+    basis="reference",
+    swept=("friction_force",),
+)
+def whirl_attracts(engine: Engine) -> Measured:
+    """Compare the decay of a deviation from the whirl with its slowest eigenvalue."""
+    load, duration = theory.DECAY
+    circle = theory.circle_of(load, 0)
+    larger = theory.DISPLACED * np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) * circle.state
+    found = _growth(engine, [(with_load(theory.CENTRED, load), circle, duration)], [larger])
+    return Measured(
+        predicted=real_and_imaginary([circle.eigenvalues[1]]),  # the first is that of a turn about the axis
+        value=found.value,
+        error=found.error,
+        at={"μN in N": [load]},
+        components=("real part", "imaginary part"),
+        system=theory.CENTRED,
+    )
+
+
+def _growth(
+    engine: Engine,
+    motions: Sequence[tuple[DiscOnDisc, SpinningEquilibrium | SpinningWhirl, float]],
+    displacements: Sequence[FloatArray],
+) -> Measurement:
+    """Return real and imaginary part in 1/s of the growth of each displacement from a motion, followed so long."""
+
+    def rates(tolerance: float, scale: float = 1.0) -> FloatArray:
+        return real_and_imaginary(
+            [
+                mode_growth(engine, disc, motion, scale * displacement, duration, tolerance)
+                for (disc, motion, duration), displacement in zip(motions, displacements, strict=True)
+            ]
+        )
+
+    found = refined(rates, theory.ORBIT_TOLERANCE)
+    # Two flows may be the same to within the tolerance: an error of the deviation of that size.
+    unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for _, _, duration in motions]
+    with_larger = found.plus(np.abs(rates(theory.ORBIT_TOLERANCE, 2.0) - found.value))
+    return Measurement(found.value, with_larger.rows + unseen)
+
+
+# --- Discs that stick to the master disc: inside of the radius (9) for ever, outside until (7) lets them go.
+
+REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
+"""In s: the period of what holds a disc that sticks."""
+
+
+@STUDY.claim(
+    "A disc stuck at 0.98 of the radius (9) turns with the master disc for ever",
+    equation="(9)",
+    resolution=1e-2,
+    note="After a revolution: displacement on the master disc in units of the radius, turn against it in rad, spin "
+    "against it in units of ω; and the number of phases that do not stick. What holds the disc has the period of a "
+    "revolution. In (9) stands the force that friction can give beside the moment b(ω − Ω). Error: the change at a "
+    "smaller tolerance, by which a law that only approximates stick shows its creep.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
+    """Follow discs that stick inside the radius (9) for a revolution."""
+    discs = [with_load(theory.RING, load) for load in loads]
+    starts = [theory.stuck_at(disc, theory.INSIDE)[0] for disc in discs]
+
+    @functools.cache
+    def runs(tolerance: float) -> list[Trajectory]:
+        motions = [(disc, start, [0.0, REVOLUTION]) for disc, start in zip(discs, starts, strict=True)]
+        return engine.simulate_many(motions, tolerance=tolerance)
+
+    def departures(tolerance: float) -> FloatArray:
+        rows = []
+        for run, start in zip(runs(tolerance), starts, strict=True):
+            away = rotated(run.at_end, -2.0 * math.pi) - start
+            size = float(np.hypot(*start[:2]))
+            rows.append((*away[:3] / (size, size, 1.0), away[-1] / theory.RING.disc_speed))
+        return np.array(rows)
+
+    def slips(tolerance: float) -> float:
+        return float(sum(phase.kind != "stick" for run in runs(tolerance) for phase in run.phases))
+
+    found = refined(departures, theory.TOLERANCE)
+    change = abs(slips(theory.TOLERANCE / COARSENING) - slips(theory.TOLERANCE))
+    parts = ("x", "y", "turn", "spin")
+    return Measured(
+        predicted=np.zeros(found.value.size + 1),
+        value=np.append(found.value.ravel(), slips(theory.TOLERANCE)),
+        # Departures of zero have no scale of their own for rounding.
+        error=np.append(found.largest + ROUNDING + np.zeros(found.value.size), change),
+        components=[*(f"{part} at μN = {load:g} N" for load in loads for part in parts), "phases that slip"],
+        data={
+            "stick load": loads,
+            "stuck": [(run.radius[-1], run.at_end[-1]) for run in runs(theory.TOLERANCE)],
+        },
+    )
+
+
+@STUDY.claim(
+    "A disc stuck at 1.02 and at 1.5 of the radius (9) is let go at the time of (7)",
+    equation="(7)",
+    unit="rad",
+    resolution=1e-2,
+    note="Turn of the master disc until the end of the first stick phase, after a start where the least force holds "
+    "the disc. In (7) stands the force that friction can give beside the moment b(ω − Ω).",
+    basis="reference",
+    swept=("friction_force",),
+)
+def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
+    """Compare when discs outside of the radius (9) are let go with (7)."""
+    cases = [(load, share) for load in loads for share in theory.OUTSIDE]
+    starts = [
+        (with_load(theory.RING, load), *theory.stuck_at(with_load(theory.RING, load), share))
+        for load, share in cases
+    ]
+
+    def turns(tolerance: float) -> list[float]:
+        motions = [(disc, start, [0.0, theory.LATEST * release]) for disc, start, release in starts]
+        runs = engine.simulate_many(motions, tolerance=tolerance)
+        return [run.system.disc_speed * first_release(run) for run in runs]
+
+    found = refined(turns, theory.TOLERANCE)
+    return Measured(
+        predicted=[disc.disc_speed * release for disc, _, release in starts],
+        value=found.value,
+        error=found.largest + ROUNDING,
+        components=[f"μN = {load:g} N, {share:g} of the radius" for load, share in cases],
+    )
+
+
+@STUDY.claim(
+    "Sticking and a whirl that never sticks exist for the same parameters",
+    equation="(9), (11)",
+    note="Whether a start stuck at half the radius (9) sticks all the time, for a turn, and one on the whirl slides "
+    "all the time, for ten.",
+)
+def coexist(engine: Engine) -> Measured:
+    """See whether for the largest friction force a disc sticks for a revolution and whirls without sticking."""
+    load = theory.STICK_LOADS[-1]
+    start, _ = theory.stuck_at(with_load(theory.RING, load), 0.5)
+    orbit = theory.orbit_of_reference(load, 0)
+
+    def sticks_and_slides(tolerance: float) -> list[bool]:
+        stays = engine.simulate(with_load(theory.RING, load), start, [0.0, REVOLUTION], tolerance=tolerance)
+        whirl = engine.simulate(orbit.system, orbit.state, [0.0, 10.0 * orbit.period], tolerance=tolerance)
+        return [
+            all(phase.kind == kind for phase in run.phases)
+            for run, kind in ((stays, "stick"), (whirl, "slip"))
+        ]
+
+    return answers_of(*asked(sticks_and_slides, theory.TOLERANCE), system=orbit.system)
+
+
+# --- The disc on six points, as the paper simulated it.
+
+REFERENCE = Engine("reference", simulate, ("points",))
+
+BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
+
+
+@STUDY.claim(
+    "On six points the mean whirl without offset is that of exact Coulomb friction",
+    equation="(19)–(21)",
+    kind="trajectory",
+    resolution=1e-6,
+    note=f"In units of μN/(βk), k and ω; means over the motion that comes back turned. {BY_REFERENCE}",
+    swept=("friction_force",),
+)
+def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.CIRCLES) -> Measured:
+    """Compare the whirls on six points with those of the reference."""
+    found = circles_of(engine, theory.on_six_points(theory.CENTRED), circles)
+    predicted = np.array([_circle_of_reference(*one) for one in circles])
+    beside = np.abs(
+        predicted[:, 0] - [theory.circle_of(*one).radius / theory.radius_of_pin(one[0]) for one in circles]
+    )
+    loads = [load for load, _ in circles]
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("radius", "frequency", "spin"),
+        system=theory.on_six_points(theory.CENTRED),
+        source=theory.SOURCE_CENTRED,
+        note=f"In radius it differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
+        "1e-9 from 0.001 N on: slip is along the circle then, at all points.",
+        data={"six circle load": loads, "six circle": found.value},
+    )
+
+
+@functools.cache
+def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
+    return tuple(circle(REFERENCE, theory.on_six_points(theory.CENTRED), load, which, TIGHTEST))
+
+
+@STUDY.claim(
+    "On six points the mean place and spin of the self-centred disc are those of exact Coulomb friction",
+    equation="(19)–(21)",
+    kind="trajectory",
+    resolution=1e-7,
+    note="Means in units of X0 and ω over the motion that comes back after a sixth of a turn. "
+    + BY_REFERENCE,
+    swept=("friction_force",),
+)
+def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
+    """Compare the motions about the equilibrium on six points with those of the reference."""
+    found = rests_of(engine, theory.on_six_points(theory.RING), loads)
+    return Measured(
+        predicted=[_rest_of_reference(load) for load in loads],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        system=theory.on_six_points(theory.RING),
+        data={"rest load": loads, "six rest": found.value},
+    )
+
+
+@functools.cache
+def _rest_of_reference(load: float) -> tuple[float, ...]:
+    return tuple(rest(REFERENCE, theory.on_six_points(theory.RING), load, TIGHTEST))
+
+
+@STUDY.claim(
+    "A disc on six points that is stuck beyond the radius (9) slips away as under exact Coulomb friction",
+    equation="(7)",
+    kind="trajectory",
+    resolution=2e-3,
+    note="Displacement on the master disc in units of the radius, and spin less ω in units of ω, half as long "
+    f"again after the start as (7) has it for the continuous ring; at {theory.OUTSIDE[-1]:g} of the radius (9). "
+    f"{BY_REFERENCE}",
+    swept=("friction_force",),
+)
+def six_releases(
+    engine: Engine, loads: Sequence[float] = theory.STICK_LOADS, tolerance: float = theory.TOLERANCE
+) -> Measured:
+    """Compare how far discs outside of the radius (9) have slipped on six points with the reference."""
+    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], tolerance)
+    predicted = [_slipped_in_reference(load) for load in loads]
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.rows,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        system=theory.on_six_points(theory.RING),
+        note=f"By then the disc has slipped by {', '.join(f'{math.hypot(*one[:2]):.2g}' for one in predicted)} of "
+        "the radius.",
+    )
+
+
+def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
+    disc = theory.on_six_points(with_load(theory.RING, load))
+    start, release = theory.stuck_at(disc, theory.OUTSIDE[-1])
+    end = 1.5 * release
+    run = engine.simulate(disc, start, [0.0, end], tolerance=tolerance)
+    away = rotated(run.at_end, -disc.disc_speed * end) - start
+    return np.array([*away[:2] / np.hypot(*start[:2]), away[-1] / disc.disc_speed])
+
+
+@functools.cache
+def _slipped_in_reference(load: float) -> tuple[float, ...]:
+    return tuple(_slipped(REFERENCE, load, TIGHTEST))

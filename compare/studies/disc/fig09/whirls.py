@@ -1,0 +1,335 @@
+"""The whirls of Figs. 9 and 10: circles without offset, and orbits with one."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import compare.studies.disc.fig09.theory as theory
+from compare.claims import TIGHTEST, Measured, Measurement, known, refined
+from compare.engines import Engine
+from compare.studies.disc.fig09.theory import STUDY
+from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
+from reference_model import Orbit, whirl_orbit
+from reference_model.steady.steady_states import whirls
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- What an engine brings back near to a steady motion, on ring or on points, and the orders of small gaps.
+
+
+@functools.lru_cache(maxsize=4)
+def circles_of(
+    engine: Engine, disc: DiscOnDisc, circles: tuple[tuple[float, int], ...] = theory.CIRCLES
+) -> Measurement:
+    """Return mean radius, frequency and spin of ``circles`` in units of μN/(βk), k and ω, shape (n, 3)."""
+    found = refined(
+        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in circles], theory.ORBIT_TOLERANCE
+    )
+    return with_tolerance(found, [sharpness(disc, theory.circle_of(*one)) for one in circles])
+
+
+def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance: float) -> FloatArray:
+    """Return the same of one circle, no numbers where none comes back."""
+    motion = steady_motion(engine, with_load(disc, load), theory.circle_of(load, which).state, tolerance)
+    if motion is None:
+        return np.full(3, np.nan)
+    return np.array(
+        [
+            float(np.hypot(*motion.mean)) / theory.radius_of_pin(load),
+            motion.frequency / disc.natural_frequency,
+            motion.spin / disc.disc_speed,
+        ]
+    )
+
+
+def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
+    """Return the means of x, y and spin at rest in units of X0 and ω, shape (n, 3)."""
+    found = refined(
+        lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], theory.ORBIT_TOLERANCE
+    )
+    return with_tolerance(found, [sharpness(disc, theory.rest_of(load)) for load in loads])
+
+
+def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
+    """Return the same at one friction force, no numbers where no rest comes back."""
+    motion = steady_motion(engine, with_load(disc, load), theory.rest_of(load).state, tolerance)
+    if motion is None:
+        return np.full(3, np.nan)
+    return np.array([*motion.mean / disc.offset, motion.spin / disc.disc_speed])
+
+
+def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
+    """Return motions found by shooting, shape (n, m), with an error for all numbers of a motion.
+
+    One number alone may be right by chance, and two flows may be the same to within the tolerance, which the motion
+    shows ``amplified``.
+    """
+    return Measurement(
+        found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
+    )
+
+
+def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """Return the order of ``gaps``, shape (3, m), at a halved variable, its numerical and its model error.
+
+    They are series in every other power, so that the order observed between neighbours tends to its limit like the
+    square of the variable. ``error`` is that of the gaps, of shape (3, 1).
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        orders = np.log2(gaps[:-1] / gaps[1:])
+        noise = error / gaps
+    step = (orders[1] - orders[0]) / 3.0
+    numerical = np.asarray(5.0 / 3.0 * (noise[1] + noise[2]) / math.log(2.0))
+    order = orders[1] + step
+    return order, known(order, numerical), float(np.nan_to_num(np.max(np.abs(step))))
+
+
+# --- The whirl without offset, which is a circle in axes that turn with it.
+
+LOADS = [load for load, _ in theory.CIRCLES]
+
+OBSERVED = (
+    "Orders of the distance in radius and spin, extrapolated; model error: the extrapolation's own step. The limit "
+    "of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
+    f"{theory.spin_of_large_whirl(theory.RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
+    f"{', '.join(f'{load:g}' for load in LOADS[theory.ORDERS])} N."
+)
+
+
+@STUDY.claim(
+    "Without offset the whirl has radius, frequency and spin of the three balances, stable or not",
+    equation="(19), (20)",
+    resolution=1e-6,
+    note="In units of μN/(βk), k and ω; the second of the two at the same μN is unstable. Measured: the state that "
+    "the engine itself brings back, turned about the axis. Predicted: radial, tangential and torsional balance on "
+    "the continuous ring.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def circles(engine: Engine) -> Measured:
+    """Compare the circles that come back with the three balances."""
+    found = circles_of(engine, theory.CENTRED)
+    exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
+    return Measured(
+        predicted=[
+            (
+                one.radius / theory.radius_of_pin(load),
+                one.frequency / theory.RING.natural_frequency,
+                one.spin / theory.RING.disc_speed,
+            )
+            for load, one in exact
+        ],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": LOADS},
+        components=("radius", "frequency", "spin"),
+        system=theory.CENTRED,
+        source=theory.SOURCE_CENTRED,
+        data={"circle load": LOADS, "circle": found.value},
+    )
+
+
+@STUDY.claim(
+    "The error of (23) falls like (μN)⁻⁴ in the whirl's radius, and like (μN)⁻² in its spin",
+    equation="(23)",
+    kind="order",
+    resolution=0.1,
+    note=OBSERVED,
+    implied_by=circles,
+    swept=("friction_force",),
+)
+def error_of_23(engine: Engine) -> Measured:
+    """Observe how the whirl differs from that of (23), at friction forces each twice the one before."""
+    by_23 = [
+        (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
+    ]
+    return _orders(
+        engine,
+        [(one.radius / theory.radius_of_pin(load), one.spin / theory.RING.disc_speed) for load, one in by_23],
+        (-4.0, -2.0),
+    )
+
+
+@STUDY.claim(
+    "The whirl's radius tends to the pin's μN/(βk), its spin to a limit without μN, both like (μN)⁻²",
+    equation="(11)",
+    kind="order",
+    resolution=0.1,
+    note=OBSERVED,
+    implied_by=circles,
+    swept=("friction_force",),
+)
+def limit_of_large_loads(engine: Engine) -> Measured:
+    """Observe how the whirl tends to its limit, at friction forces each twice the one before."""
+    limit = (1.0, theory.spin_of_large_whirl(theory.RING) / theory.RING.disc_speed)
+    return _orders(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
+
+
+def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
+    """Compare ``orders`` in the friction force with those in which radius and spin come near to ``others``."""
+    found = circles_of(engine, theory.CENTRED)
+    gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
+    observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])
+    return Measured(
+        predicted=orders,
+        value=-observed,
+        error=numerical,
+        model=model,
+        components=("radius", "spin"),
+        system=theory.CENTRED,
+        source=theory.SOURCE_CENTRED,
+    )
+
+
+# --- Whirls with an offset, which are periodic orbits, and how the offset shifts and changes them.
+
+EXTRAPOLATED = (
+    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated; model error: the "
+    "extrapolation's own step."
+)
+
+
+@STUDY.claim(
+    "With the offset the whirls, stable or not, are the periodic orbits of exact Coulomb friction",
+    equation="(19), (20)",
+    kind="trajectory",
+    unit="s, m, rad/s",
+    resolution=1e-6,
+    note="The second of the two at the same μN is the unstable one. Found by shooting with the engine; predicted: "
+    f"the reference at tolerance {TIGHTEST:g}.",
+    swept=("friction_force",),
+)
+def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
+    """Compare the engine's periodic orbits, by μN in N and number, with those of the reference."""
+    exact = [theory.orbit_of_reference(*one) for one in whirls]
+    predicted = np.array([sizes_of(orbit) for orbit in exact])
+    found = refined(
+        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls],
+        theory.ORBIT_TOLERANCE,
+    )
+    # The multiplier of a shift in time is 1; the one next to it tells by how much an error of the flow is amplified.
+    distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
+    found = with_tolerance(found, predicted[:, 2] / np.array(distances)[:, 1])
+    loads = [load for load, _ in whirls]
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=(
+            "period in s",
+            "least radius in m",
+            "greatest radius in m",
+            "least spin in rad/s",
+            "greatest spin in rad/s",
+            "mean spin in rad/s",
+        ),
+        data={"orbit load": loads, "orbit": found.value},
+    )
+
+
+def orbit_of(
+    engine: Engine, load: float, which: int, tolerance: float, offset: float = theory.RING.offset
+) -> Orbit:
+    """Return the same whirl as the engine has it."""
+    guess = theory.orbit_of_reference(load, which, offset)
+    return whirl_orbit(
+        guess.system,
+        simulate=engine.simulate,
+        guess=guess,
+        tolerance=tolerance,
+        samples=64,
+        precision=engine.precision,
+    )
+
+
+def sizes_of(orbit: Orbit) -> FloatArray:
+    """Return period, least and greatest radius, least, greatest and mean spin, in s, m and rad/s."""
+    spin = orbit.trajectory.states[:-1, -1]
+    return np.array([orbit.period, *theory.extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
+
+
+@functools.lru_cache(maxsize=4)
+def parts(engine: Engine) -> Measurement:
+    """Return centre, amplitude of the first harmonic, mean spin of whirls with ``HALVED_OFFSETS``, shape (3, 4)."""
+
+    def found(tolerance: float) -> FloatArray:
+        whirls = [
+            orbit_of(engine, theory.OFFSET_LOAD, 0, tolerance, offset) for offset in theory.HALVED_OFFSETS
+        ]
+        return np.array([(*orbit.mean, *circle_in(orbit)) for orbit in whirls])
+
+    return refined(found, theory.ORBIT_TOLERANCE, alike=False)
+
+
+def circle_in(orbit: Orbit) -> tuple[float, float]:
+    """Return the amplitude of the first harmonic of x + iy in m, and the mean spin in rad/s."""
+    states = orbit.trajectory.states[:-1]
+    harmonics = np.fft.fft(states[:, 0] + 1j * states[:, 1]) / len(states)
+    return float(np.abs(harmonics[1])), float(np.mean(states[:, -1]))
+
+
+@STUDY.claim(
+    "The offset shifts the centre of the whirl by the first-order response, with an error like X0³",
+    equation="(18)",
+    kind="order",
+    resolution=0.05,
+    note=f"Order for {EXTRAPOLATED} Not in the paper, whose (18) is for the pin: here it is the linear response of "
+    "the circle to the offset, which turns backwards in the axes that turn with it.",
+    basis="reference",
+    swept=("offset",),
+)
+def offset_shifts(engine: Engine) -> Measured:
+    """Observe the order of what the first-order response leaves of the shift."""
+    found = parts(engine)
+    discs = [
+        with_load(replace(theory.RING, offset=offset), theory.OFFSET_LOAD) for offset in theory.HALVED_OFFSETS
+    ]
+    response = [theory.first_order_shift(disc) for disc in discs]
+    gaps = np.abs(found.value[:, 0] + 1j * found.value[:, 1] - response)[:, np.newaxis]
+    return _orders_of_shift(
+        gaps, np.hypot(found.error[:, 0], found.error[:, 1])[:, np.newaxis], 3.0, ("shift",)
+    )
+
+
+@STUDY.claim(
+    "The offset changes radius and spin of the whirl like X0²",
+    kind="order",
+    resolution=0.05,
+    note=f"Orders of the change of the first harmonic's amplitude, and of the mean spin, for {EXTRAPOLATED}",
+    basis="reference",
+    swept=("offset",),
+)
+def offset_changes_size(engine: Engine) -> Measured:
+    """Observe the orders of the changes against the circle without offset."""
+    found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
+    _, _, radius, spin = found.value[1]
+    return replace(
+        _orders_of_shift(
+            np.abs(found.value[:, 2:] - [circle.radius, circle.spin]),
+            found.error[:, 2:],
+            2.0,
+            ("radius", "spin"),
+        ),
+        note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m they change by {radius / circle.radius - 1.0:.2g} of "
+        f"themselves and {spin - circle.spin:.2g} rad/s.",
+    )
+
+
+def _orders_of_shift(
+    gaps: FloatArray, noise: FloatArray, order: float, components: tuple[str, ...]
+) -> Measured:
+    observed, numerical, model = extrapolated(gaps, noise)
+    return Measured(
+        predicted=np.full(len(observed), order),
+        value=observed,
+        error=numerical,
+        model=model,
+        components=components,
+        system=with_load(theory.RING, theory.OFFSET_LOAD),
+    )

@@ -1,0 +1,201 @@
+"""The whirl of Fig. 11 with an offset, and on six points."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+import compare.studies.disc.fig11.parameters as parameters
+from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
+from compare.claims.parameters import at_each
+from compare.engines import Engine, StatesOnly, UnsupportedSystemError
+from compare.studies.disc.fig11.parameters import STUDY
+from compare.studies.disc.fig11.theory import (
+    critical_offset,
+    disc_at,
+    extents,
+    extremes_of,
+    multipliers_by_variation,
+    pair_modulus,
+    rest_offset,
+)
+from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
+from reference_model import Orbit, Trajectory, simulate
+from reference_model.systems import FloatArray
+
+# --- For which offset the modulated cycle of Fig. 11 exists: between steady whirl and self-centred equilibrium.
+
+
+@STUDY.claim(
+    "The whirl is unstable below a critical X0, where a pair of Floquet multipliers crosses the unit circle",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m",
+    resolution=1e-3 * parameters.TRIED[1],
+    note="Measured: whirls with an offset are found by shooting with the engine, for "
+    f"{at_each('X0', parameters.TRIED)} m, and their multipliers by differences. Predicted: what one step of "
+    "Newton's method makes of that X0 with multipliers from the variational equations, integrated with the "
+    "analytic Jacobian. Error: the change at a smaller tolerance, that by a straight line for the "
+    "interpolation, and how much the linearised return map changes a shift in time.",
+    named={"critical offset": 0},
+    swept=("offset",),
+)
+def critical(engine: Engine) -> Measured:
+    """Compare the critical X0 by the multipliers of the engine's own whirl with that by exact ones."""
+    predicted, found = critical_of(engine)
+    return Measured(predicted=predicted, value=found.value, error=found.error, source=SOURCE)
+
+
+@functools.lru_cache(maxsize=4)
+def critical_of(engine: Engine) -> tuple[float, Measurement]:
+    """Return the critical X0 in m by exact multipliers and by the engine's own; no numbers where there is none."""
+    found = functools.cache(lambda tolerance: critical_offset(engine, tolerance))
+    try:
+        measured, error = refined(lambda tolerance: found(tolerance)[0])
+        _, interpolation, slope, near = found(WORKING)
+        exact = multipliers_by_variation(disc_at(float(measured)), near)
+    except RuntimeError:  # no whirl, or none that could be critical
+        return math.nan, Measurement(np.array(math.nan), np.array(0.0))
+    error = error + interpolation + error_of_monodromy(near) / abs(slope)
+    predicted = float(measured) - (pair_modulus(exact) - 1.0) / slope
+    return predicted, Measurement(measured, known(measured, error))
+
+
+def error_of_monodromy(orbit: Orbit) -> float:
+    """Return about how wrong the linearised return map is: it should leave a shift in time as it is."""
+    shift = np.array(rates(disc_at(orbit.system.offset), orbit.state))[parameters.WITHOUT_ANGLE]
+    change = orbit.monodromy @ shift - shift
+    # One direction of as many as there are states.
+    return math.sqrt(len(shift)) * float(np.linalg.norm(change) / np.linalg.norm(shift))
+
+
+@STUDY.claim(
+    "Motions end modulated at small offsets, as a steady whirl at larger ones, and at rest beyond those",
+    equation="(19)–(21)",
+    note=f"From the last {parameters.LOOKED_AT:g} of {parameters.ENDS_UNTIL:g} s: the spin, averaged over a "
+    f"turn, swings by more than {parameters.SWING:g} rad/s, or the radius by more than "
+    f"{parameters.ORBITS_EXTENT:g} m. Predicted: from the critical X0 and from the one at which an eigenvalue of "
+    "the self-centred equilibrium crosses zero.",
+    basis="reference",
+    swept=("offset",),
+)
+def ends(engine: Engine, offsets: Sequence[float] = parameters.OFFSETS) -> Measured:
+    """See what the motion ends in at ``offsets`` in m."""
+    critical, _ = critical_of(engine)
+    predicted = [2 if offset < critical else 1 if offset < rest_offset() else 0 for offset in offsets]
+    extents: dict[float, list[list[float]]] = {}
+
+    def as_predicted(tolerance: float) -> list[bool]:
+        found = [end_of(engine, offset, tolerance=tolerance) for offset in offsets]
+        extents[tolerance] = [extent for extent, _ in found]
+        return [
+            kind == parameters.KINDS[expected] for (_, kind), expected in zip(found, predicted, strict=True)
+        ]
+
+    return answers_of(
+        *asked(as_predicted, parameters.ENDS_TOLERANCE),
+        note=f"{', '.join(parameters.KINDS[kind] for kind in predicted)} for {at_each('X0', offsets)} m; the "
+        "last one is that of the other figures.",
+        data={"offsets": offsets, "extents": extents[parameters.ENDS_TOLERANCE]},
+    )
+
+
+def end_of(
+    engine: Engine,
+    offset: float,
+    start: tuple[float, ...] = START,
+    tolerance: float = parameters.ENDS_TOLERANCE,
+) -> tuple[list[float], str]:
+    """Return least and greatest radius and spin in the end, and its kind, one of ``KINDS``."""
+    step = 2.0 * math.pi / RING.natural_frequency / parameters.SAMPLES_A_TURN
+    run = engine.simulate(
+        disc_at(offset), start, np.arange(0.0, parameters.ENDS_UNTIL, step), tolerance=tolerance
+    )
+    found = extents(run, round(parameters.LOOKED_AT / step))
+    averaged = np.convolve(
+        run.states[:, 5], np.full(parameters.SAMPLES_A_TURN, 1.0 / parameters.SAMPLES_A_TURN), "valid"
+    )
+    swing = np.ptp(averaged[-round(parameters.LOOKED_AT / step) :])
+    kind = (
+        "modulated"
+        if swing > parameters.SWING
+        else "whirl"
+        if found[1] - found[0] > parameters.ORBITS_EXTENT
+        else "rest"
+    )
+    return found, kind
+
+
+# --- The modulated motion on six points, of which single ones come to rest.
+
+NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
+
+
+@STUDY.claim(
+    "Single points of six, about which the disc then turns, come to rest when the reference says",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s",
+    resolution=1e-2,
+    note=f"{NOTE} A rest too many or too few shows as a missing number.",
+)
+def points_rest(engine: Engine) -> Measured:
+    """Compare when single points come to rest and let go with when they do in the reference."""
+    if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
+        raise UnsupportedSystemError(f"{engine.name} does not tell when single points rest")
+    predicted = rests_of_points(_reference())
+
+    def rests(tolerance: float) -> FloatArray:
+        found = rests_of_points(_run(engine, tolerance))
+        return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
+
+    found = refined(rests, parameters.OF_RESTS)
+    longer = engine.simulate(SIX, START, parameters.TIMES, tolerance=parameters.OF_RESTS)
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=float(np.max(known(found.value, found.error))),
+        components=[
+            f"{what} {1 + i}" for i in range(len(predicted) // 2) for what in ("start of rest", "end of rest")
+        ],
+        system=SIX,
+        data={"six points": longer.states, "six points: rests": rests_of_points(longer)},
+    )
+
+
+@STUDY.claim(
+    "Within 300 s the motion on six points has the least and greatest radius and spin that the reference gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-5,
+    note=NOTE,
+)
+def extremes_on_six_points(engine: Engine) -> Measured:
+    """Compare the extremes over one modulation with those of the reference."""
+    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), parameters.OF_RESTS, alike=False)
+    return Measured(
+        predicted=extremes_of(_reference()),
+        value=found.value,
+        error=found.largest,
+        components=parameters.EXTREMES,
+        system=SIX,
+    )
+
+
+def rests_of_points(trajectory: Trajectory) -> FloatArray:
+    """Return when single points come to rest and let go, in s, one after the other, shape (2·rests,)."""
+    return np.ravel([(phase.start, phase.end) for phase in trajectory.phases if phase.kind == "pivot"])
+
+
+@functools.lru_cache(maxsize=4)
+def _run(engine: Engine, tolerance: float) -> Trajectory:
+    return engine.simulate(SIX, START, parameters.ROUND, tolerance=tolerance)
+
+
+@functools.cache
+def _reference() -> Trajectory:
+    return simulate(SIX, START, parameters.ROUND, tolerance=1e-11)

@@ -1,0 +1,248 @@
+"""Sliding for a while, and how small deviations from the whirl of Fig. 11 grow, on ring and on single points."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from scipy.special import stdtrit
+
+import compare.studies.disc.fig11.parameters as parameters
+from compare.claims import Measured, Measurement, known, refined
+from compare.claims.linearised_flow import ComplexArray, rotated
+from compare.engines import Engine
+from compare.studies.disc.fig11.parameters import STUDY
+from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
+from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
+from reference_model import Trajectory
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
+
+NOTE = (
+    f"Rate and frequency of a deviation of {parameters.AMPLITUDE:g} radii, followed for {parameters.DURATION:g} "
+    "s to either side: straight lines through logarithm and phase of its share in the pair of modes. Error: "
+    "scatter about the lines, the change with twice the deviation, and at a smaller tolerance."
+)
+
+
+@STUDY.claim(
+    "A disc on {} that slides moves for 100 s as (19) to (21) say, integrated as they stand",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad, m/s, rad/s",
+    resolution=1e-8,
+    each=tuple(DISCS),
+)
+def slides(engine: Engine, contact: str) -> Measured:
+    """Compare the trajectory of a disc that slides all the time with an integration of (19) as it stands."""
+    disc = DISCS[contact]
+    predicted, rougher = (
+        integrated(disc, parameters.SLIDING_START, parameters.SLIDING[-1], len(parameters.SLIDING), tolerance)
+        for tolerance in (3e-14, 2e-13)
+    )
+    found = refined(
+        lambda tolerance: (
+            engine.simulate(disc, parameters.SLIDING_START, parameters.SLIDING, tolerance=tolerance).states
+        ),
+        5e-10,
+    )
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        # A single number may be right by chance.
+        error=found.largest + float(np.max(np.abs(rougher - predicted))),
+        at={"t in s": parameters.SLIDING},
+        components=parameters.COMPONENTS,
+        system=disc,
+        source=f"{parameters.CENTRED}; start {parameters.SLIDING_START} is an assumption",
+        named={f"slip for 100 s on {contact}": None},
+    )
+
+
+@STUDY.claim(
+    "A small deviation from the whirl on {} grows at the rate that its linearisation gives",
+    equation="(19)–(21)",
+    unit="1/s",
+    note=NOTE,
+    basis="reference",
+    each=tuple(DISCS),
+)
+def rate_of_growth(engine: Engine, contact: str) -> Measured:
+    """Compare the growth of a deviation with the real part of the slowest pair of eigenvalues."""
+    found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
+    times, sizes = departure(engine, DISCS[contact], whirl, parameters.FOLLOWED)
+    return Measured(
+        predicted=whirl.eigenvalue.real,
+        value=found.value[0],
+        error=found.error[0],
+        resolution=1e-2 * abs(whirl.eigenvalue.real),
+        system=DISCS[contact],
+        source=parameters.CENTRED,
+        note=_linearised(DISCS[contact]),
+        named={f"rate of growth on {contact}": 0},
+        data={f"{contact}: departure": np.column_stack((times, sizes))},
+    )
+
+
+@STUDY.claim(
+    "A small deviation from the whirl on {} swings with the frequency that its linearisation gives",
+    equation="(19)–(21)",
+    unit="1/s",
+    note=NOTE,
+    basis="reference",
+    each=tuple(DISCS),
+)
+def frequency_of_growth(engine: Engine, contact: str) -> Measured:
+    """Compare the frequency of a deviation with the imaginary part of the slowest pair of eigenvalues."""
+    found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
+    return Measured(
+        predicted=whirl.eigenvalue.imag,
+        value=found.value[1],
+        error=found.error[1],
+        resolution=5e-3 * abs(whirl.eigenvalue.imag),
+        system=DISCS[contact],
+        source=parameters.CENTRED,
+        note=_linearised(DISCS[contact]),
+        named={f"frequency of growth on {contact}": 0},
+    )
+
+
+def _linearised(disc: DiscOnDisc) -> str:
+    if disc.contact_points is None:
+        return "Predicted: the eigenvalues in the frame that turns with the whirl."
+    return (
+        "Predicted: the multipliers of the whirl on points, which comes back turned after "
+        f"{steady_whirl(disc).period:.4g} s, by the reference."
+    )
+
+
+@functools.lru_cache(maxsize=4)
+def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
+    """Return growth rate and frequency in 1/s of a deviation from the whirl under a law of ``contact``, shape (2,).
+
+    Straight lines through ln|q| and the phase of q over time. The error is the 95 % interval that the scatter about
+    them gives, the change with a deviation twice as large and that at a smaller tolerance.
+    """
+    whirl = steady_whirl(disc, contact)
+    (measured, scatter), (error, _) = refined(
+        lambda tolerance: fitted(*deviation(engine, disc, whirl, parameters.AMPLITUDE, tolerance)),
+        parameters.TOLERANCE,
+    )
+    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * parameters.AMPLITUDE, parameters.TOLERANCE))
+    return Measurement(measured, scatter + np.abs(larger - measured) + error)
+
+
+def deviation(
+    engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, amplitude: float, tolerance: float
+) -> tuple[FloatArray, ComplexArray]:
+    """Return times in s, once a period, and the share of the pair in a deviation, 1 at the start.
+
+    Half the difference of two simulations that start on opposite sides of the whirl: its even powers drop out.
+    """
+    turns = np.arange(round(parameters.DURATION / whirl.period) + 1)
+    times = turns * whirl.period
+    outwards, inwards = (
+        rotated(
+            engine.simulate(disc, whirl.displaced(sign * amplitude), times, tolerance=tolerance).states,
+            -turns * whirl.turn,
+        )
+        for sign in (1.0, -1.0)
+    )
+    # The start is the real part of the mode: half of it, and half of its conjugate.
+    share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
+    return np.asarray(times, dtype=float), np.asarray(share)
+
+
+def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return the slopes of ln|q| and of the phase of q, and what the scatter leaves open of them."""
+    logarithms = np.column_stack((np.log(np.abs(share)), np.unwrap(np.angle(share))))
+    matrix = np.column_stack((np.ones_like(times), times))
+    inverse = np.linalg.pinv(matrix)
+    coefficients = inverse @ logarithms
+    freedom = len(times) - 2
+    residual = np.linalg.norm(logarithms - matrix @ coefficients, axis=0) / math.sqrt(freedom)
+    scatter = float(stdtrit(freedom, 0.975)) * float(np.linalg.norm(inverse[1])) * residual
+    return coefficients[1], scatter
+
+
+def departure(
+    engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, until: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return times in s, once a period, and the size of the pair's share in units of the radius.
+
+    The deviation starts ten times as large as that of :func:`deviation`, and is followed beyond where it is small.
+    """
+    turns = np.arange(round(until / whirl.period) + 1)
+    times = turns * whirl.period
+    run = engine.simulate(disc, whirl.displaced(10.0 * parameters.AMPLITUDE), times, tolerance=1e-6)
+    away = rotated(run.states, -turns * whirl.turn) - whirl.state
+    away[:, ANGLE] -= turns * whirl.advance
+    sizes = np.abs(away @ whirl.projection) / whirl.radius
+    return np.asarray(times, dtype=float), np.asarray(sizes)
+
+
+# --- The modulated cycle itself on the continuous ring: its period, its turn about the axis and its extremes.
+
+CYCLE_NOTE = (
+    f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
+    "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the "
+    "change from the modulation before, of both."
+)
+
+
+@STUDY.claim(
+    "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s, rad",
+    resolution=1e-3,
+    note=CYCLE_NOTE,
+    named={"period of the modulation": 0, "turn in it": 1},
+)
+def period_and_turn(engine: Engine) -> Measured:
+    """Compare period and turn of the last modulation with those of an integration of (19) as it stands."""
+    found = modulation(engine)
+    return Measured(
+        predicted=predicted_modulation()[0][:2],
+        value=found.value[:2],
+        error=found.error[:2],
+        components=("period in s", "turn in rad"),
+        data={"the continuous ring": _run(engine, parameters.OF_CYCLE).states},
+    )
+
+
+@STUDY.claim(
+    "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="m, rad/s",
+    resolution=1e-6,
+    note=CYCLE_NOTE,
+)
+def extremes(engine: Engine) -> Measured:
+    """Compare the extremes of the last modulation with those of an integration of (19) as it stands."""
+    found = modulation(engine)
+    return Measured(
+        predicted=predicted_modulation()[0][2:],
+        value=found.value[2:],
+        error=found.error[2:],
+        components=parameters.EXTREMES,
+    )
+
+
+@functools.lru_cache(maxsize=4)
+def modulation(engine: Engine) -> Measurement:
+    """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
+    found = refined(
+        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], parameters.OF_CYCLE, alike=False
+    )
+    error = (
+        found.error + predicted_modulation()[1] + last_modulation(_run(engine, parameters.OF_CYCLE).states)[1]
+    )
+    return Measurement(found.value, known(found.value, error))
+
+
+@functools.lru_cache(maxsize=4)
+def _run(engine: Engine, tolerance: float) -> Trajectory:
+    return engine.simulate(RING, START, parameters.TIMES, tolerance=tolerance)

@@ -1,0 +1,227 @@
+"""The surroundings of Fig. 11 by simulation: what thousands of discs end in, under the stability map's curves."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of
+from compare.claims.parameters import FIG11
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
+from compare.studies.toolkit.fig11 import KINDS, curves_in
+from reference_model import onset_load, whirls
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- The plane of discs that are simulated, and when their end is asked for.
+
+SIDE = 60
+"""Discs along each side of the plane."""
+
+DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)
+"""In N s/m and N m s/rad."""
+
+START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
+"""Beside the axis: x, y, angle, vx, vy, spin."""
+
+UNTIL = 12000.0
+"""When the slowest have settled, in s."""
+
+TOLERANCE = 10.0 * WORKING
+"""Only where a motion ends is asked."""
+
+MARGIN = 0.05
+"""Of the friction force beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
+
+EVERY = 5
+"""Each fifth disc in both directions is asked for the eigenvalues of its whirl."""
+
+GROWN = 15.0
+"""Re λ times the duration from which on a whirl that is unstable is left: deviations have grown by exp(15)."""
+
+UNDECIDED_IS_OPEN = 2.0
+"""Error of a truth value, which is 1 or −1 as a margin, where the ensemble does not know the end."""
+
+
+# --- What the discs of the plane end in, by the compiled ensemble, and the curves of the stability map.
+
+Ends = NDArray[np.uint8]
+
+
+def discs() -> list[DiscOnDisc]:
+    """Return the discs, row by row of one shaft damping."""
+    return [
+        replace(FIG11, damping=beta, shaft_damping=b)
+        for b in SHAFT_DAMPING.tolist()
+        for beta in DAMPING.tolist()
+    ]
+
+
+@functools.cache
+def simulated() -> Ends:
+    """Return what the discs end in, shape (SIDE, SIDE)."""
+    from reference_model.ensemble import simulate_ensemble
+
+    beta, b = np.meshgrid(DAMPING, SHAFT_DAMPING)
+    found = simulate_ensemble(
+        FIG11,
+        START,
+        duration=UNTIL,
+        tolerance=TOLERANCE,
+        parameters={"damping": beta.ravel(), "shaft_damping": b.ravel()},
+    )
+    return found.end.reshape(SIDE, SIDE)
+
+
+def growth(disc: DiscOnDisc) -> float:
+    """Return the least growth rate in 1/s among the whirls of a disc; −inf without any."""
+    found = whirls(disc)
+    return min((max(value.real for value in each.eigenvalues) for each in found), default=-np.inf)
+
+
+def curves() -> Data:
+    """Return the ends, and the curves by kind."""
+    return {
+        f"{kind}/{i}": boundary.parameters
+        for kind in KINDS
+        for i, boundary in enumerate(curves_in("dampers", kind, "ring"))
+    } | {"ends": simulated().astype(float)}
+
+
+STUDY = Study.beside(
+    __file__,
+    "simulated-map",
+    source=f"Fig. 11 with X0 = 0; β, b and the start {START} are ours",
+    system=FIG11,
+    only=("theory",),  # the plane is simulated by the ensemble of the reference alone
+    seconds=2.0,
+    words={"side": f"{SIDE}"},
+)
+
+
+@STUDY.claim(
+    "Motions that begin beside the axis come back to it where μN is below the onset, and leave it above",
+    equation="(19)–(21)",
+    note=f"Those within {MARGIN:g} of the onset's μN and those that stick are left out. By the compiled ensemble "
+    f"to t = {UNTIL:g} s, which may leave one in a thousand undecided.",
+    basis="reference",
+    swept=("damping", "shaft_damping"),
+)
+def leaves_axis(ends: Ends | None = None) -> Measured:
+    """Count the motions that stay at the axis where they should leave it, and the other way round."""
+    from reference_model.ensemble import EndState
+
+    ends = simulated() if ends is None else ends
+    ratio = np.array([disc.friction_force / onset_load(disc) for disc in discs()]).reshape(ends.shape)
+    asked = (np.abs(ratio - 1.0) > MARGIN) & (ends != EndState.STUCK)
+    right = (ratio < 1.0) == (ends == EndState.SELF_CENTRED)
+    return answers_of(
+        right[asked],
+        UNDECIDED_IS_OPEN * (ends[asked] == EndState.UNDECIDED),
+        may_be_open=int(np.count_nonzero(asked)) // 1000,
+        note=f"{np.count_nonzero(asked)} of {ends.size} discs.",
+    )
+
+
+@STUDY.claim(
+    "No motion ends as a steady whirl that has had time to amplify a deviation by exp(15)",
+    equation="(19)–(21)",
+    basis="reference",
+    swept=("damping", "shaft_damping"),
+)
+def no_unstable_whirl(ends: Ends | None = None) -> Measured:
+    """Count the motions that end as a whirl that is unstable."""
+    from reference_model.ensemble import EndState
+
+    ends = simulated() if ends is None else ends
+    rows = slice(EVERY // 2, None, EVERY)
+    rates = np.array(
+        [
+            [growth(replace(FIG11, damping=beta, shaft_damping=b)) for beta in DAMPING[rows].tolist()]
+            for b in SHAFT_DAMPING[rows].tolist()
+        ]
+    )
+    unstable, left = rates * UNTIL > GROWN, ends[rows, rows]
+    return answers_of(
+        (left != EndState.WHIRL)[unstable],
+        UNDECIDED_IS_OPEN * (left == EndState.UNDECIDED)[unstable],
+        note=f"So it is of {np.count_nonzero(unstable)} of {rates.size} discs, each fifth in both directions: they "
+        "have no other whirl.",
+    )
+
+
+# --- The ends of a plane of discs, under the curves of the stability map.
+
+DARK = "#3d3d3d"
+
+LOOKS = {
+    "UNDECIDED": ("undecided", "#ffffff"),
+    "SELF_CENTRED": ("rotation about the axis", "#f3ead7"),
+    "WHIRL": ("whirl", SKY),
+    "MODULATED": ("modulated cycle", ORANGE),
+    "STUCK": ("sticks", DARK),
+}
+
+CURVES: dict[str, tuple[str, Any]] = {
+    "onset": (BLACK, "-"),
+    "Hopf": (GREEN, "-"),
+    "fold": (PURPLE, (0.0, (5.0, 2.0))),
+}
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the ends under the curves."""
+    if "theory" not in data:
+        return {}
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    from reference_model.ensemble import EndState
+
+    found = data["theory"]
+    figure, (plane,) = new_figure(width=8.4, height=4.4)
+    plane.imshow(
+        found["ends"],
+        origin="lower",
+        extent=_edges(DAMPING) + _edges(SHAFT_DAMPING),
+        cmap=ListedColormap([colour for _, colour in LOOKS.values()]),
+        vmin=-0.5,
+        vmax=len(LOOKS) - 0.5,
+        interpolation="nearest",
+        aspect="auto",
+    )
+    for name, points in found.items():
+        if name != "ends":
+            colour, dashes = CURVES[name.split("/")[0]]
+            plane.plot(*points.T, color=colour, linestyle=dashes, linewidth=1.6)
+    plane.plot(FIG11.damping, FIG11.shaft_damping, "+", color="white", markersize=10.0, markeredgewidth=1.8)
+    plane.set(
+        xlabel=axis(r"\beta", "N s/m"),
+        ylabel=axis("b", "N m s/rad"),
+        xlim=_edges(DAMPING),
+        ylim=_edges(SHAFT_DAMPING),
+    )
+    shown = [
+        Patch(facecolor=colour, edgecolor=GREY, label=words)
+        for name, (words, colour) in LOOKS.items()
+        if np.any(found["ends"] == EndState[name])
+    ]
+    lines = [
+        Line2D([], [], color=colour, linestyle=dashes, label=kind)
+        for kind, (colour, dashes) in CURVES.items()
+    ]
+    plane.legend(handles=[*shown, *lines], loc="center left", bbox_to_anchor=(1.01, 0.5))
+    return {"simulated-map": figure}
+
+
+def _edges(values: FloatArray) -> tuple[float, float]:
+    """Return from where to where a picture of ``values`` reaches: half a step beyond both ends."""
+    half = 0.5 * (values[1] - values[0])
+    return float(values[0] - half), float(values[-1] + half)
+
+
+STUDY.provides(figures=draw, curves=curves)

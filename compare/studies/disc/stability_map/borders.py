@@ -1,0 +1,339 @@
+"""The borders of the map, and how they move with the contact law."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+import compare.studies.disc.stability_map.theory as theory
+from compare.claims import Measured, answers_of
+from compare.claims.linearised_flow import ComplexArray
+from compare.studies.disc.stability_map.theory import STUDY, growth_of_rotation
+from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.formulas.pin import upper_branch_margin
+from reference_model.simulation import simulate
+from reference_model.steady.bifurcation_curves import Kind, crossings
+from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
+from reference_model.steady.stability import equilibrium_eigenvalues, onset_load, whirl_eigenvalues
+from reference_model.steady.steady_states import whirls
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+
+# --- The curves of the map against eigenvalues that take no part in their tracing, and what they say of Fig. 11.
+
+CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
+    f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
+)
+
+EPSILON = float(np.finfo(float).eps)
+
+
+@functools.cache
+def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
+    return theory.spectra(kind, theory.traced())
+
+
+@STUDY.claim(
+    "At every point of the Hopf curves a pair of eigenvalues of the whirl is imaginary",
+    equation=theory.BOTH_LAWS,
+    resolution=1e-10,
+    note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which takes no part in "
+    f"the tracing. {CURVES}. Error: rounding, by the condition of the eigenvalues.",
+)
+def marginal(curves: theory.Traced | None = None) -> Measured:
+    """Take the pair's real part at all points of ``curves``, or of the map."""
+    found = _spectra_on_map("Hopf") if curves is None else theory.spectra("Hopf", curves)
+    frequencies = np.array([abs(values[0].imag) for values, _ in found])
+    return Measured(
+        predicted=np.zeros(len(found)),
+        value=np.array([values[0].real for values, _ in found]) / frequencies,
+        error=np.array([error for _, error in found]) / frequencies,
+    )
+
+
+@STUDY.claim(
+    "Beside the Hopf curves no other eigenvalue of the whirl grows: they are borders of its stability",
+    equation=theory.BOTH_LAWS,
+    note="Whether the real parts of all other eigenvalues are negative.",
+)
+def no_other_grows() -> Measured:
+    """Look at the other eigenvalues at all points of the Hopf curves."""
+    found = _spectra_on_map("Hopf")
+    return answers_of(
+        -np.array([value.real for values, _ in found for value in values[2:]]),
+        [error for values, error in found for _ in values[2:]],
+        note=f"At {len(found)} points.",
+    )
+
+
+@STUDY.claim(
+    "At every point of the fold curves an eigenvalue of the whirl is zero",
+    equation=theory.BOTH_LAWS,
+    resolution=1e-8,
+    note=f"The least eigenvalue over k. {CURVES}. Error: rounding, by the condition of the eigenvalues, which grows "
+    "where a second one becomes zero.",
+)
+def folds() -> Measured:
+    """Take the least eigenvalue at all points of the fold curves."""
+    found = _spectra_on_map("fold")
+    return Measured(
+        predicted=np.zeros(len(found)),
+        value=[abs(values[np.argmin(np.abs(values))]) / theory.K for values, _ in found],
+        error=[error / theory.K for _, error in found],
+    )
+
+
+@STUDY.claim(
+    "The traced curves cross the line of Fig. 11 where a search along it finds the boundary",
+    equation=theory.BOTH_LAWS,
+    unit="N",
+    resolution=1e-3 * theory.DISC.friction_force,
+    note="μN of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
+    "determinant over the ratio U : W. Error: the change with points at twice the distance.",
+    swept=("friction_force",),
+)
+def crosses_line() -> Measured:
+    """Compare where the traced curves cross the line of Fig. 11's speed with a search on that line alone."""
+    predicted: list[float] = []
+    measured: list[float] = []
+    errors: list[float] = []
+    names: list[str] = []
+    for law in LAWS:
+        sets = theory.traced()["load", law, "Hopf"], curves_in("load", "Hopf", law, step=2.0 * FINE)
+        fine, coarse = (theory.crossed(curves, theory.DISC.disc_speed) for curves in sets)
+        predicted.extend(crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]))
+        measured.extend(fine)
+        errors.extend(np.abs(fine - coarse))
+        names.extend(f"{law}, crossing {1 + i}" for i in range(len(fine)))
+    return Measured(predicted=predicted, value=measured, error=errors, components=names)
+
+
+@STUDY.claim(
+    "The centred rotation loses its stability at the closed form of the onset",
+    equation=theory.BOTH_LAWS,
+    unit="N",
+    resolution=1e-9 * theory.DISC.friction_force,
+    note="By the root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
+    "of the eigenvalues.",
+    swept=("friction_force", "disc_speed"),
+)
+def onset() -> Measured:
+    """Compare μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
+    predicted, measured, errors = [], [], []
+    for law in LAWS.values():
+        for speed in theory.ONSET_SPEEDS:
+            disc = theory.at(disc_speed=speed)
+            sticking = theory.sticking_load(disc)
+
+            def growth(load: float, disc: DiscOnDisc = disc, law: IsotropicContact = law) -> float:
+                loaded = replace(disc, friction_force=load)
+                return equilibrium_eigenvalues(loaded, theory.rotation(loaded), law)[0].real
+
+            load = brentq(growth, 1e-3 * sticking, (1.0 - 1e-3) * sticking, xtol=1e-15)
+            step = 1e-3 * load
+            slope = (growth(load + step) - growth(load - step)) / (2.0 * step)
+            predicted.append(onset_load(disc, law))
+            measured.append(load)
+            errors.append(16.0 * EPSILON * (theory.K / abs(slope) + load))
+    return Measured(
+        predicted=predicted,
+        value=measured,
+        error=errors,
+        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in theory.ONSET_SPEEDS],
+    )
+
+
+SLIP_SPEED = theory.DISC.disc_speed - theory.DISC.shaft_speed
+
+WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
+    "load": (lambda share: theory.at(friction_force=share * theory.DISC.friction_force), 0.8),
+    "shaft damping": (lambda share: theory.at(shaft_damping=share * theory.DISC.shaft_damping), 1.5),
+    "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
+    "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
+}
+"""The disc with a share of one of its parameters, and a share beyond the onset."""
+
+
+@STUDY.claim(
+    "Each parameter by itself makes the centred rotation of Fig. 11 stable where the closed form of the onset says",
+    equation="(19), (20)",
+    resolution=1e-9,
+    note="Parameters over their values of Fig. 11; the slip speed is ω − Ω, and ω stays as it is. By the root of the "
+    "largest real part. Error: rounding of the eigenvalues.",
+    named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
+)
+def remedies() -> Measured:
+    """Compare the share of each parameter that makes the centred rotation stable with the onset's closed form."""
+    predicted: list[float] = []
+    measured: list[float] = []
+    errors: list[float] = []
+    for disc_of, end in WAYS.values():
+
+        def excess(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
+            return onset_load(disc_of(share)) / disc_of(share).friction_force - 1.0
+
+        def growth(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
+            return growth_of_rotation(disc_of(share))
+
+        predicted.append(brentq(excess, 1.0, end, xtol=1e-15))
+        measured.append(brentq(growth, 1.0, end, xtol=1e-15))
+        slope = (growth(end) - growth(1.0)) / (end - 1.0)
+        errors.append(16.0 * EPSILON * (theory.K / abs(slope) + 1.0))
+    return Measured(
+        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=theory.ONE_AT_A_TIME
+    )
+
+
+@STUDY.claim(
+    "Along the line of Fig. 11 whirls gain and lose their stability where the map says",
+    equation=theory.BOTH_LAWS,
+    resolution=1e-8,
+)
+def by_whirls() -> Measured:
+    """Compare where the whirls' largest real part changes its sign along each parameter with the map."""
+    predicted: list[float] = []
+    found: list[tuple[float, float]] = []
+    names: list[str] = []
+    named: dict[str, int | None] = {}
+    for law in LAWS:
+        for plane in PLANES.values():
+            for fixed, name in (plane.names[::-1], plane.names):
+                here = getattr(theory.DISC, name)
+                borders = crossings(plane, "Hopf", fixed, getattr(theory.DISC, fixed), LAWS[law])
+                for value in theory.nearest(borders, here):
+                    if law == "ring":
+                        named[f"{'lower' if value < here else 'upper'} {name}"] = len(predicted)
+                    predicted.append(value)
+                    found.append(theory.change_of_stability(name, value, LAWS[law]))
+                    names.append(f"{law}: {name} {value:.4g} ({100.0 * (value / here - 1.0):+.1f} %)")
+    measured, errors = np.transpose(found)
+    return Measured(
+        predicted=predicted,
+        value=measured,
+        error=errors,
+        components=names,
+        source=theory.ONE_AT_A_TIME,
+        note="The borders next to the point of Fig. 11, to either side, and how far away they are: "
+        + "; ".join(dict.fromkeys(names))
+        + ".",
+        named=named,
+    )
+
+
+@STUDY.claim(
+    "On the continuous ring the whirl always loses its stability with a jump: the cycle at the border is unstable",
+    equation="(19), (20)",
+    note="Whether the growth of the modulation rises with its amplitude, by the third-order terms of (19), at each "
+    f"point of the Hopf curves that is farther than {theory.FAR_FROM_KINK:g} from U = W in U : W.",
+)
+def jumps() -> Measured:
+    """Take the sign of the first Lyapunov coefficient along the Hopf curves."""
+    data: dict[str, FloatArray] = {}
+    on_ring: list[float] = []
+    for (plane, law, kind), curves in theory.traced().items():
+        for i, curve in enumerate(curves if kind == "Hopf" else ()):
+            growth = np.full(len(curve.alpha), np.nan)
+            for j, (values, alpha) in enumerate(zip(curve.parameters, curve.alpha.tolist(), strict=True)):
+                if abs(1.0 / math.tan(alpha) - 1.0) > theory.FAR_FROM_KINK:
+                    disc = PLANES[plane].at(values)
+                    growth[j] = growth_by_amplitude(disc, theory.state_at(disc, alpha, LAWS[law]), LAWS[law])
+            data[f"{plane}/{law}/growth/{i}"] = growth
+            if law == "ring":
+                on_ring += growth[np.isfinite(growth)].tolist()
+    return answers_of(on_ring, data=data)
+
+
+# --- What the ring, (23) and a pin say of the whirl of Fig. 11, each by itself.
+
+(LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
+
+SIGN = "Sign of the largest real part."
+
+SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
+"""β in N s/m and ω in rad/s between which pins are looked at."""
+
+
+@STUDY.claim(
+    "At the parameters of Fig. 11 the whirl on the continuous ring is unstable",
+    equation="(19), (20)",
+    note=SIGN,
+)
+def unstable_on_ring() -> Measured:
+    """See on which side of the imaginary axis the whirl of the ring is."""
+    return _side("ring", 1.0)
+
+
+@STUDY.claim(
+    "At the parameters of Fig. 11 the whirl of (23) is stable: (23) does not have the instability there",
+    equation="(19), (23)",
+    note=SIGN,
+)
+def stable_by_23() -> Measured:
+    """See on which side of the imaginary axis the whirl of (23) is."""
+    return _side("(23)", -1.0)
+
+
+def _side(law: str, sign: float) -> Measured:
+    """See whether the largest real part of the whirl of Fig. 11 by ``law`` has this ``sign``."""
+    (whirl,) = whirls(theory.DISC, LAWS[law])
+    values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
+    near = theory.nearest(
+        crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]), np.inf
+    )
+    return answers_of(
+        sign * values[0].real,
+        error,
+        source="Fig. 11 with X0 = 0",
+        note=f"Radius {whirl.radius:.5f} m, spin {whirl.spin:.5f} rad/s, eigenvalues {values[0].real:+.5f} ± "
+        f"{abs(values[0].imag):.5f}i 1/s. At this speed the whirl of this law is unstable up to μN = {near[0]:.5f} N."
+        "",
+    )
+
+
+@STUDY.claim(
+    "A pin's whirl has no Hopf curve: it is stable for all damping wherever ω > k",
+    equation="(16)",
+    note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / theory.K:g} and β from "
+    f"{LOW:g} to {HIGH:g} N s/m; μN and the torsion do not matter.",
+    swept=("disc_speed", "damping"),
+)
+def pin_is_stable() -> Measured:
+    """Count at how many points (16), the border of the pin's whirl, is violated where the whirl exists."""
+    pins = [
+        PinOnDisc(
+            mass=theory.DISC.mass,
+            stiffness=theory.DISC.stiffness,
+            damping=damping,
+            friction_force=theory.DISC.friction_force,
+            disc_speed=speed,
+        )
+        for speed in SPEEDS.tolist()
+        for damping in np.linspace(LOW, HIGH, 20).tolist()
+    ]
+    return answers_of([(upper_branch_margin(pin), -whirl_eigenvalues(pin)[1].real) for pin in pins])
+
+
+@STUDY.claim(
+    "Where the whirl of (23) is unstable at the speeds of Fig. 11, motions end as rotation, not in a cycle",
+    equation="(19), (23)",
+    basis="reference",
+)
+def collapses_by_23() -> Measured:
+    """See what motions under (23) end as where its whirl is unstable, simulated by the reference."""
+    law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
+    (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
+    starts = []
+    for share in theory.UNSTABLE_LOADS:
+        disc = theory.at(friction_force=fold + share * (hopf - fold))
+        largest = whirls(disc, law)[0]
+        starts += [
+            theory.Start(disc, tuple((largest.state * factors).tolist()), "rotation", theory.SLOWLY_SETTLED)
+            for factors in theory.BESIDE_LARGEST
+        ]
+    _, measured = theory.ends_of(functools.partial(simulate, contact=law), starts)
+    return measured

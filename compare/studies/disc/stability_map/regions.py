@@ -1,0 +1,232 @@
+"""What the whirl does beside the borders of the map and in its regions."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+import compare.studies.disc.stability_map.theory as theory
+from compare.claims import Data, Measured, answers_of, refined
+from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.engines import Engine
+from compare.studies.disc.stability_map.theory import STUDY
+from compare.studies.toolkit.fig11 import PLANES
+from reference_model.steady.bifurcation_curves import crossings
+from reference_model.steady.stability import turning_frame_jacobian
+from reference_model.steady.steady_states import SpinningWhirl, whirls
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- Small deviations from the whirl on both sides of the Hopf curves.
+
+Lines = Sequence[tuple[str, str, float]]
+"""Plane, the parameter that is fixed, and its value."""
+
+BESIDE_CURVES = (
+    f"Discs {100.0 * theory.ASIDE:g} % from the curves to either side. Start on the whirl and a little off it "
+    "along the pair's plane, both ways."
+)
+
+
+class Deviation(NamedTuple):
+    """A disc in a plane, and λ in 1/s of the slow pair of its whirl: by the Jacobian, as measured, with its error."""
+
+    plane: str
+    disc: DiscOnDisc
+    predicted: complex
+    measured: complex
+    error: float
+
+
+@STUDY.claim(
+    "Beside the Hopf curves small deviations from the whirl grow as the pair of eigenvalues says that the map traces",
+    equation="(19), (20)",
+    unit="1/s",
+    resolution=1e-4 * theory.K,
+    note=f"{BESIDE_CURVES} Error: the change at a smaller tolerance and with twice the deviation.",
+    basis="reference",
+)
+def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
+    """Compare growth and frequency of deviations with the pair of eigenvalues."""
+    found = deviations(engine, lines)
+    return Measured(
+        predicted=real_and_imaginary([one.predicted for one in found]),
+        value=real_and_imaginary([one.measured for one in found]),
+        error=np.repeat([one.error for one in found], 2).reshape(-1, 2),
+        at={"disc": [_place(one) for one in found]},
+        components=("real part", "imaginary part"),
+    )
+
+
+@STUDY.claim(
+    "Small deviations from the whirl grow on one side of the Hopf curves and die out on the other, as mapped",
+    equation="(19), (20)",
+    note=BESIDE_CURVES,
+    basis="reference",
+    implied_by=rates,
+)
+def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
+    """See on which side of the curves deviations grow."""
+    found = deviations(engine, lines)
+    rows: dict[str, list[tuple[float, ...]]] = {}
+    for one in found:
+        place = (getattr(one.disc, name) for name in PLANES[one.plane].names)
+        rows.setdefault(f"sides/{one.plane}", []).append((*place, one.measured.real))
+    return answers_of(
+        [one.measured.real * np.sign(one.predicted.real) for one in found],
+        [one.error for one in found],
+        data=rows,
+    )
+
+
+def _place(one: Deviation) -> str:
+    return ", ".join(f"{name} {getattr(one.disc, name):.4g}" for name in PLANES[one.plane].names)
+
+
+@functools.lru_cache(maxsize=4)
+def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
+    """Follow a small deviation from the whirl on both sides of the Hopf curves of the ring that ``lines`` cross."""
+    found = []
+    for plane, disc in discs_beside(lines):
+        whirl = min(whirls(disc), key=lambda whirl: abs(whirl.eigenvalues[1].real))
+        found.append(Deviation(plane, disc, whirl.eigenvalues[1], *pair_of_deviation(engine, disc, whirl)))
+    return found
+
+
+def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
+    """Yield plane and disc on both sides of the Hopf curves of the ring that the lines cross."""
+    for name, fixed, value in lines:
+        plane = PLANES[name]
+        along = plane.names[1 - plane.names.index(fixed)]
+        for crossing in crossings(plane, "Hopf", fixed, value):
+            for side in (1.0 - theory.ASIDE, 1.0 + theory.ASIDE):
+                yield name, theory.at(**{fixed: value, along: side * crossing})
+
+
+def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
+    """Return λ in 1/s with which a small deviation in the plane of the slow pair grows, and its error.
+
+    Half the difference of two motions that start on either side of the whirl, seen in the frame that turns with it,
+    is multiplied by exp(λt) in that plane: its part there is told from the rest by the left eigenvector.
+    """
+    values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
+    which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
+    left = np.linalg.inv(vectors)[which]
+    slip = (disc.disc_speed - theory.K) * whirl.radius
+    gap = abs(disc.contact_radius * abs(disc.disc_speed - whirl.spin) - slip)
+    deviation = gap / np.max(np.abs(vectors[:, which])) * vectors[:, which].real
+    duration = 1.0 / abs(values[which].imag)  # less than half a period: the logarithm is unique
+
+    def rate(size: float, tolerance: float) -> complex:
+        shift = np.insert(size * deviation, 2, 0.0)
+        ends = [
+            engine.simulate(disc, whirl.state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
+            for sign in (1.0, -1.0)
+        ]
+        end = np.delete(rotated((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
+        return complex(np.log((left @ end) / (left @ (size * deviation))) / duration)
+
+    parts, error = refined(
+        lambda tolerance: real_and_imaginary(rate(theory.DEVIATION, tolerance)), theory.FLOW_TOLERANCE
+    )
+    found = complex(*parts)
+    return found, math.hypot(*error) + abs(rate(2.0 * theory.DEVIATION, theory.FLOW_TOLERANCE) - found)
+
+
+# --- What motions end as in each region of the map, and beside its borders.
+
+
+@STUDY.claim(
+    "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
+)
+def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
+    """See what motions end as; None for those of ``starts_in_regions``."""
+    starts = starts_in_regions() if starts is None else starts
+    ends, measured = theory.ends_of(engine.simulate, starts)
+    return replace(measured, data=ends_by_plane(starts, ends))
+
+
+@STUDY.claim(
+    "Just outside of the Hopf curves whirl and modulated cycle coexist, and 2 % outside only the whirl is left",
+    equation="(19), (20)",
+    basis="reference",
+)
+def coexist(
+    engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
+) -> Measured:
+    """See what motions end as outside of the Hopf curves; None for those of ``coexisting``.
+
+    ``loads`` in N are those of the motions that are drawn over the load.
+    """
+    _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
+    return replace(measured, data={"section": long_motions(engine, loads)})
+
+
+def starts_in_regions() -> tuple[theory.Start, ...]:
+    """Return motions in all regions of the map: what they are to end as, by the curves of the ring."""
+    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
+    outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
+    near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
+
+    return (
+        theory.Start(theory.at(friction_force=0.018), outside, "rotation"),
+        theory.Start(theory.at(friction_force=0.0211), near_axis, "whirl", theory.SLOWLY_SETTLED),
+        theory.Start(theory.DISC, near_axis, "modulated cycle"),
+        theory.Start(theory.DISC, outside, "modulated cycle"),
+        theory.Start(theory.at(friction_force=0.028), near_axis, "whirl"),
+        theory.Start(theory.at(friction_force=0.034), outside, "whirl"),
+        theory.Start(theory.at(friction_force=0.034), at_rest, "sticking", theory.STUCK),
+        theory.Start(theory.at(shaft_damping=0.011), near_axis, "whirl"),
+        theory.Start(theory.at(shaft_damping=0.02), outside, "rotation"),
+        theory.Start(theory.at(polar_inertia=0.4), outside, "whirl", theory.SLOWLY_SETTLED),
+        theory.Start(theory.at(polar_inertia=2.0), outside, "modulated cycle"),
+        theory.Start(theory.at(damping=0.35), outside, "whirl"),
+        theory.Start(theory.at(damping=0.8), outside, "rotation"),
+        theory.Start(theory.at(shaft_speed=1.15), outside, "rotation"),
+        theory.Start(theory.at(shaft_speed=1.3), near_axis, "whirl"),
+    )
+
+
+def coexisting() -> tuple[theory.Start, ...]:
+    """Return motions outside of both Hopf curves: near to them one from whirl and cycle each, and farther off."""
+    lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
+    starts = []
+    for border, outward, settled in ((lower, -1.0, theory.SLOWLY_SETTLED), (upper, 1.0, theory.SETTLED)):
+        near, far = (
+            theory.at(friction_force=border * (1.0 + outward * share))
+            for share in (theory.OUTSIDE, theory.BEYOND)
+        )
+        (whirl,) = whirls(near)
+        starts += [
+            theory.Start(near, tuple((whirl.state * theory.BESIDE).tolist()), "whirl"),
+            theory.Start(near, theory.ON_CYCLE, "modulated cycle"),
+            theory.Start(far, theory.ON_CYCLE, "whirl", settled),
+        ]
+    return tuple(starts)
+
+
+def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
+    """Return the two parameters and the end, as its place in ``ENDS``, of all motions that a plane shows."""
+    rows: dict[str, list[tuple[float, float, float]]] = {}
+    for name, plane in PLANES.items():
+        for start, end in zip(starts, ends, strict=True):
+            first, second = (getattr(start.disc, parameter) for parameter in plane.names)
+            if plane.at((first, second)) == start.disc:
+                rows.setdefault(f"ends/{name}", []).append((first, second, float(theory.ENDS.index(end))))
+    return {name: np.array(found) for name, found in rows.items()}
+
+
+def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
+    """Return friction force in N, smallest and largest radius in m after a long time, shape (n, 3)."""
+
+    def extent(load: float) -> tuple[float, float]:
+        settled = theory.SLOWLY_SETTLED if load in theory.SLOW_LOADS else theory.SETTLED
+        return theory.kind_of_end(
+            engine.simulate, theory.Start(theory.at(friction_force=load), theory.ON_CYCLE, "", settled)
+        )[1:]
+
+    return np.array([(load, *extent(load)) for load in loads])

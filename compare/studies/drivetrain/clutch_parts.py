@@ -1,0 +1,378 @@
+"""Two rotors and a clutch in Exudyn: the onset of judder, heat and temperature, and the balance of energy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from compare.claims import COARSENING, ByEngine, Data, Figures, Measured, Study, change_as_error
+from compare.engines import Engine
+from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figure, points
+from reference_model.systems import FloatArray
+
+# Judder: a drive drags a clutch disc on a torsional spring, and friction falls with the slip.
+
+INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
+"""Inertia of the disc in kg m², its shaft in N m/rad and N m s/rad: 19 Hz, with 2 % of critical damping."""
+
+SPEED, DRIVE_INERTIA = 50.0, 1e12
+"""The drive in rad/s and kg m²: friction slows it by 1e-11 rad/s²."""
+
+RADIUS, LOAD, COEFFICIENT = 0.1, 1000.0, 0.5
+"""The contact in m and N, and its coefficient at the slip of the steady state."""
+
+STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
+"""Friction in N m and slip in m/s while the wound-up shaft is at rest."""
+
+ONSET = DAMPING / (RADIUS**2 * LOAD)
+"""In s/m: with this fall of the coefficient friction feeds what the damper takes."""
+
+GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
+"""Fall of the coefficient with the slip in s/m. A negative fall is a rise."""
+
+EPSILON = 1e-4
+"""In m/s: a fifty-thousandth of the steady slip. It has no effect, because the disc does not stick."""
+
+PERTURBED = 0.1
+"""Speed of the disc at the start in rad/s, small against the drive's."""
+
+PERIODS = 10
+TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
+"""In s, four to a period without damping."""
+
+# Heat: an engine engages with a vehicle and warms the linings, whose friction fades.
+
+INERTIAS, SLIP = (0.2, 1.5), 200.0
+"""Engine and vehicle in kg m², reduced to the clutch, and the slip at the start in rad/s."""
+
+RING, PRESSED = 0.1, 3000.0
+"""Radius of the contact in m, and its load in N."""
+
+COLD_COEFFICIENT, FADE = 0.33, 2e-3
+"""Coefficient at the temperature of the surroundings, and the share of it that each K above takes."""
+
+CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
+"""Linings in J/K, their loss in W/K, and the surroundings in °C."""
+
+CREEP = 1e-2
+"""ε in m/s, or 0.1 rad/s."""
+
+ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
+"""In s: times while the clutch slips, and a time at which it holds."""
+
+NEARLY_HOLDS = 1.0
+"""Slip in rad/s at which the slipping time is taken: ten times that of ε."""
+
+SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
+"""Slip of the clutch that keeps slipping in rad/s, rotors that hold it in kg m², and times in s."""
+
+MOMENT = COLD_COEFFICIENT * PRESSED * RING
+REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
+HEAT = 0.5 * REDUCED * SLIP**2
+"""Moment of cold friction in N m, inertia that acts on the slip in kg m², and energy of the slip in J."""
+
+BOTH = (1e-10, 1e-10 / COARSENING)
+"""Tolerances of explicit steps, in rad, rad/s, K and J."""
+
+LEFT_OUT = 2e-13
+"""Share of a run's span that ``solve_dynamic`` leaves out at each break."""
+
+
+def slipping_time(end: float) -> float:
+    """Return the time in s at which the slip of the engaging clutch has fallen to ``end`` in rad/s.
+
+    Without loss C·(T − T₀) is what is gone of ½·J·S², so J·dS/dt = −M·(b + c·S²) with c = k·J/(2C) and
+    b = 1 − c·S₀². A tangent solves that.
+    """
+    c = FADE * REDUCED / (2.0 * CAPACITY)
+    b = 1.0 - c * SLIP**2
+    turned = math.atan(SLIP * math.sqrt(c / b)) - math.atan(end * math.sqrt(c / b))
+    return turned * REDUCED / (MOMENT * math.sqrt(b * c))
+
+
+def cold_slipping_time(end: float) -> float:
+    """Return the same time for friction that does not fade."""
+    return (SLIP - end) * REDUCED / MOMENT
+
+
+def held(times: FloatArray) -> FloatArray:
+    """Return the temperature in °C of the clutch that keeps slipping; at the end heat and loss are equal."""
+    power = MOMENT * SLOW_SLIP
+    rate = CONDUCTANCE + FADE * power
+    return SURROUNDINGS + power / rate * (1.0 - np.exp(-rate / CAPACITY * times))
+
+
+class Rotors:
+    """Two rotors about one axis in Exudyn, and a sensor of each speed."""
+
+    def __init__(
+        self, inertias: tuple[float, float], speeds: tuple[float, float], second_angle: float = 0.0
+    ) -> None:
+        import exudyn as exu
+        import exudyn.itemInterface
+
+        self.items: Any = exudyn.itemInterface
+        self.container = exu.SystemContainer()  # lives as long as its model
+        self.mbs: Any = self.container.AddSystem()
+        self.nodes, self.sensors = [], []
+        of_speed = exu.OutputVariableType.Coordinates_t
+        for inertia, speed, angle in zip(inertias, speeds, (0.0, second_angle), strict=True):
+            node = self.mbs.AddNode(self.items.Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
+            self.mbs.AddObject(self.items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+            sensor = self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
+            self.sensors.append(self.mbs.AddSensor(sensor))
+            self.nodes.append(node)
+
+    def run(self, until: float, steps: int, tolerance: float, breaks: Sequence[float] = ()) -> FloatArray:
+        """Return times in s and what the sensors show after each step, one column each.
+
+        The run ends and goes on at the ``breaks``, so that these times are among them.
+        """
+        import exudyn as exu
+
+        from exudyn_models import solve_dynamic
+
+        settings = exu.SimulationSettings()
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = 0.0  # every step
+        numerical = settings.timeIntegration
+        numerical.endTime, numerical.numberOfSteps, numerical.verboseMode = until, steps, 0
+        numerical.absoluteTolerance, numerical.relativeTolerance = tolerance, 0.0
+        solve_dynamic(self.mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=breaks)
+        stored = [self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors]
+        return np.column_stack((stored[0][:, 0], *(values[:, 1:] for values in stored)))
+
+
+def juddering(gradient: float) -> Rotors:
+    """Return a drive and a disc on its shaft, with a coefficient that falls by ``gradient`` in s/m."""
+    from exudyn_models import add_ring_friction
+
+    rotors = Rotors((DRIVE_INERTIA, INERTIA), (SPEED, PERTURBED), STEADY_MOMENT / STIFFNESS)
+    items, mbs = rotors.items, rotors.mbs
+    ends = [
+        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+        for node in (mbs.AddNode(items.NodePointGround()), rotors.nodes[1])
+    ]
+    shaft = items.CoordinateSpringDamper(markerNumbers=ends, stiffness=STIFFNESS, damping=DAMPING)
+    mbs.AddObject(shaft)
+    add_ring_friction(
+        mbs,
+        *rotors.nodes,
+        contact_radius=RADIUS,
+        friction_coefficient=lambda slip_speed: COEFFICIENT - gradient * (slip_speed - STEADY_SLIP),
+        normal_load=LOAD,
+        regularisation=EPSILON,
+    )
+    return rotors
+
+
+def heating(
+    inertias: tuple[float, float],
+    start: float,
+    conductance: float,
+    tolerance: float,
+    times: FloatArray,
+) -> FloatArray:
+    """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
+
+    The clutch slips with ``start`` in rad/s at first. The ``times`` in s, of which the last is the end, are among
+    those of the steps.
+    """
+    from exudyn_models import add_ring_friction, add_thermal_node
+
+    rotors = Rotors(inertias, (start, 0.0))
+    lining = add_thermal_node(
+        rotors.mbs, heat_capacity=CAPACITY, conductance=conductance, surroundings=SURROUNDINGS
+    )
+    add_ring_friction(
+        rotors.mbs,
+        *rotors.nodes,
+        contact_radius=RING,
+        friction_coefficient=lambda temperature: (
+            COLD_COEFFICIENT * (1.0 - FADE * (temperature - SURROUNDINGS))
+        ),
+        normal_load=PRESSED,
+        regularisation=CREEP,
+        thermal_node=lining,
+    )
+    rotors.sensors.append(lining.add_sensor())
+    return rotors.run(float(times[-1]), 100, tolerance, times[:-1].tolist())
+
+
+def curves() -> Data:
+    """Return the closed forms for the figures."""
+    falls, slips, later = np.linspace(-1.0, 4.0, 50), np.linspace(SLIP, 0.0, 100), np.linspace(0.0, 40.0, 100)
+    return {
+        "falls": falls,
+        "growth": (falls - 1.0) * DAMPING / (2.0 * INERTIA),
+        "slips": slips,
+        "t": np.array([slipping_time(slip) for slip in slips]),
+        "cold t": np.array([cold_slipping_time(slip) for slip in slips]),
+        "held t": later,
+        "held": held(later),
+    }
+
+
+STUDY = Study.beside(
+    __file__,
+    "clutch-parts",
+    source="two rotors with a clutch, an assumption",
+    only=("exudyn",),
+    seconds=4.0,
+)
+
+
+@STUDY.claim(
+    "Judder begins where the coefficient of friction falls by D/(N·R²)",
+    unit="s/m",
+    resolution=1e-5 * ONSET,
+    note=f"Root of the straight line through the growth rates of {len(GRADIENTS)} simulated vibrations, {PERIODS} "
+    f"periods each after a push of {PERTURBED:g} rad/s. Numerical error: the change with the tolerance.",
+)
+def onset(engine: Engine) -> Measured:
+    """Compare the fall at which the measured growth changes its sign with the closed form."""
+    growths = [np.array([_growth(gradient, tolerance) for gradient in GRADIENTS]) for tolerance in BOTH]
+    lines = [np.polyfit(GRADIENTS, growth, 1) for growth in growths]
+    first, second = (-np.atleast_1d(growth) / slope for slope, growth in lines)
+    return Measured(
+        predicted=ONSET,
+        value=first[0],
+        error=change_as_error(first, second)[0],
+        named={"onset of judder": 0},
+        data={"measured falls": GRADIENTS / ONSET, "measured growth": growths[0]},
+    )
+
+
+def _growth(gradient: float, tolerance: float) -> float:
+    """Return the growth of the vibration in 1/s.
+
+    Speeds at equal intervals Δ of one linear vibration are a recurrence, v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
+    """
+    until = float(TIMES[-1])
+    run = juddering(gradient).run(until, round(until / 1e-3), tolerance, TIMES[1:-1].tolist())
+    v = run[np.searchsorted(run[:, 0], TIMES - 1e-12), 2]
+    (_, last), *_ = np.linalg.lstsq(np.column_stack((v[1:-1], v[:-2])), v[2:], rcond=None)
+    return math.log(-last) / (2.0 * float(TIMES[1] - TIMES[0]))
+
+
+@STUDY.claim(
+    "Fading friction prolongs the slip of an engaging clutch by the ratio of the closed form",
+    resolution=1e-5,
+    note=f"Time until the slip is {NEARLY_HOLDS:g} rad/s, divided by the same time for cold friction. Numerical "
+    "error: the change with the tolerance, and the change if the interpolation leaves out every other step.",
+)
+def takes_longer(engine: Engine) -> Measured:
+    """Compare the time of the engagement with the closed form."""
+    runs = [heating(INERTIAS, SLIP, 0.0, tolerance, np.append(ENGAGED, UNTIL)) for tolerance in BOTH]
+    cold = cold_slipping_time(NEARLY_HOLDS)
+    found, finer, sparse = (_time_of_slip(run) / cold for run in (*runs, runs[0][::2]))
+    shown = runs[0][runs[0][:, 0] < ENGAGED[-1]][::10]
+    return Measured(
+        predicted=slipping_time(NEARLY_HOLDS) / cold,
+        value=found,
+        error=change_as_error(np.array([found]), np.array([finer]))[0] + abs(sparse - found),
+        named={"slipping time over that of cold friction": 0},
+        data={"engaged t": shown[:, 0], "engaged slip": shown[:, 1] - shown[:, 2]},
+    )
+
+
+def _time_of_slip(run: FloatArray) -> float:
+    """Return the time in s at which the slip falls to ``NEARLY_HOLDS``."""
+    return float(np.interp(-NEARLY_HOLDS, run[:, 2] - run[:, 1], run[:, 0]))
+
+
+@STUDY.claim(
+    "The temperature of a clutch that keeps slipping approaches its steady value exponentially",
+    kind="trajectory",
+    unit="°C",
+    resolution=1e-6,
+    note=f"Rotors of {HEAVY:g} kg m² hold the slip, and the friction fades. Numerical error: the change with the "
+    f"tolerance. Model error: the slip that the rotors lose, and the {LEFT_OUT:g} of its span that the run leaves "
+    "out at each of these times.",
+)
+def settles(engine: Engine) -> Measured:
+    """Compare the temperature with the closed form."""
+    runs = [heating((HEAVY, HEAVY), SLOW_SLIP, CONDUCTANCE, tolerance, HELD) for tolerance in BOTH]
+    # A run ends a little before each of these times.
+    found, finer = (run[np.searchsorted(run[:, 0], HELD - 1e-9), 3] for run in runs)
+    span = float(HELD[-1])
+    skipped = len(HELD[:-1]) * LEFT_OUT * span * (MOMENT * SLOW_SLIP / CAPACITY)
+    return Measured(
+        predicted=held(HELD),
+        value=found,
+        error=np.max(change_as_error(found, finer)),
+        model=skipped + MOMENT / CONDUCTANCE * (2.0 * MOMENT * span / HEAVY),
+        at={"t in s": HELD},
+        data={"measured t": HELD, "measured temperature": found},
+    )
+
+
+@STUDY.claim(
+    "The energy of two rotors, the energy of the warm linings and the lost heat have a constant sum",
+    kind="conservation",
+    unit="J",
+    resolution=1e-8 * HEAT,
+    note="Largest deviation after any step, from slip into stick, with loss to the surroundings. Numerical error: "
+    "the change with the tolerance, and rounding, which grows like the square root of the number of steps.",
+)
+def balance(engine: Engine) -> Measured:
+    """Compare the energy after each step with the energy at the start."""
+    start = 0.5 * INERTIAS[0] * SLIP**2
+    runs = [heating(INERTIAS, SLIP, CONDUCTANCE, tolerance, np.array([UNTIL])) for tolerance in BOTH]
+    found, finer = (
+        np.max(
+            np.abs(
+                0.5 * run[:, 1:3] ** 2 @ np.array(INERTIAS)
+                + CAPACITY * (run[:, 3] - SURROUNDINGS)
+                + run[:, 4]
+                - start
+            ),
+            keepdims=True,
+        )
+        for run in runs
+    )
+    rounding = 8.0 * np.finfo(float).eps * start * math.sqrt(len(runs[1]))
+    return Measured(
+        predicted=0.0, value=found[0], error=change_as_error(found, finer)[0] + rounding, size=start
+    )
+
+
+# --- Figures of judder and of a clutch that warms up.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw growth over the fall of friction, and slip and temperature over time."""
+    if not data:
+        return {}
+    judder, (growth,) = new_figure(width=5.5, height=3.6)
+    growth.axhline(0.0, color=GREY, linewidth=0.6)
+    _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
+    growth.set(xlabel="fall of μ with the slip, over that of onset", ylabel="growth in 1/s")
+    growth.legend(loc="upper left")
+
+    heat, (slips, temperatures) = new_figure(ncols=2, width=10.0, height=3.6)
+    theory = data.get("theory", {})
+    if "cold t" in theory:
+        slips.plot(theory["cold t"], theory["slips"], color=GREY, linestyle="--", label="cold friction")
+    _both(slips, data, ("t", "slips"), ("engaged t", "engaged slip"))
+    _both(temperatures, data, ("held t", "held"), ("measured t", "measured temperature"))
+    slips.set(xlabel=axis("t", "s"), ylabel="slip in rad/s", title="engagement", ylim=(0.0, None))
+    temperatures.set(xlabel=axis("t", "s"), ylabel="temperature in °C", title="held slip")
+    slips.legend(fontsize=8.5)
+    return {"clutch-parts-judder": judder, "clutch-parts-heat": heat}
+
+
+def _both(panel: Axes, data: ByEngine, closed_form: tuple[str, str], measured: tuple[str, str]) -> None:
+    """Draw the closed form and the results of the engines, by the names of their abscissa and ordinate."""
+    for name in ("theory", *engines_in(data)):
+        x, y = closed_form if name == "theory" else measured
+        found = data.get(name, {})
+        if y in found:
+            style = curve(name, "closed form") if name == "theory" else points(name)
+            panel.plot(found[x], found[y], **style)
+
+
+STUDY.provides(figures=draw, curves=curves)

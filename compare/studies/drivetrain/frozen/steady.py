@@ -1,0 +1,301 @@
+"""The steady motion of the drivetrain, and the onset of its vibrations."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import eig, matrix_balance, norm
+from scipy.optimize import brentq
+
+import compare.studies.drivetrain.frozen.theory as theory
+from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
+from compare.engines import Engine
+from compare.studies.drivetrain.frozen.theory import STUDY
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.drivetrain_bench import (
+    BRAKE,
+    RINGS,
+    RPM,
+    Operation,
+    centre,
+    centred_car,
+    facings,
+    natural_frequency,
+    onset_speed,
+    parameters_of,
+    rest_of,
+    start_disc,
+    whirl_of,
+)
+from reference_model.steady.stability import jacobian_without_angle
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain
+
+
+# --- The speed above which the clutch disc does not stay on the engine's axis: closed form, reference and Exudyn.
+
+IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
+
+NAMED = {f"onset at {words}": i for i, words in enumerate(IN_WORDS)}
+
+ONSET_NOTE = (
+    "D = μN·∂F/∂U at U = 0, averaged over the facings, is their damping of small motions, which turns with the "
+    "flywheel. The zero of the real part of the radial eigenvalue over ω; numerical error: rounding of that "
+    "eigenvalue, by its condition, over the slope."
+)
+
+
+@STUDY.claim(
+    "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)",
+    unit="rad/s",
+    resolution=1e-9,
+    note=ONSET_NOTE,
+    named=NAMED,
+)
+def loses_stability(engine: Engine) -> Measured:
+    """Compare what Exudyn's linearisation says; the flywheel is the car's own, free to turn."""
+    from exudyn_models import build_drivetrain
+    from exudyn_models.paper.linearisation import REGULARISATION
+    from exudyn_models.solver.linear_matrices import state_matrix
+
+    car = centred_car()
+
+    def matrix(speed: float, slip: float, torque: float) -> FloatArray:
+        model = build_drivetrain(
+            car,
+            normal_load=car.normal_load(torque),
+            regularisation=REGULARISATION,
+            engine_speed=speed,
+            gearbox_speed=speed - slip,
+        )
+        return state_matrix(model.mbs)
+
+    return _onset_of(matrix)
+
+
+@STUDY.claim(
+    "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable at ω = k(1 + β/D)",
+    unit="rad/s",
+    resolution=1e-9,
+    note=ONSET_NOTE,
+    named=NAMED,
+)
+def reduced_disc_loses_stability() -> Measured:
+    """Compare what the reference says of the reduced disc."""
+    car = centred_car()
+
+    def matrix(speed: float, slip: float, torque: float) -> FloatArray:
+        disc = Operation(speed, slip, torque).reduced(car)
+        return jacobian_without_angle(disc, [0.0] * 5 + [speed - slip], facings(car))
+
+    return _onset_of(matrix)
+
+
+def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
+    """Compare the onset by ``matrix(speed, slip, torque)`` with the closed form."""
+    car = centred_car()
+    closed = [onset_speed(car, slip, torque) for torque, slip in theory.CASES]
+    found = [
+        _onset(partial(matrix, slip=slip, torque=torque), near, natural_frequency(car))
+        for (torque, slip), near in zip(theory.CASES, closed, strict=True)
+    ]
+    measured, errors = np.transpose(found)
+    return Measured(
+        predicted=closed,
+        value=measured,
+        error=errors,
+        at={"torque and slip": IN_WORDS},
+        parameters=parameters_of(car),
+    )
+
+
+def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float) -> tuple[float, float]:
+    """Return at which speed the eigenvalue nearest to ``frequency`` has no real part, and the error."""
+
+    def radial(speed: float) -> tuple[float, float]:
+        balanced, _ = matrix_balance(matrix(speed))
+        values, left, right = eig(balanced, left=True)
+        i = int(np.argmin(np.abs(values - 1j * frequency)))
+        condition = 1.0 / abs(np.vdot(left[:, i], right[:, i]))
+        return float(values[i].real), len(values) * np.finfo(float).eps * float(norm(balanced)) * condition
+
+    low, high = 0.98 * near, 1.02 * near
+    speed = float(brentq(lambda speed: radial(speed)[0], low, high, xtol=1e-12))
+    slope = (radial(high)[0] - radial(low)[0]) / (high - low)
+    return speed, 2.0 * radial(speed)[1] / slope
+
+
+# --- Steady motions of the clutch disc on the bench against those of the reference's reduced disc.
+#
+# With the shaft's axis beside the engine's the disc comes to rest in space below the onset; with both on one
+# line it whirls on its stop above.
+
+NOTE = (
+    f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
+    "slowest mode. Numerical error: the change at a smaller tolerance, what is left of the transient by its "
+    f"change in the last {theory.SEEN:g} decay times, and of the prediction the change with finer rings of the "
+    "annulus; the largest counts for all, since one alone may be right by chance."
+)
+
+
+class Steady(NamedTuple):
+    """A steady motion on the bench at ``speed`` in rpm, and what the reference says of it; shape (3,) each.
+
+    x and y in m, or in a whirl radius in m and frequency in rad/s, and the slip in rad/s.
+    """
+
+    speed: float
+    found: Measurement
+    predicted: Measurement
+
+
+@STUDY.claim(
+    "Below the onset the clutch disc comes to rest in space where the reference's reduced disc does",
+    unit="m",
+    note=NOTE,
+)
+def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
+    """Compare x and y of the disc at rest."""
+    motions = _resting(engine, below)
+    return _measured(
+        motions,
+        slice(0, 2),
+        theory.balanced_car().offset,
+        components=("x", "y"),
+        data={"rest": _shown(motions)},
+    )
+
+
+@STUDY.claim(
+    "Above the onset the clutch disc whirls on its stop, on the circle of the reference's reduced disc",
+    unit="m",
+    note=NOTE,
+)
+def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
+    """Compare the distance of the centre from the axis."""
+    motions = _whirling(engine, above)
+    return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
+
+
+@STUDY.claim(
+    "Above the onset the clutch disc whirls with the frequency of the reference's reduced disc",
+    unit="rad/s",
+    note=NOTE,
+)
+def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
+    """Compare the angular velocity of the centre about the axis."""
+    return _measured(_whirling(engine, above), 1, 0.0)
+
+
+@STUDY.claim(
+    "At rest in space and in the whirl the clutch disc slips as the reference's reduced disc does",
+    unit="rad/s",
+    note=NOTE,
+)
+def slips(
+    engine: Engine, below: tuple[float, ...] = theory.BELOW, above: tuple[float, ...] = theory.ABOVE
+) -> Measured:
+    """Compare the slip of the disc."""
+    return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, theory.balanced_car().offset)
+
+
+def _measured(
+    motions: Sequence[Steady],
+    place: slice | int,
+    offset: float,
+    *,
+    components: Sequence[str] = (),
+    data: Mapping[str, ArrayLike] | None = None,
+) -> Measured:
+    """Compare the quantities at ``place``, of the disc with ``offset`` in m."""
+    predicted = np.array([one.predicted.value[place] for one in motions])
+    return Measured(
+        predicted=predicted,
+        value=[one.found.value[place] for one in motions],
+        error=np.max([one.found.error[place] + one.predicted.error[place] for one in motions]),
+        resolution=1e-7 * float(np.max(np.abs(predicted))),
+        at={"speed in rpm": [one.speed for one in motions]},
+        components=components,
+        parameters=parameters_of(
+            theory.balanced_car(), without=("offset",), offset=offset, torque=theory.TORQUE, brake=BRAKE
+        ),
+        data=data or {},
+    )
+
+
+def _shown(motions: Sequence[Steady]) -> FloatArray:
+    return np.array([(one.speed, *one.found.value) for one in motions])
+
+
+@functools.lru_cache(maxsize=2)
+def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
+    """Return the states of rest at ``speeds`` in turns a minute, with the car's offset."""
+    car = theory.balanced_car()
+
+    def one(speed: float) -> Steady:
+        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, car.offset)
+
+        def quantities(rings: int) -> FloatArray:
+            rest = rest_of(car, bench, rings)
+            return np.array([rest.x, rest.y, bench.speed - rest.spin])
+
+        rate = -rest_of(car, bench).eigenvalues[0].real
+        found = _settled(car, bench, rate, complex(bench.offset), whirling=False)
+        return Steady(speed, found, _with_rings(quantities))
+
+    return tuple(one(speed) for speed in speeds)
+
+
+@functools.lru_cache(maxsize=2)
+def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
+    """Return the whirls at ``speeds`` in turns a minute, without offset."""
+    car = theory.balanced_car()
+
+    def one(speed: float) -> Steady:
+        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE)
+
+        def quantities(rings: int) -> FloatArray:
+            whirl = whirl_of(car, bench, rings)
+            return np.array([whirl.radius, whirl.frequency, bench.speed - whirl.spin])
+
+        rate = -whirl_of(car, bench).eigenvalues[1].real
+        found = _settled(car, bench, rate, complex(theory.START), whirling=True)
+        return Steady(speed, found, _with_rings(quantities))
+
+    return tuple(one(speed) for speed in speeds)
+
+
+def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
+    """Return ``quantities(rings)`` of the reference, and the change with finer rings as their error."""
+    found = quantities(RINGS)
+    return Measurement(found, np.abs(found - quantities(theory.FINER)))
+
+
+def _settled(
+    car: Drivetrain, operation: Operation, rate: float, start: complex, *, whirling: bool
+) -> Measurement:
+    """Return x, y and slip, or in a whirl radius, frequency and slip, when all that decays has.
+
+    ``rate`` in 1/s is that of the slowest mode.
+    """
+
+    def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        model = operation.build(car)
+        start_disc(model, start, 0j)
+        motion = model.run(theory.DECAYS / rate, sample_every=theory.SAMPLE, tolerance=tolerance)
+        z, velocity = centre(motion.disc), centre(motion.disc_velocity)
+        shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)
+        return motion.times, np.column_stack((*shape, motion.slip))
+
+    (times, found), (_, finer) = run(WORKING), run(WORKING / COARSENING)
+    delay = theory.SEEN / rate
+    earlier = found[(times > times[-1] - 1.2 * delay) & (times <= times[-1] - delay)]
+    rest = remaining_transient(earlier, found[-1], rate, delay)
+    return Measurement(found[-1], change_as_error(found[-1], finer[-1], alike=False) + rest)

@@ -1,0 +1,200 @@
+"""The modulated whirl of the clutch disc: eigenvalues of the whole drivetrain, growth and the cycle that follows.
+
+A clutch that is pressed more than its torque needs may still slip, because a whirl takes a part of the moment of
+friction away. Slip and radius of such a whirl swing about each other, and where the map says so the swing grows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import matrix_balance
+from scipy.optimize import brentq
+
+import compare.studies.drivetrain.frozen.theory as theory
+from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
+from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
+from compare.engines import Engine
+from compare.studies.drivetrain.frozen.theory import STUDY, build
+from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
+from reference_model.systems import FloatArray
+
+if TYPE_CHECKING:
+    from exudyn_models import Drivetrain
+
+Matrix = Callable[[theory.CarWhirl], FloatArray]
+"""Of the small motions about a whirl, see ``state_matrix_of``."""
+
+
+def _by_exudyn(car: Drivetrain) -> Matrix:
+    """Return the matrix by Exudyn's linearisation."""
+    from exudyn_models.paper.linearisation import REGULARISATION
+    from exudyn_models.solver.linear_matrices import state_matrix
+
+    return lambda whirl: state_matrix(build(car, whirl, regularisation=REGULARISATION).mbs)
+
+
+@STUDY.claim(
+    "Exudyn's linearisation about a whirl has the eigenvalues that the reference's law of friction gives",
+    unit="1/s",
+    resolution=1e-9,
+    note="In axes that turn with the whirl. Of ten eigenvalues the six that do not belong to angles, phase and "
+    "speed, which are free. Friction of the reference enters by hand, with its whole reaction on the engine. "
+    "Numerical error: the change with finer rings of the reference's annulus, and rounding.",
+)
+def linearised(engine: Engine) -> Measured:
+    """Compare the eigenvalues about three whirls."""
+    car = centred_car()
+    by_exudyn = _by_exudyn(car)
+    found, expected, errors = [], [], []
+    for whirl in theory.whirls_of(car):
+        predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)
+        finer = theory.of_modulation(theory.state_matrix_of(car, whirl, theory.FINER), whirl.frequency)
+        found.append(matched(theory.of_modulation(by_exudyn(whirl), whirl.frequency), predicted))
+        expected.append(predicted)
+        errors.append(np.max(np.abs(matched(finer, predicted) - predicted)))
+    scale = max(abs(value) for values in expected for value in values)
+    whirls = [
+        f"{speed:g} turns a minute with {torque:g} N m and {100.0 * surplus:g} % of load too much"
+        for speed, torque, surplus in theory.WHIRLS
+    ]
+    return Measured(
+        predicted=real_and_imaginary(expected),
+        value=real_and_imaginary(found),
+        error=max(errors) + ROUNDING * scale,
+        at={"whirl": whirls, "eigenvalue": range(1, 7)},
+        components=("real part", "imaginary part"),
+        parameters=parameters_of(car),
+    )
+
+
+@STUDY.claim(
+    "A whirl in the play is modulated above the speed where an eigenvalue by the reference's friction is imaginary",
+    unit="turns a minute",
+    resolution=1.0,
+    note=f"With {100.0 * theory.BORDER_SURPLUS:g} % of load too much. Measured: the speed at which Exudyn's "
+    "linearisation about the whirl has an imaginary eigenvalue. Numerical error: rounding of both eigenvalue "
+    "problems, and the change with finer rings of the reference's annulus.",
+    named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
+)
+def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
+    """Compare the speeds above which the modulation grows, sought ``between`` two (turns a minute)."""
+    car = centred_car()
+
+    def borders(matrix: Matrix) -> FloatArray:
+        return np.transpose([_border(car, matrix, torque, between) for torque in theory.BORDER_TORQUES])
+
+    predicted, rounding = borders(partial(theory.state_matrix_of, car))
+    finer, _ = borders(partial(theory.state_matrix_of, car, rings=theory.FINER))
+    measured, rounded = borders(_by_exudyn(car))
+    return Measured(
+        predicted=predicted,
+        value=measured,
+        error=np.abs(finer - predicted) + rounding + rounded,
+        at={"torque in N m": theory.BORDER_TORQUES},
+        parameters=parameters_of(car, surplus=theory.BORDER_SURPLUS),
+    )
+
+
+def _border(
+    car: Drivetrain, matrix: Matrix, torque: float, between: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the speed in turns a minute, and its error by the rounding of the eigenvalue; NaN if there is none."""
+
+    def growth(speed: float) -> tuple[float, float]:
+        whirl = theory.whirl_under_surplus(car, speed * RPM, torque, theory.BORDER_SURPLUS)
+        if whirl is None:
+            return math.nan, math.nan
+        balanced, _ = matrix_balance(theory.in_turning_axes(matrix(whirl), whirl.frequency))
+        values, errors = eigenvalues_with_rounding(balanced)
+        slowest = theory.of_modulation(matrix(whirl), whirl.frequency)[0]
+        return slowest.real, float(errors[np.argmin(np.abs(values - slowest))])
+
+    low, high = (growth(speed)[0] for speed in between)
+    if not low < 0.0 < high:
+        return math.nan, 0.0
+    speed = float(brentq(lambda speed: growth(speed)[0], *between, xtol=1e-9))
+    return speed, 2.0 * growth(speed)[1] * (between[1] - between[0]) / (high - low) + 1e-9
+
+
+@STUDY.claim(
+    "Small deviations from a whirl in the play grow and turn with the eigenvalue of its modulation",
+    unit="1/s",
+    note=f"Two runs that start {100.0 * theory.DEVIATION:g} % of the radius outside and inside of the whirl; the "
+    f"part of their difference that belongs to the mode, after {theory.TIME:g} s. Numerical error: the change "
+    "with twice the deviation, and at a smaller tolerance.",
+)
+def growth(engine: Engine) -> Measured:
+    """Compare the eigenvalue with which deviations from the modulated whirl grow in a run."""
+    car = centred_car()
+    whirl = theory.whirls_of(car)[0]
+    matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)
+    predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)[0]
+    values, left = np.linalg.eig(matrix.T)
+    mode = left[:, np.argmin(np.abs(values - predicted))]
+
+    def grown(deviation: float, tolerance: float) -> complex:
+        runs = [_deviations(car, whirl, sign * deviation, tolerance) for sign in (1.0, -1.0)]
+        start, end = (runs[0] - runs[1]) @ mode
+        return complex(np.log(end / start) / theory.TIME)
+
+    found = refined(
+        lambda tolerance: real_and_imaginary(grown(theory.DEVIATION, tolerance)), theory.TOLERANCE
+    )
+    return Measured(
+        predicted=real_and_imaginary(predicted),
+        value=found.value,
+        error=np.hypot(*found.error)
+        + abs(grown(2.0 * theory.DEVIATION, theory.TOLERANCE) - complex(*found.value)),
+        resolution=1e-3 * abs(predicted),
+        components=("real part", "imaginary part"),
+        parameters=parameters_of(
+            car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]
+        ),
+    )
+
+
+def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
+    """Return the state in axes that turn with the whirl, as ``in_turning_axes`` orders it, at both ends, (2, 8)."""
+    motion = build(car, whirl, deviation=deviation).run(
+        theory.TIME, sample_every=theory.TIME, tolerance=tolerance
+    )
+    turn = np.exp(-1j * whirl.frequency * motion.times)
+    z, velocity = turn * centre(motion.disc), turn * centre(motion.disc_velocity)
+    twist = motion.disc[:, 2] - motion.vehicle_angle
+    return np.column_stack(
+        (
+            *(z.real, z.imag, twist, motion.engine_speed, motion.vehicle_speed),
+            *(velocity.real, velocity.imag, motion.disc_velocity[:, 2]),
+        )
+    )[[0, -1]]
+
+
+@STUDY.claim(
+    "Energy is balanced in the modulated whirl of the clutch disc",
+    kind="conservation",
+    resolution=1e-6,
+    basis="self-check",  # the model's own law of friction gives the heat
+)
+def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
+    """Check the energy of the modulated motion up to ``until`` s, and keep it for the figure."""
+    car = centred_car()
+    whirl = theory.whirls_of(car)[0]
+    motions = [
+        build(car, whirl, deviation=theory.PUSH).run(
+            until, sample_every=theory.CYCLE_SAMPLE, tolerance=tolerance
+        )
+        for tolerance in (theory.ROUGHER * WORKING, theory.ROUGHER * WORKING / COARSENING)
+    ]
+    measured = balance_of(
+        [motion.energy for motion in motions],
+        parameters_of(car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]),
+    )
+    motion = motions[0]
+    shown = np.column_stack((motion.times, np.abs(centre(motion.disc)), motion.slip))
+    return replace(measured, data={"modulated": shown})

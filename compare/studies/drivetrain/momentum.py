@@ -1,0 +1,272 @@
+"""An isolated drivetrain of the project's parts, on every kind of node, keeps its angular momentum.
+
+Engine, clutch disc and vehicle move in space, in the plane, or about a fixed axis, and act only on each other: by
+friction, by an elastic shaft that is fixed to the vehicle away from its centre, and by a torsional spring. The claims
+fail for a part that forgets the moment of its force about one of the bodies, or acts on the two along different axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compare.claims import ROUNDING, ByEngine, Data, Figures, Measured, Study
+from compare.engines import Engine
+from compare.output.figures import BLACK, BLUE, GREEN, ORANGE, axis, new_figure
+from reference_model.systems import FloatArray
+
+ROTOR, PLANAR = "rotor", "planar"
+SPATIAL = {"rotation vector": "NodeRigidBodyRotVecLG", "Tait-Bryan": "NodeRigidBodyRxyz"}
+KINDS = (ROTOR, PLANAR, *SPATIAL)
+"""Kinds of nodes. The bearing of a rotor takes up every moment except the one about its axis."""
+
+DRIVETRAINS = tuple(
+    (engine, KINDS[1 + (i + j) % 3], vehicle)
+    for i, engine in enumerate(KINDS)
+    for j, vehicle in enumerate(KINDS)
+)
+"""Nodes of engine, disc and vehicle: each kind of each body meets each kind of the others."""
+
+DRAWN = ("rotation vector",) * 3
+"""The drivetrain of the figure."""
+
+
+class Body(NamedTuple):
+    """Mass in kg, principal moments of inertia in kg m², position and rotation, velocity and turn rates."""
+
+    mass: float
+    inertia: tuple[float, float, float]
+    position: tuple[float, float, float, float, float, float]
+    velocity: tuple[float, float, float, float, float, float]
+
+
+BODIES = {
+    "engine": Body(
+        40.0, (2.4, 2.4, 4.0), (0.006, -0.003, 0.0, 1e-4, -1e-4, 0.0), (0.0, 0.0, 0.0, 1e-4, 1e-4, 3.0)
+    ),
+    "disc": Body(
+        1.0, (0.012, 0.012, 0.02), (0.013, 0.01, 0.006, -4e-4, 5e-4, 0.2), (0.0, 0.005, 0.0, 0.0, -4e-4, 1.0)
+    ),
+    "vehicle": Body(
+        80.0, (5.0, 5.0, 8.0), (0.0, 0.009, 0.015, 1e-4, 1e-4, 0.1), (0.0, 0.0, 0.0, -1e-4, 1e-4, 1.0)
+    ),
+}
+"""Their axes are apart and slightly tilted, so a force without its arm shows."""
+
+FRICTION: dict[str, Any] = {
+    "friction_coefficient": 1.0,
+    "normal_load": 0.1,
+    "inner_radius": 0.08,
+    "outer_radius": 0.12,
+}
+EPSILON = 1e-3
+SHAFT: dict[str, Any] = {"stiffness": 25.0, "damping": 0.5}
+ECCENTRICITY = 0.01
+SPRING = {"stiffness": 0.5, "damping": 0.02}
+"""N and m; m/s; N/m and N s/m; m; N m/rad and N m s/rad."""
+
+UNTIL, SAMPLES = 5.0, 50
+"""In s, two turns of the engine; and how often the momenta are recorded."""
+
+
+class Solver(NamedTuple):
+    """A solver of Exudyn, its number of steps, its order, and the largest error with which a drift still shows."""
+
+    name: str
+    steps: int
+    order: int
+    resolution: float
+
+
+SOLVERS = {
+    "explicit": Solver("RK67", 200, 6, 1e-11),
+    "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8),
+}
+
+STUDY = Study.beside(
+    __file__,
+    "drivetrain-momentum",
+    words={"combinations": str(len(DRIVETRAINS))},
+    source="three bodies by choice, displaced, tilted and moving against each other",
+    only=("exudyn",),
+    seconds=4.5,
+)
+
+
+@STUDY.claim(
+    "An isolated drivetrain of any kinds of nodes keeps its angular momentum: {} solver",
+    kind="conservation",
+    note=f"Largest drift in {UNTIL:g} s, divided by the largest angular momentum of one body, for {len(DRIVETRAINS)} "
+    f"drivetrains in which each kind of node of each body meets each of the others: {', '.join(KINDS)}. About all "
+    "three axes if every body is spatial, otherwise about z.",
+    each=tuple(SOLVERS),
+)
+def momentum(
+    engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
+) -> Measured:
+    """Run every drivetrain with a solver, and again with half the steps."""
+    solver = SOLVERS[name]
+    data: Data = {}
+    drifts, errors = [], []
+    for kinds in drivetrains:
+        times, each = angular_momenta(kinds, solver, solver.steps)
+        _, coarse = angular_momenta(kinds, solver, solver.steps // 2)
+        drift, coarse_drift = (_relative_drift(kinds, momenta) for momenta in (each, coarse))
+        drifts.append(drift)
+        errors.append(
+            np.abs(drift - coarse_drift) / (2.0 ** (solver.order - 0.5) - 1.0) + solver.steps * ROUNDING
+        )
+        if kinds == DRAWN:
+            data |= {"t": times, "each": each[..., 2]}
+    largest = np.array([np.abs(drift).max() for drift in drifts])
+    return Measured(
+        predicted=np.zeros(len(largest)),
+        value=largest,
+        error=[np.max(error) for error in errors],
+        resolution=solver.resolution,
+        at={"engine, disc, vehicle": [", ".join(kinds) for kinds in drivetrains]},
+        parameters=FRICTION | {"eccentricity": ECCENTRICITY, "solver": solver.name, "steps": solver.steps},
+        note="Numerical error: the change with half the steps, if the order is lower by a half at worst, and the "
+        "rounding of every step, because rotation vectors lose digits near whole turns.",
+        data=data
+        | {
+            f"{name}: t": times,
+            f"{name}: drift": np.array([np.abs(drift).max(axis=1) for drift in drifts]),
+            f"{name}: resolution": np.array(solver.resolution),
+        },
+    )
+
+
+def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
+    """Return the drift of the sum about the axes that keep it, over the largest of one body, shape (n, axes)."""
+    total = momenta.sum(axis=1)
+    kept = slice(None) if set(kinds) <= set(SPATIAL) else slice(2, 3)
+    return np.asarray((total - total[0])[:, kept] / np.abs(momenta).max())
+
+
+def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[FloatArray, FloatArray]:
+    """Return times in s, and the angular momentum of each body about the origin in kg m²/s, shape (n, 3, 3)."""
+    import exudyn as exu
+    import exudyn.itemInterface
+
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    nodes = _add_drivetrain(mbs, kinds)
+
+    def momenta(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
+        bodies = zip(kinds, BODIES.values(), nodes, strict=True)
+        return [float(value) for value in np.ravel([_angular_momentum(mbs, *body) for body in bodies])]
+
+    items: Any = exudyn.itemInterface
+    sensor = mbs.AddSensor(
+        items.SensorUserFunction(sensorUserFunction=momenta, storeInternal=True, writeToFile=False)
+    )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = UNTIL / SAMPLES
+    options = settings.timeIntegration
+    options.endTime, options.numberOfSteps, options.verboseMode = UNTIL, steps, 0
+    options.newton.useModifiedNewton = True
+    options.newton.relativeTolerance = options.newton.absoluteTolerance = 1e-12
+    # Not solve_dynamic, which warns that the coarse run could not hold a clutch that sticks: these slip all the time.
+    if not mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver.name)):
+        raise RuntimeError(f"Exudyn's {solver.name} failed for a drivetrain of {', '.join(kinds)}")
+    stored = np.array(mbs.GetSensorStoredData(sensor))
+    return stored[:, 0], stored[:, 1:].reshape(-1, len(BODIES), 3)
+
+
+def _add_drivetrain(mbs: Any, kinds: Sequence[str]) -> list[Any]:
+    """Add engine, disc and vehicle with nodes of these kinds, and all that acts between them; return the nodes."""
+    import exudyn.itemInterface
+
+    from exudyn_models import add_radial_support, add_ring_friction
+
+    items: Any = exudyn.itemInterface
+    added = [_add_body(mbs, kind, body) for kind, body in zip(kinds, BODIES.values(), strict=True)]
+    (engine, _), (disc, disc_body), (vehicle, vehicle_body) = added
+    add_ring_friction(mbs, engine, disc, **FRICTION, regularisation=EPSILON)
+    add_radial_support(mbs, vehicle, disc, **SHAFT, offset=(ECCENTRICITY, 0.0))
+    ends = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body)) for body in (vehicle_body, disc_body)]
+    mbs.AddObject(items.TorsionalSpringDamper(markerNumbers=ends, **SPRING))
+    return [engine, disc, vehicle]
+
+
+def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
+    """Add a body with a node of ``kind``; return the numbers of node and body."""
+    import exudyn.itemInterface
+
+    items: Any = exudyn.itemInterface
+    x, y, *_, angle = data.position
+    vx, vy, *_, spin = data.velocity
+    if kind == ROTOR:
+        rotor = items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[spin])
+        node = mbs.AddNode(rotor)
+        return node, mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=data.inertia[2]))
+    if kind == PLANAR:
+        node = mbs.AddNode(
+            items.NodeRigidBody2D(initialCoordinates=[x, y, angle], initialVelocities=[vx, vy, spin])
+        )
+        body = items.ObjectRigidBody2D(nodeNumber=node, mass=data.mass, inertia=data.inertia[2])
+        return node, mbs.AddObject(body)
+    node = mbs.AddNode(
+        getattr(items, SPATIAL[kind])(
+            referenceCoordinates=[0.0] * 6,
+            initialCoordinates=list(data.position),
+            initialVelocities=list(data.velocity),
+        )
+    )
+    body = items.ObjectRigidBody(nodeNumber=node, mass=data.mass, inertia=[*data.inertia, 0.0, 0.0, 0.0])
+    return node, mbs.AddObject(body)
+
+
+def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
+    """Return the angular momentum of a body about the origin in kg m²/s, from Exudyn's position and spin."""
+    import exudyn as exu
+
+    of = exu.OutputVariableType
+    if kind == ROTOR:
+        return np.array([0.0, 0.0, body.inertia[2] * float(mbs.GetNodeOutput(node, of.Coordinates_t))])
+    position, velocity, spin, rotation = (
+        mbs.GetNodeOutput(node, quantity)
+        for quantity in (of.Position, of.Velocity, of.AngularVelocityLocal, of.RotationMatrix)
+    )
+    own = rotation.reshape(3, 3) @ (np.array(body.inertia) * spin)
+    (x, y, z), (vx, vy, vz) = position, velocity
+    return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)
+
+
+# --- What the three bodies of the isolated drivetrain exchange, and how far their sum drifts.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the angular momenta of the bodies of one drivetrain, and the drift of the sum in all of them."""
+    found = next((values for values in data.values() if "each" in values), None)
+    if found is None:
+        return {}
+    figure, (exchange, drift) = new_figure(ncols=2, width=10.0, height=4.0)
+    each = found["each"]
+    momenta = (*each.T, each.sum(axis=1))
+    names, colours = ("engine", "disc", "vehicle", "sum"), (BLUE, GREEN, ORANGE, BLACK)
+    for name, colour, momentum in zip(names, colours, momenta, strict=True):
+        exchange.plot(found["t"], momentum - momentum[0], color=colour, label=name)
+    exchange.set(xlabel=axis("t", "s"), ylabel="change of angular momentum in kg m²/s")
+    exchange.legend(loc="upper left")
+    for name, colour, above in (("explicit", BLUE, -13), ("implicit", ORANGE, 4)):
+        times, drifts, resolution = (found[f"{name}: {key}"] for key in ("t", "drift", "resolution"))
+        drift.semilogy(times[1:], np.maximum(drifts[:, 1:].T, 1e-17), color=colour, linewidth=0.8)
+        drift.axhline(float(resolution), color=colour, linestyle="--", linewidth=1.0)
+        drift.annotate(
+            f"{name} solver",
+            (0.0, float(resolution)),
+            xytext=(0, above),
+            textcoords="offset points",
+            color=colour,
+        )
+    drift.set(xlabel=axis("t", "s"), ylabel="drift over the largest momentum of one body", ylim=(1e-17, 1e-6))
+    return {"drivetrain-momentum": figure}
+
+
+STUDY.provides(figures=draw)

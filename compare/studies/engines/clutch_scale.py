@@ -1,0 +1,382 @@
+"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch: the same motions, with the same verdicts."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from compare.claims import TRUTH, WORKING, ByEngine, Data, Figures, Measured, Study, refined
+from compare.claims.parameters import FIG4, FIG5, FIG8
+from compare.engines import Engine
+from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
+from compare.studies.toolkit.deviations import remaining_transient
+from compare.studies.toolkit.fig11 import DISCS, integrated
+from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
+from reference_model.formulas.pin import equilibrium_position
+from reference_model.steady.stability import equilibrium_eigenvalues
+from reference_model.systems import DiscOnDisc, FloatArray, System
+
+# --- The paper's systems at the scale of a clutch: the same dimensionless numbers in other units.
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What a metre, a second and a kilogram of a system become, in m, s and kg."""
+
+    length: float
+    time: float
+    mass: float
+
+    def system(self, system: System) -> System:
+        """Return ``system`` with its lengths, times and masses changed: the same by all dimensionless numbers."""
+        length, time, mass = self.length, self.time, self.mass
+        changes: dict[str, Any] = {
+            "mass": mass * system.mass,
+            "stiffness": mass / time**2 * system.stiffness,
+            "damping": mass / time * system.damping,
+            "friction_force": mass * length / time**2 * system.friction_force,
+            "disc_speed": system.disc_speed / time,
+            "offset": length * system.offset,
+        }
+        if isinstance(system, DiscOnDisc):
+            changes |= {
+                "polar_inertia": mass * length**2 * system.polar_inertia,
+                "contact_radius": length * system.contact_radius,
+                "shaft_damping": mass * length**2 / time * system.shaft_damping,
+                "shaft_speed": system.shaft_speed / time,
+            }
+        return replace(system, **changes)
+
+    def states(self, states: ArrayLike) -> FloatArray:
+        """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) changed alike; angles stay."""
+        states = np.asarray(states, dtype=float)
+        places = [self.length, self.length, 1.0][: states.shape[-1] // 2]
+        return np.asarray(states * [*places, *(place / self.time for place in places)])
+
+
+CLUTCH = Scale(length=1e-3, time=1.5 / 300.0, mass=0.5)
+"""X0 = 0.1 m and ω = 1.5 rad/s become 0.1 mm and 300 rad/s, 1 kg a disc of half a kilogram."""
+
+
+# --- The motions that are repeated at the scale of a clutch: starts and durations at the paper's scale.
+
+TO_REST = (0.1, 0.0, 0.0275, 0.0)
+"""Near to the start that divides the motions: the pin sticks nine times before it comes to rest in space."""
+
+UNTIL, SAMPLES = 240.0, 481
+"""Time of the paper's scale, in s, in which that pin comes to rest, and how often its state is asked for."""
+
+WHIRLING = replace(FIG4, disc_speed=1.2)
+"""Fig. 6 at the friction force 0.12 N."""
+
+REST_OF_DISC = 40.0
+"""Time of the paper's scale, in s, for which the disc of Fig. 8 is left where (19) and (20) let it spin."""
+
+CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
+"""x, y, angle, vx, vy, spin at the paper's scale of a disc that spirals towards the cycle of Fig. 11, and slides."""
+
+CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
+"""Time of the paper's scale, in s, of the motion of Fig. 11, and how often its state is asked for."""
+
+VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
+"""vx(0) in m/s at the paper's scale of starts that go to either end."""
+
+ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
+
+ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
+"""Random starts of the ensemble, and the time of the paper's scale, in s, in which each comes to its end."""
+
+SOURCE = (
+    "{}; X0 = 0.1 mm, ω = 300 rad/s and a mass of 0.5 kg are ours, all dimensionless numbers are the paper's"
+)
+
+
+def scaled(system: System) -> System:
+    """Return ``system`` at the scale of a clutch."""
+    return CLUTCH.system(system)
+
+
+# --- The motions at the paper's scale, with which those of the clutch are compared.
+
+
+@functools.cache
+def exact_motion() -> Trajectory:
+    """Return the motion to rest, from the reference at its tightest."""
+    return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH)
+
+
+@functools.cache
+def exact_whirl() -> Orbit:
+    """Return the whirl of Fig. 6, by shooting with the reference."""
+    return whirl_orbit(WHIRLING)
+
+
+def curves() -> Data:
+    """Return the motion to rest, at the times of the engines and between them."""
+    exact = exact_motion()
+    path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
+    return {
+        "states": exact.states,
+        "path": path.states[:, :2],
+        "sticks": exact.stick_times,
+        "rest": np.array(equilibrium_position(FIG5)),
+    }
+
+
+STUDY = Study.beside(
+    __file__,
+    "clutch-scale",
+    source=SOURCE.format("Fig. 5"),
+    system=scaled(FIG5),
+    seconds=1.5,
+)
+
+
+def at_clutch(
+    engine: Engine, system: System, start: tuple[float, ...], times: FloatArray, tolerance: float
+) -> Trajectory:
+    """Return the motion at the scale of a clutch of a ``system`` and ``start`` at ``times`` (s) of the paper's."""
+    return engine.simulate(scaled(system), CLUTCH.states(start), CLUTCH.time * times, tolerance=tolerance)
+
+
+def states_of(
+    engine: Engine, system: System, start: tuple[float, ...], times: FloatArray
+) -> Callable[[float], FloatArray]:
+    """Return the states after the start in the paper's units, shape (len(times) − 1, 4 or 6), by tolerance."""
+
+    def states(tolerance: float) -> FloatArray:
+        found = at_clutch(engine, system, start, times, tolerance).states[1:]
+        return np.asarray(found / CLUTCH.states(np.ones(found.shape[1])))
+
+    return states
+
+
+@functools.lru_cache(maxsize=2)
+def to_rest(engine: Engine, tolerance: float) -> Trajectory:
+    """Return the motion to rest at the scale of a clutch, of which two claims are made."""
+    return at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance)
+
+
+@STUDY.claim(
+    "At the scale of a clutch the pin of Fig. 5 comes to rest at the position (3)",
+    equation="(3)",
+    resolution=1e-3,
+    note=f"After {CLUTCH.time * UNTIL:g} s and nine stick phases. Error: the change at a smaller tolerance, and what "
+    "is left of the slowest transient.",
+)
+def rests(engine: Engine) -> Measured:
+    """Compare where the pin comes to rest with (3)."""
+    # Places of the last 40 s, in the paper's units.
+    places, error = refined(
+        lambda tolerance: (
+            to_rest(engine, tolerance).states[-81:, :2] / CLUTCH.states(np.ones(4))[:2] / FIG5.offset
+        )
+    )
+    rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
+    left = remaining_transient(places[:40], places[-1], rate, 20.0)
+    motion = to_rest(engine, WORKING)
+    return Measured(
+        predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
+        value=places[-1],
+        error=float(np.max(error[-1] + left)),
+        components=("x/X0", "y/X0"),
+        data={
+            "states": motion.states / CLUTCH.states(np.ones(4)),
+            "sticks": motion.stick_times / CLUTCH.time,
+        },
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch the pin of Fig. 5 sticks and lets go at the times it has at the paper's scale",
+    equation="(6), (7)",
+    kind="trajectory",
+    unit="s",
+    resolution=1e-2,
+    note="Times of the clutch over 5 ms, which make them those of Fig. 5. Predicted: the reference at the paper's "
+    "scale. A stick phase too many or too few shows as a missing number.",
+)
+def sticks(engine: Engine) -> Measured:
+    """Compare all times of stick and release with those of exact friction at the paper's scale."""
+    predicted = exact_motion().stick_times
+
+    def measured(tolerance: float) -> FloatArray:
+        found = to_rest(engine, tolerance).stick_times / CLUTCH.time
+        return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
+
+    events, error = refined(measured)
+    names = [f"{('stick', 'release')[i % 2]} {i // 2 + 1}" for i in range(len(predicted))]
+    return Measured(
+        predicted=predicted,
+        value=events,
+        error=float(np.max(error)),
+        components=names,
+        size=1.0 / FIG5.natural_frequency,
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch starts of Fig. 5 go to the equilibrium or the whirl as at the paper's scale",
+    kind="trajectory",
+    resolution=0.5,
+    note="1 for an end farther from the axis than 2·X0, 0 otherwise; vx(0) at the paper's scale.",
+)
+def ends(engine: Engine) -> Measured:
+    """Compare the ends of some starts with those at the paper's scale."""
+    times = np.array([0.0, ENDS_UNTIL])
+    starts = [(FIG5.offset, 0.0, velocity, 0.0) for velocity in VELOCITIES]
+
+    def whirls(found: FloatArray) -> float:
+        return float(np.hypot(*found[:2]) > 2.0 * FIG5.offset)
+
+    return Measured(
+        predicted=[whirls(simulate(FIG5, start, times).at_end) for start in starts],
+        value=[whirls(states_of(engine, FIG5, start, times)(ENDS_TOLERANCE)[-1]) for start in starts],
+        at={"vx(0) in m/s": VELOCITIES},
+        parameters={"tolerance": ENDS_TOLERANCE},
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch a pin on the whirl of Fig. 6 is back in its state after the period",
+    equation="(17)",
+    kind="trajectory",
+    resolution=1e-5,
+    note="Predicted: the periodic orbit that the reference finds by shooting at the paper's scale to 1e-9 of X0, "
+    "which is part of the error.",
+)
+def whirls(engine: Engine) -> Measured:
+    """Compare the state after a period of the whirl with that at its start."""
+    orbit = exact_whirl()
+    unit = np.array([1.0, 1.0, WHIRLING.disc_speed, WHIRLING.disc_speed]) * FIG5.offset
+    states = states_of(engine, WHIRLING, tuple(orbit.state), np.array([0.0, orbit.period]))
+    found = refined(lambda tolerance: states(tolerance)[-1] / unit)
+    return Measured(
+        predicted=orbit.state / unit,
+        value=found.value,
+        error=float(np.max(found.error)) + 1e-9,
+        components=("x/X0", "y/X0", "vx/(ω·X0)", "vy/(ω·X0)"),
+        system=scaled(WHIRLING),
+        source=SOURCE.format("Fig. 6, μN = 0.12 N"),
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch the disc of Fig. 8 rests and spins by the balance of forces and moments",
+    equation="(19), (20)",
+    resolution=1e-6,
+    note=f"A disc that starts there, after {CLUTCH.time * REST_OF_DISC:g} s. Rounding of the start: 1e-9.",
+)
+def spins(engine: Engine) -> Measured:
+    """Compare where a disc stays and spins with the balance of forces and moments at the paper's scale."""
+    rest = self_centred_equilibria(FIG8)[0]
+    unit = (FIG8.offset, FIG8.offset, FIG8.disc_speed)
+    start = (rest.x, rest.y, 0.0, 0.0, 0.0, rest.spin)
+    states = states_of(engine, FIG8, start, np.array([0.0, REST_OF_DISC]))
+    found = refined(lambda tolerance: states(tolerance)[-1, [0, 1, 5]] / unit)
+    return Measured(
+        predicted=np.array([rest.x, rest.y, rest.spin]) / unit,
+        value=found.value,
+        error=float(np.max(found.error)) + 1e-9,
+        components=("x/X0", "y/X0", "spin/ω"),
+        system=scaled(FIG8),
+        source=SOURCE.format("Fig. 8"),
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch a disc on {} moves as (19) says with the parameters of Fig. 11",
+    equation="(19), (20)",
+    kind="trajectory",
+    unit="m, rad, m/s, rad/s",
+    resolution=1e-6,
+    note="In the units of the paper's scale. Predicted: SciPy on (19) as it is printed, at the paper's scale.",
+    each=DISCS,
+)
+def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
+    """Compare the motion of Fig. 11 with (19) as plain equations at the paper's scale."""
+    times = np.linspace(0.0, CYCLE_UNTIL, CYCLE_SAMPLES)
+    predicted, rougher = (
+        integrated(disc, CYCLE_START, CYCLE_UNTIL, CYCLE_SAMPLES, tolerance)[1:]
+        for tolerance in (1e-13, 1e-11)
+    )
+    found = refined(states_of(engine, disc, CYCLE_START, times))
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=float(np.max(found.error)) + float(np.max(np.abs(rougher - predicted))),
+        at={"t in s": times[1:]},
+        components=("x in m", "y in m", "angle in rad", "vx in m/s", "vy in m/s", "spin in rad/s"),
+        system=scaled(disc),
+        source=SOURCE.format("Fig. 11"),
+    )
+
+
+@STUDY.claim(
+    "At the scale of a clutch each start of an ensemble has the end that it has at the paper's scale",
+    kind="trajectory",
+    note="Random starts with |x|, |y| < 3·X0 and |vx|, |vy| < 2·ω·X0: the compiled ensemble at both scales.",
+)
+def shares(starts: int = ENSEMBLE) -> Measured:
+    """Compare the ends of random starts at both scales."""
+    from reference_model.ensemble import EndState, simulate_ensemble
+
+    drawn = np.random.default_rng(SEED).uniform(-1.0, 1.0, (starts, 4)) * [0.3, 0.3, 0.3, 0.3]
+    ends = [
+        simulate_ensemble(system, states, duration=time * ENSEMBLE_UNTIL).end
+        for system, states, time in (
+            (FIG5, drawn, 1.0),
+            (scaled(FIG5), CLUTCH.states(drawn), CLUTCH.time),
+        )
+    ]
+    kinds = (EndState.SELF_CENTRED, EndState.WHIRL)
+    share = np.array([[np.mean(found == kind) for kind in kinds] for found in ends])
+    return Measured(
+        predicted=[*share[0], 0.0],
+        value=[*share[1], np.mean(ends[0] != ends[1])],
+        error=0.5 / starts,
+        resolution=1.0 / starts,
+        components=("share of the equilibrium", "share of the whirl", "share with another end"),
+        note=f"{starts} starts.",
+    )
+
+
+# --- The way to rest at both scales.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the way to rest at both scales, and how far they are apart over time."""
+    figure, (plane, history) = new_figure(ncols=2, width=11.0)
+    exact = data.get("theory", {})
+    micrometres = 1e6 * CLUTCH.length
+    milliseconds = 1e3 * CLUTCH.time
+    times = milliseconds * np.linspace(0.0, UNTIL, SAMPLES)
+    if exact:
+        x, y = micrometres * exact["path"].T
+        plane.plot(x, y, color=BLACK, linewidth=0.8, label="Fig. 5, its lengths times 1e-3")
+        plane.plot(
+            *(micrometres * exact["rest"]), marker="*", markersize=12.0, color=PURPLE, label="rest by (3)"
+        )
+        for start, end in milliseconds * exact["sticks"].reshape(-1, 2):
+            history.axvspan(start, end, color=PURPLE, alpha=0.15, linewidth=0.0)
+    for engine in engines_in(data):
+        found = data[engine]["states"]
+        plane.plot(*(micrometres * found[::8, :2].T), **points(engine, markersize=3.0))
+        if exact:
+            apart = np.hypot(*(found - exact["states"])[:, :2].T) / FIG5.offset
+            history.semilogy(times[1::4], np.maximum(apart[1::4], 1e-16), **points(engine, linestyle=":"))
+    plane.set(xlabel=axis("x", "µm"), ylabel=axis("y", "µm"), aspect="equal")
+    if plane.lines:
+        plane.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+    history.set(xlabel=axis("t", "ms"), ylabel="distance from the line over X0")
+    if history.lines:
+        history.legend(loc="upper right")
+    return {"clutch-scale": figure}
+
+
+STUDY.provides(figures=draw, curves=curves)

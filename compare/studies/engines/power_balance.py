@@ -1,0 +1,271 @@
+"""Energy: what the drive puts in is heat and stored energy, on every kind of trajectory and without a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from compare.claims import ROUNDING, WORKING, ByEngine, Data, Figures, Measured, Study, refined
+from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
+from compare.engines import Engine, UnsupportedSystemError
+from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
+from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius
+from reference_model.formulas.pin import whirl_radius
+from reference_model.systems import FloatArray, System
+
+# --- Motions of every kind that the balance is made for.
+
+SAMPLE_DISTANCE = 0.02
+"""In s: close enough that the balance's quadrature through stick phases is good to 1e-9."""
+
+RESOLUTION = 1e-8
+"""Of the energy that is turned over."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A kind of motion.
+
+    Parameters
+    ----------
+    system, start, source
+        Parameters, the state at the start, and where they come from.
+    until, step : float
+        Length and distance of samples in s.
+    tolerance : float
+        At which it is measured.
+    drawn : bool
+        Whether the figure shows it.
+    contact_alone : bool
+        Whether it is asked of an engine of which only the contact is its own, see ``Engine.contact_only``.
+
+    """
+
+    system: System
+    start: tuple[float, ...]
+    until: float
+    source: str
+    tolerance: float = WORKING
+    step: float = SAMPLE_DISTANCE
+    drawn: bool = False
+    contact_alone: bool = False
+
+
+def all_motions() -> dict[str, Motion]:
+    """Return the motions by the words in which the claims name them."""
+    return motions_of_the_pin() | motions_of_the_disc()
+
+
+def motions_of_the_pin() -> dict[str, Motion]:
+    """Return the motions of a pin."""
+    radius = whirl_radius(CENTRED)
+    sticky = FIG4
+    stuck = 0.98 * sticking_radius(sticky)
+    turning = sticky.disc_speed
+    return {
+        "the way to the equilibrium, with stick phases": Motion(
+            FIG5, FIG5_STARTS["equilibrium"], 100.0, "Fig. 5"
+        ),
+        "the way to the whirl, with stick phases": Motion(
+            FIG5, FIG5_STARTS["whirl"], 400.0, "Fig. 5", tolerance=2.0 * WORKING, drawn=True
+        ),
+        "a whirl that settles": Motion(
+            CENTRED,
+            (0.8 * radius, 0.0, 0.0, radius),
+            100.0,
+            "Fig. 4 with X0 = 0, started 20 % inside the whirl",
+        ),
+        "a pin that sticks all the time": Motion(
+            # It turns over little energy, against which a smoothed law's creep must be small.
+            sticky,
+            (stuck, 0.0, 0.0, turning * stuck),
+            10.0,
+            "Fig. 4, at 0.98 of the radius (9)",
+            tolerance=WORKING / 20,
+        ),
+        "a pin on a resting disc": Motion(
+            replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, start by choice"
+        ),
+        "a disc that turns the other way": Motion(
+            replace(FIG4, disc_speed=-FIG4.disc_speed),
+            (0.5, 0.2, 0.0, -0.3),
+            100.0,
+            "Fig. 4 with −ω, start by choice",
+        ),
+    }
+
+
+def motions_of_the_disc() -> dict[str, Motion]:
+    """Return the motions of a friction disc, on the continuous ring and on six points."""
+    near_axis, thrown = (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), (0.0, 0.0, 0.0, 0.5, 0.2, 3.0)
+    sticky = replace(FIG11, friction_force=0.1)
+    table = replace(
+        FIG11,
+        stiffness=0.0,
+        damping=0.0,
+        shaft_damping=0.0,
+        disc_speed=0.0,
+        friction_force=0.1,
+        polar_inertia=FIG11.mass * FIG11.contact_radius**2,
+    )
+    on_table = "nothing but friction on a disc at rest, μN = 0.1 N, J = mR², start by choice"
+    return {
+        "a disc on its way to the modulated cycle": Motion(
+            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, start by choice"
+        ),
+        "a disc on six points": Motion(
+            replace(FIG11, contact_points=6), near_axis, 40.0, "Fig. 11 with X0 = 0, start by choice"
+        ),
+        "a disc with an offset, turning the other way": Motion(
+            replace(FIG11, disc_speed=-FIG11.disc_speed, shaft_speed=-FIG11.shaft_speed, offset=0.02),
+            (0.02, 0.0, 0.0, 0.0, 0.0, -1.3),
+            40.0,
+            "Fig. 11 with −ω, −Ω and X0 = 0.02 m, start by choice",
+        ),
+        "a disc that sticks all the time": Motion(
+            sticky,
+            (0.05, 0.0, 0.0, 0.0, 0.05 * sticky.disc_speed, sticky.disc_speed),
+            2.0,
+            "Fig. 11, μN = 0.1 N",
+        ),
+        "a ring thrown on a table, to rest": Motion(table, thrown, 10.0, on_table),
+        "six points thrown on a table, to rest": Motion(
+            # One of the points rests before the others, where the quadrature is worse.
+            replace(table, contact_points=6),
+            thrown,
+            10.0,
+            on_table,
+            step=0.1 * SAMPLE_DISTANCE,
+            contact_alone=True,
+        ),
+    }
+
+
+STUDY = Study.beside(__file__, "power-balance", seconds=2.5, quick=True, contact=True)
+
+SENTENCE = "What the drive puts in is heat and stored energy: {}"
+
+NOTE = (
+    "Largest residual at any time, as a fraction of the energy turned over (heat, and the most that was stored). "
+    "Error: change with the engine's tolerance, and with every second sample left out of the balance's quadrature, "
+    "and the rounding of the energies."
+)
+
+Motions = Callable[[], Mapping[str, Motion]]
+
+
+@STUDY.claim(
+    SENTENCE,
+    equation="(1)",
+    kind="conservation",
+    resolution=RESOLUTION,
+    note=NOTE,
+    basis="reference",
+    each=tuple(motions_of_the_pin()),
+)
+def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Measured | None:
+    """Compare the largest residual of the balance of a pin's motion with zero."""
+    return _residual(engine, name, motions()[name])
+
+
+@STUDY.claim(
+    SENTENCE,
+    equation="(19)",
+    kind="conservation",
+    resolution=RESOLUTION,
+    note=NOTE,
+    basis="reference",
+    each=tuple(motions_of_the_disc()),
+)
+def disc(engine: Engine, name: str, motions: Motions = motions_of_the_disc) -> Measured | None:
+    """Compare the largest residual of the balance of a disc's motion with zero."""
+    return _residual(engine, name, motions()[name])
+
+
+def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
+    if engine.contact_only and not motion.contact_alone:
+        return None
+    if not engine.simulates(motion.system):
+        raise UnsupportedSystemError(engine.lacking(one.system for one in all_motions().values()))
+    balances: dict[float, PowerBalance] = {}
+    quadrature: list[float] = []
+
+    def largest_and_last(tolerance: float) -> FloatArray:
+        trajectory = _run(engine, motion, tolerance)
+        balance, coarser = power_balance(trajectory), power_balance(_every_second(trajectory))
+        balances[tolerance] = balance
+        quadrature.append(abs(_relative_residual(balance) - _relative_residual(coarser)))
+        return np.array([_relative_residual(balance), balance.residual[-1] / balance.turned_over])
+
+    found = refined(largest_and_last, motion.tolerance)
+    return Measured(
+        predicted=0.0,
+        value=found.value[0],
+        error=found.largest + min(quadrature) + ROUNDING,
+        size=1.0,
+        system=motion.system,
+        source=motion.source,
+        data=_drawn(balances[motion.tolerance]) if motion.drawn else {},
+        named={name.replace(",", ""): None},
+    )
+
+
+def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
+    intervals = 2 * round(motion.until / (2.0 * motion.step))  # every second sample has the last one too
+    times = np.linspace(0.0, motion.until, intervals + 1)
+    return engine.simulate(motion.system, motion.start, times, tolerance=tolerance)
+
+
+def _every_second(trajectory: Trajectory) -> Trajectory:
+    """Return the trajectory with every second sample left out."""
+    kept = trajectory.times[::2], trajectory.states[::2]
+    return Trajectory(trajectory.system, *kept, trajectory.phases, trajectory.solution)
+
+
+def _relative_residual(balance: PowerBalance) -> float:
+    return float(np.max(np.abs(balance.residual)) / balance.turned_over)
+
+
+def _drawn(balance: PowerBalance) -> Data:
+    return {
+        "times": balance.times,
+        "drive work": balance.drive_work,
+        "friction heat": balance.friction_heat,
+        "damper heat": balance.damper_heat,
+        "stored energy": balance.stored_energy,
+        "residual": balance.residual / balance.turned_over,
+    }
+
+
+# --- Where the energy goes, and what the balance leaves over.
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw where the energy goes on the way to the whirl, and what is left over."""
+    figure, (energies, residuals) = new_figure(ncols=2)
+    looks: dict[str, dict[str, Any]] = {
+        "drive work": {"color": BLACK, "linestyle": "-"},
+        "friction heat": {"color": ORANGE, "linestyle": (0.0, (5.0, 1.5))},
+        "damper heat": {"color": GREEN, "linestyle": (0.0, (1.0, 1.0))},
+        "stored energy": {"color": GREY, "linestyle": "-"},
+    }
+    for rank, engine in enumerate(engines_in(data)):
+        found = data[engine]
+        sparse = slice(None, None, 5)
+        if rank == 0:
+            for name, look in looks.items():
+                energies.plot(found["times"][sparse], found[name][sparse], label=name, linewidth=1.3, **look)
+        size = np.maximum(np.abs(found["residual"]), 1e-16)
+        residuals.semilogy(found["times"][sparse], size[sparse], **curve(engine, linewidth=1.0))
+    residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)), label="resolution")
+    energies.set(xlabel=axis("t", "s"), ylabel="energy in J")
+    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-14, 1e-7))
+    energies.legend()
+    residuals.legend(loc="lower right")
+    return {"power-balance": figure}
+
+
+STUDY.provides(figures=draw)

@@ -1,0 +1,313 @@
+"""Discs thrown on a plane at rest while they spin: a ring, points and a full disc."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from compare.claims import ByEngine, Figures, Measured, Study, refined
+from compare.engines import Engine, UnsupportedSystemError
+from compare.output.figures import axis, curve, engines_in, new_figure, points
+from reference_model import simulate
+from reference_model.contact.annulus import Annulus
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- Discs on a plane at rest, how they are thrown, and what friction takes of each motion, in closed form.
+
+SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
+
+MASS, RADIUS, FRICTION = 1.0, 0.1, 1.0
+"""m in kg, R in m and μN in N."""
+
+DECELERATION = FRICTION / MASS
+"""g in m/s²."""
+
+SPEED = 1.0
+"""At the start in m/s, of the centre or the rim, or of each."""
+
+HEADING = 0.7
+"""Direction of the throw in rad from the x axis."""
+
+
+@dataclass(frozen=True)
+class Throw:
+    """A throw that friction slows down evenly.
+
+    Parameters
+    ----------
+    name : str
+        In words.
+    inertia : float
+        J/(mR²).
+    sliding, rim : float
+        U and W at the start in m/s, the latter with the sign of the spin.
+    force, moment : float
+        Of friction, over μN and μNR, as long as the disc moves.
+
+    """
+
+    name: str
+    inertia: float
+    sliding: float
+    rim: float
+    force: float = 0.0
+    moment: float = 0.0
+
+    def disc(self, contact_points: int | None = None) -> DiscOnDisc:
+        """Return the parameters."""
+        return DiscOnDisc(
+            mass=MASS,
+            polar_inertia=self.inertia * MASS * RADIUS**2,
+            stiffness=0.0,
+            damping=0.0,
+            friction_force=FRICTION,
+            disc_speed=0.0,
+            contact_radius=RADIUS,
+            shaft_damping=0.0,
+            shaft_speed=0.0,
+            contact_points=contact_points,
+        )
+
+    @property
+    def state(self) -> FloatArray:
+        """The state at the start, shape (6,)."""
+        velocity = cmath.rect(self.sliding, HEADING)
+        return np.array([0.0, 0.0, 0.0, velocity.real, velocity.imag, self.rim / RADIUS])
+
+    @property
+    def time(self) -> float:
+        """When it stops, in s."""
+        if self.sliding > 0.0:
+            return self.sliding / (DECELERATION * self.force)
+        return abs(self.rim) * self.inertia / (DECELERATION * self.moment)
+
+    def seen_at(self, shares: FloatArray) -> FloatArray:
+        """Return ways along, across and of the rim in m, and their speeds, at ``shares`` (n,) of ``time``: (n, 6)."""
+        share = np.minimum(shares, 1.0)[:, np.newaxis]
+        start = np.array([self.sliding, 0.0, self.rim])
+        return np.hstack((start * self.time * (share - 0.5 * share**2), start * (1.0 - share)))
+
+
+RING = (
+    Throw("slides", 0.5, SPEED, 0.0, force=1.0),
+    Throw("spins", 0.5, 0.0, -SPEED, moment=1.0),
+    Throw("both", 1.0, SPEED, SPEED, force=2.0 / math.pi, moment=2.0 / math.pi),
+)
+"""Where U = W, the point at χ slips with 2U·|cos χ/2| and by |cos χ/2| of that along U: in the mean by 2/π."""
+
+POINTS: Mapping[int, tuple[Throw, ...]] = {3: RING[:2], 6: RING[:2]}
+"""By the number of points, on which there is no closed form for both motions."""
+
+FULL = (
+    Throw("slides", 0.5, SPEED, 0.0, force=1.0),
+    Throw("spins", 0.5, 0.0, -SPEED, moment=2.0 / 3.0),
+    Throw("both", 1.0 / 3.0, SPEED, SPEED, force=8.0 / (3.0 * math.pi), moment=8.0 / (9.0 * math.pi)),
+)
+"""The force is (4/3π)·((1 + ε²)·E − (1 − ε²)·K)/ε, ε = U/W the modulus of E and K (Farkas et al. 2003), 8/3π at 1."""
+
+TO_REST = np.array([0.0, 0.5, 1.25])
+"""When a throw is looked at, as fractions of the time in which it stops."""
+
+WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
+"""The same for a full disc, which a smoothed law need not bring to rest."""
+
+
+# --- A full disc under uniform pressure, by those who have it: the reference's contact law, and Exudyn's part.
+
+EPSILON = 100.0
+"""ε of the part over tolerance and speed; what it changes of a sliding disc is of the size ε²."""
+
+
+def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
+    """Return the states of a throw at ``times``, shape (n, 6), from the reference."""
+    law = Annulus(0.0, RADIUS)
+    return np.asarray(simulate(throw.disc(), throw.state, times, tolerance=tolerance, contact=law).states)
+
+
+def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
+    """Return the states of a throw at ``times``, shape (n, 6), from a model of Exudyn with the part."""
+    import exudyn_models
+    from exudyn_models.solver.solver_run import solve
+
+    def full(mbs: Any, master_node: Any, disc_node: Any, **contact: Any) -> Any:
+        circle = {"contact_radius": None, "inner_radius": 0.0, "outer_radius": RADIUS}
+        return exudyn_models.add_ring_friction(mbs, master_node, disc_node, **contact | circle)
+
+    epsilon, state, states = EPSILON * tolerance * SPEED, throw.state, [throw.state]
+    for span in np.diff(times).tolist():
+        model = exudyn_models.build_disc_on_disc(throw.disc(), state, regularisation=epsilon, friction=full)
+        steps = solve(model, 0.0, span, integrator="DOPRI5", step=span, tolerance=0.01 * tolerance)
+        state = steps.states[-1]
+        states.append(state)
+    return np.array(states)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How an engine follows a full disc, and how well it sums up the friction of its rings, over μN."""
+
+    follow: Callable[[Throw, FloatArray, float], FloatArray]
+    quadrature: float
+
+
+WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Way(by_part, 4e-10)}
+"""By the name of the engine; ``Annulus`` and ``exudyn_models.forces.slip_potential`` tell the errors."""
+
+
+def way_of(engine: Engine) -> Way:
+    """Return how ``engine`` follows a full disc; raise ``UnsupportedSystemError`` where it does not."""
+    if engine.name not in WAYS:
+        raise UnsupportedSystemError(f"{engine.name} is not asked for a full disc, which no engine promises")
+    return WAYS[engine.name]
+
+
+STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, seconds=1.0, quick=True, contact=True)
+
+SEEN = (
+    "way along in m",
+    "way across in m",
+    "way of the rim in m",
+    "speed along in m/s",
+    "speed across in m/s",
+    "speed of the rim in m/s",
+)
+
+Follow = Callable[[Throw, FloatArray, float], FloatArray]
+"""From a throw, times and tolerance to the states at the times."""
+
+
+def in_engine(engine: Engine, points: int | None = None) -> Follow:
+    """Return what follows throws of a disc on ``points``, or on a ring, with ``engine``."""
+
+    def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
+        return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
+
+    return follow
+
+
+def compared(
+    follow: Follow,
+    throws: Sequence[Throw],
+    shares: FloatArray,
+    name: str,
+    *,
+    points: int | None = None,
+    error: float = 0.0,
+) -> Measured:
+    """Compare throws with the closed form, at ``shares`` of the time in which they stop.
+
+    ``name`` is for the figure, and ``error`` is that of friction over μN.
+    """
+
+    def states(tolerance: float) -> FloatArray:
+        found = [seen(follow(throw, throw.time * shares, tolerance)[1:]) for throw in throws]
+        return np.array(found)
+
+    found = refined(states)
+    return Measured(
+        predicted=[throw.seen_at(shares[1:]) for throw in throws],
+        value=found.value,
+        error=found.largest + error * SPEED,  # friction takes all of the speed
+        at={"throw": [throw.name for throw in throws], "t over the time to rest": shares[1:]},
+        components=SEEN,
+        system=throws[0].disc(points),
+        data={f"{name}: speeds": found.value[:, :, [3, 5]]},
+    )
+
+
+def seen(states: FloatArray) -> FloatArray:
+    """Return ways and speeds along and across the throw and of the rim, in m and m/s, of states (n, 6)."""
+    z, v = (states[:, (0, 3)] + 1j * states[:, (1, 4)]).T * cmath.rect(1.0, -HEADING)
+    rim = RADIUS * states[:, (2, 5)]
+    return np.column_stack((z.real, z.imag, rim[:, 0], v.real, v.imag, rim[:, 1]))
+
+
+@STUDY.claim(
+    "A ring that slides is slowed down by μN, one that spins by μNR, and one that does both by 2/π of each",
+    equation="(19), (20)",
+    unit="m, m/s",
+    resolution=1e-6,
+    note="Uniform deceleration to rest; both: J = mR², and the rim is as fast as the centre.",
+    swept=("polar_inertia",),
+)
+def on_ring(engine: Engine) -> Measured:
+    """Compare throws of a ring with uniform deceleration."""
+    return compared(in_engine(engine), RING, TO_REST, "ring")
+
+
+@STUDY.claim(
+    "A disc on {} points that slides is slowed down by μN, one that spins by μNR",
+    equation="(19), (21)",
+    unit="m, m/s",
+    resolution=1e-6,
+    note="Uniform deceleration to rest.",
+    swept=("polar_inertia",),
+    each={str(points): points for points in POINTS},
+)
+def on_points(engine: Engine, points: int) -> Measured:
+    """Compare throws of a disc on points with uniform deceleration."""
+    return compared(in_engine(engine, points), POINTS[points], TO_REST, f"{points} points", points=points)
+
+
+@STUDY.claim(
+    "A full disc that slides is slowed down by μN, one that spins by ⅔·μNR, and one that does both by less of each",
+    equation="(19), (20)",
+    unit="m, m/s",
+    resolution=1e-6,
+    note="Contact under uniform pressure within R. Uniform deceleration, looked at until nine tenths of the time to "
+    "rest; both alike: J = mR²/3, and the rim is as fast as the centre, with the force 8/3π·μN and the moment "
+    "8/9π·μNR.",
+    swept=("polar_inertia",),
+)
+def on_full_disc(engine: Engine) -> Measured:
+    """Compare throws of a full disc with uniform deceleration."""
+    way = way_of(engine)
+    return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
+
+
+# --- Figure of the thrown discs: speeds of centre and rim over time.
+
+TAKEN = {
+    "ring": (r"slides: $\mu N$", r"spins: $\mu NR$", r"both: $\frac{2}{\pi}$ of each"),
+    "full disc": (
+        r"slides: $\mu N$",
+        r"spins: $\frac{2}{3}\,\mu NR$",
+        r"both: $\frac{8}{3\pi}\,\mu N$, $\frac{8}{9\pi}\,\mu NR$",
+    ),
+}
+"""What friction takes of the throws, in their order."""
+
+DASHES = ("-", "--", (0.0, (1.0, 1.5)))
+
+
+def draw(data: ByEngine) -> Figures:
+    """Draw the speeds that are left, on a ring and on a full disc."""
+    if not data:
+        return {}
+    figure, panels = new_figure(ncols=2, width=9.6, height=3.8, sharey=True)
+    for panel, name, throws, shares in zip(
+        panels, ("ring", "full disc"), (RING, FULL), (TO_REST, WHILE_SLIDING), strict=True
+    ):
+        for throw, taken, dashes in zip(throws, TAKEN[name], DASHES, strict=True):
+            speeds = (max(throw.sliding, abs(throw.rim)), 0.0, 0.0)
+            look = curve("theory", taken, linestyle=dashes, linewidth=1.2)
+            panel.plot((0.0, throw.time, 1.3 * throw.time), speeds, **look)
+        for engine in engines_in(data):
+            if f"{name}: speeds" not in data[engine]:
+                continue
+            label = engine
+            for throw, speeds in zip(throws, data[engine][f"{name}: speeds"], strict=True):
+                panel.plot(throw.time * shares[1:], np.max(np.abs(speeds), axis=1), **points(engine, label))
+                label = ""
+        panel.set(xlabel=axis("t", "s"), title=f"Contact on a {name}")
+        panel.legend(loc="upper right")
+    panels[0].set_ylabel("speed in m/s")
+    return {"thrown-disc": figure}
+
+
+STUDY.provides(figures=draw)

@@ -1,0 +1,79 @@
+"""The disc of Fig. 11: its start, (19) as plain equations, and planes of two parameters about it."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from compare.claims.parameters import FIG11
+from reference_model import plain
+from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTermRing, contact_of
+from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
+from reference_model.systems import DiscOnDisc, FloatArray
+
+# --- What the parts of the study of Fig. 11 share: its start, its source, and (19) as plain equations.
+
+RING = FIG11
+
+SIX = replace(FIG11, contact_points=6)
+
+DISCS = {"the continuous ring": RING, "six points": SIX}
+
+START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
+"""x, y, angle, vx, vy, spin where the radius is largest on the modulated cycle of X0 = 0, to these digits."""
+
+SOURCE = "Fig. 11, which leaves out X0"
+
+
+def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
+    """Return the right side of (19) with (20) or (21) at ``state``, shape (6,)."""
+    return plain.rates(disc, plain.by_law(disc.friction_force, contact_of(disc)), state)
+
+
+@functools.cache
+def integrated(
+    disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
+) -> FloatArray:
+    """Return the states at so many times up to ``until`` s, shape (samples, 6), from (19) as it stands.
+
+    For a disc that slides all the time. Nothing of ``simulate`` is used.
+    """
+    friction = plain.by_law(disc.friction_force, contact_of(disc))
+    run = solve_ivp(
+        lambda _, state: plain.rates(disc, friction, state),
+        (0.0, until),
+        start,
+        method="DOP853",
+        t_eval=np.linspace(0.0, until, samples),
+        rtol=tolerance,
+        atol=tolerance,
+    )
+    return np.asarray(run.y.T)
+
+
+# --- Planes of two parameters about the disc of Fig. 11, and the curves that bound its motions there.
+
+LAWS: dict[str, IsotropicContact] = {
+    "ring": Ring(FIG11.contact_radius),
+    "(23)": ThreeTermRing(FIG11.contact_radius),
+}
+
+PLANES = {
+    "load": ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),
+    "dampers": ParameterPlane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
+    "speeds": ParameterPlane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
+    "inertia": ParameterPlane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
+}
+
+KINDS: tuple[Kind, ...] = ("onset", "Hopf", "fold")
+
+FINE = 0.04
+"""Largest distance between the points of a curve, in units of the ranges."""
+
+
+def curves_in(plane: str, kind: Kind, law: str, step: float = FINE) -> tuple[Boundary, ...]:
+    """Return the curves of a kind in one of ``PLANES``, by one of ``LAWS``."""
+    return boundaries(PLANES[plane], kind, LAWS[law], step=step)

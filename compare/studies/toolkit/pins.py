@@ -1,0 +1,64 @@
+"""Pins that stick to the disc, and their whirl as an engine's own periodic orbit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from compare.engines import Engine
+from reference_model import Orbit, whirl_orbit
+from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.trajectory import Trajectory
+
+# --- Starts of a pin that sticks to the disc, and when the disc lets it go.
+
+
+def safest_angle(pin: PinOnDisc) -> float:
+    """Return the angle in rad at which the least force holds a stuck pin: by (7) that of (C − mω²) − iβω."""
+    return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
+
+
+def farthest(pin: PinOnDisc) -> float:
+    """Return the radius in m within which there are places where friction can hold a pin, by (7)."""
+    return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
+        complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
+    )
+
+
+def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
+    """Return the state of a pin that turns with the disc, at ``radius`` in m and ``angle`` in rad."""
+    x, y = radius * math.cos(angle), radius * math.sin(angle)
+    return np.array([x, y, -pin.disc_speed * y, pin.disc_speed * x])
+
+
+def first_release(run: Trajectory) -> float:
+    """Return when the first stick phase ends in s; inf if it does not, NaN if the motion starts slipping."""
+    first = run.phases[0]
+    if first.kind != "stick":
+        return math.nan
+    return first.end if len(run.phases) > 1 else math.inf
+
+
+# --- The pin's whirl as an engine's own periodic orbit, and what is read off it.
+
+SAMPLES = 64
+"""States in a turn."""
+
+
+def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
+    """Return the whirl of ``pin``, found by shooting with ``engine``."""
+    return whirl_orbit(
+        pin,
+        simulate=engine.simulate,
+        tolerance=tolerance,
+        guess=guess,
+        samples=SAMPLES,
+        precision=engine.precision,
+    )
+
+
+def extent(orbit: Orbit) -> FloatArray:
+    """Return the least and the greatest distance from the axis in m."""
+    radius = orbit.trajectory.radius
+    return np.array([np.min(radius), np.max(radius)])

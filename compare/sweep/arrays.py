@@ -1,0 +1,278 @@
+"""Groups of arrays in Zarr version 3, written by xarray: whole, or region by region by whoever has computed one.
+
+Every piece has the checksum of the codec crc32c, so reading one that is cut or garbled raises an error.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+import zarr
+from numpy.typing import NDArray
+from zarr.codecs import BloscCodec, Crc32cCodec
+
+from compare.sweep.files import Files, StoreError, told
+from compare.sweep.plan import Numbers
+from compare.sweep.quantities import RESULTS
+
+DESCRIPTION = "zarr.json"
+"""Name of the file that describes a group or an array."""
+
+FORMAT: dict[str, Any] = {"zarr_format": 3, "consolidated": False}
+"""No copy of the metadata goes stale when a group grows."""
+
+CODECS = (BloscCodec(cname="lz4"), Crc32cCodec())
+
+TYPES = {"float64", "uint8", "int64", "string"}
+CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
+"""The data types and chains of codecs that sweeps write."""
+
+MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
+"""What an array contains where nothing is written, by its type.
+
+No result is like this: Zarr may leave out a piece in which nothing differs from it, and a piece that is not there
+counts as missing.
+"""
+
+CHECKSUM = "checksum"
+
+
+class Large(NamedTuple):
+    """An array that is written region by region: dimensions, shape, shape of its pieces, type and attributes."""
+
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    pieces: tuple[int, ...]
+    dtype: str
+    attributes: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Group:
+    """A group of a store, wherever it is opened.
+
+    Parameters
+    ----------
+    files : Files
+        Of the store.
+    description : str
+        Checksum of the store's description: the files at the same place of another machine may be others.
+    name : str
+        Its name in the store.
+
+    """
+
+    files: Files
+    description: str
+    name: str
+
+    @property
+    def _place(self) -> dict[str, Any]:
+        return {"group": self.name, "storage_options": self.files.options, **FORMAT}
+
+    def create(self, arrays: Mapping[str, Large]) -> None:
+        """Describe arrays in a new group, without any piece."""
+        group = zarr.create_group(
+            self.files.url, path=self.name, zarr_format=3, storage_options=self.files.options
+        )
+        for name, array in arrays.items():
+            group.create_array(
+                name,
+                shape=array.shape,
+                chunks=array.pieces,
+                dtype=array.dtype,
+                fill_value=MISSING[array.dtype],
+                compressors=CODECS,
+                dimension_names=array.dimensions,
+                attributes=array.attributes,
+            )
+
+    def add(self, dataset: xr.Dataset) -> None:
+        """Write all variables of a dataset into the group."""
+        texts = [name for name, values in dataset.variables.items() if values.dtype.kind == "U"]
+        # of any length: numpy's texts have no data type in the standard
+        dataset = dataset.assign({name: dataset[name].astype(object) for name in texts})
+        encoding = {name: {"compressors": CODECS} for name in dataset.variables}
+        dataset.to_zarr(self.files.url, mode="a", encoding=encoding, write_empty_chunks=True, **self._place)
+
+    def write(self, values: Mapping[str, NDArray[Any]], region: Mapping[str, slice]) -> None:
+        """Write a region of arrays whose first dimensions are those of ``region``, in this order.
+
+        Raises :class:`StoreError` if it cannot be written, or if this is another store.
+        """
+        with told(self.files.url):
+            if description_of(self.files) != self.description:
+                raise StoreError(
+                    f"a worker does not find the sweep in {self.files.url!r}: --output must be a folder that all "
+                    "share, or an object store"
+                )
+            dimensions = (*region, "component")
+            written = xr.Dataset({name: (dimensions[: one.ndim], one) for name, one in values.items()})
+            written.to_zarr(self.files.url, mode="r+", region=region, **self._place)
+
+    def array(self, name: str) -> Any:
+        """Return an array, of which nothing is read yet."""
+        return _opened(self, name)
+
+    def dataset(self) -> xr.Dataset:
+        """Return all arrays with their labels, of which nothing is read yet."""
+        found: xr.Dataset = xr.open_zarr(self.files.url, chunks=None, **self._place)
+        return found
+
+    def seal(self) -> None:
+        """Write the checksum of all descriptions, without which a group does not count."""
+        digest = checksum({name: digest_of(content) for name, content in self._described().items()})
+        self.files.write({f"{self.name}/{DESCRIPTION}": group_content({CHECKSUM: digest})})
+
+    def has_seal(self) -> bool:
+        """Return whether the group has any seal; a garbled description may have had one."""
+        content = self.files.read(f"{self.name}/{DESCRIPTION}")
+        try:
+            return content is not None and json.loads(content)["attributes"] != {}
+        except (ValueError, KeyError, TypeError):
+            return True
+
+    def is_sealed(self) -> bool:
+        """Return whether the descriptions are those that were sealed, and of arrays as sweeps write them."""
+        described = self._described()
+        digest = checksum({name: digest_of(content) for name, content in described.items()})
+        sealed = self.files.read(f"{self.name}/{DESCRIPTION}") == group_content({CHECKSUM: digest})
+        return sealed and all(map(is_ours, described.values()))
+
+    def is_whole(self, names: Sequence[str] = ()) -> bool:
+        """Return whether every piece of arrays, of all unless there are ``names``, is there and can be read."""
+        arrays = {name: self.array(name) for name in names or self._described()}
+        return all(
+            array.nchunks_initialized == array.nchunks
+            and all(
+                self.can_read(name, slice(first, first + array.chunks[0]))
+                for first in range(0, array.shape[0], array.chunks[0])
+            )
+            for name, array in arrays.items()
+        )
+
+    def can_read(self, name: str, where: slice) -> bool:
+        """Return whether a part of an array can be read, with the right checksums."""
+        try:
+            self.array(name)[where]
+        except MemoryError:
+            raise
+        except Exception:  # whatever is raised by a file that may have any contents
+            return False
+        return True
+
+    def _described(self) -> dict[str, bytes]:
+        """Return the descriptions of all arrays by their names."""
+        files = {name: f"{self.name}/{name}/{DESCRIPTION}" for name in self.files.inside(self.name)}
+        found = {name: self.files.read(file) for name, file in files.items()}
+        return {name: content for name, content in found.items() if content is not None}
+
+
+@lru_cache(maxsize=64)
+def _opened(group: Group, name: str) -> Any:
+    files = group.files
+    with told(files.url, "read from"):
+        place = f"{group.name}/{name}"
+        return zarr.open_array(files.url, path=place, mode="r", zarr_format=3, storage_options=files.options)
+
+
+def is_ours(description: bytes) -> bool:
+    """Return whether an array has a data type and codecs that sweeps write.
+
+    Others, such as the filter "pickle", may run code of whoever wrote the array.
+    """
+    try:
+        found = json.loads(description)
+        chain = [codec["name"] for codec in found["codecs"]]
+        known = found["data_type"] in TYPES and chain in CHAINS and not found.get("storage_transformers")
+        return bool(known and found["zarr_format"] == 3 and found["node_type"] == "array")
+    except (ValueError, KeyError, TypeError):
+        return False
+
+
+def group_content(attributes: Mapping[str, Any]) -> bytes:
+    """Return the description of a group."""
+    content = {"zarr_format": 3, "node_type": "group", "attributes": attributes}
+    return json.dumps(content, sort_keys=True).encode()
+
+
+def description_of(files: Files) -> str:
+    """Return the digest of the description of a store."""
+    return digest_of(files.read(DESCRIPTION) or b"")
+
+
+def checksum(attributes: Mapping[str, Any]) -> str:
+    """Return the checksum of attributes."""
+    return digest_of(json.dumps(attributes, sort_keys=True).encode())
+
+
+def digest_of(content: bytes) -> str:
+    """Return the digest of the contents of a file."""
+    return hashlib.blake2b(content, digest_size=8).hexdigest()
+
+
+# --- The trajectories of a round in the store: arrays whose regions are written by whoever simulates a chunk.
+#
+# Two who write the same chunk write the same bits.
+
+
+@dataclass(frozen=True)
+class Chunks:
+    """The chunks of a round, of ``count`` trajectories: ``size`` of them in each but the last."""
+
+    group: Group
+    count: int
+    size: int
+
+    def __len__(self) -> int:
+        return -(-self.count // self.size)
+
+    def where(self, chunk: int) -> slice:
+        """Return the places of the trajectories of a chunk."""
+        return slice(chunk * self.size, min((chunk + 1) * self.size, self.count))
+
+    def read(self, name: str, where: int | slice) -> NDArray[Any]:
+        """Return results of trajectories in the order of the round."""
+        return np.asarray(self.group.array(name)[where])
+
+    def write(self, chunk: int, results: Mapping[str, NDArray[Any]]) -> None:
+        """Write a chunk; raise ``StoreError`` where that can't be."""
+        self.group.write(results, {"trajectory": self.where(chunk)})
+
+    def there(self) -> list[int]:
+        """Return the chunks of which all files are there."""
+        files = set(self.group.files.names(self.group.name))
+        keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}  # one for each dimension
+        return [
+            chunk
+            for chunk in range(len(self))
+            if all(f"{self.group.name}/{name}/c/{key.format(chunk)}" in files for name, key in keys.items())
+        ]
+
+    def is_whole(self, chunk: int) -> bool:
+        """Return whether all results of a chunk can be read."""
+        return all(self.group.can_read(name, self.where(chunk)) for name in RESULTS)
+
+
+class Round:
+    """The trajectories ``numbers`` of a round; ``done`` says of each chunk whether it is there and whole."""
+
+    def __init__(self, chunks: Chunks, numbers: Numbers) -> None:
+        self.chunks, self.numbers = chunks, numbers
+        self.done: NDArray[np.bool_] = np.zeros(len(chunks), dtype=bool)
+
+    def numbers_of(self, chunk: int) -> Numbers:
+        """Return the numbers of the trajectories of a chunk."""
+        return self.numbers[self.chunks.where(chunk)]
+
+    @property
+    def ends(self) -> Any:
+        """What the trajectories end as, an array that reads itself once its values are wanted."""
+        return self.chunks.group.array("end")

@@ -1,0 +1,153 @@
+"""What formulas and continuation know: motions along one parameter, and curves in the plane of a map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, NamedTuple, get_args
+
+import numpy as np
+
+from compare.sweep.compute.motions import matched
+from compare.sweep.plan import Continuation, Map
+from reference_model import Orbit, self_centred_equilibria, whirl_orbit, whirls
+from reference_model.formulas.pin import largest_load_with_equilibrium
+from reference_model.steady.bifurcation_curves import Kind, ParameterPlane, boundaries
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+
+# --- The steady and periodic motions that formulas and continuation give along one parameter.
+
+SAMPLES = 64
+"""Of an orbit, on which its radii are looked for: between two the radius of one near to a circle differs by 1e-3."""
+
+
+class Known(NamedTuple):
+    """A motion: what it is, least and largest radius in m, whether it is stable."""
+
+    meaning: str
+    least: float
+    largest: float
+    stable: bool
+
+
+def known_branches(plan: Continuation) -> list[dict[int, Known]]:
+    """Return branches of motions, each by the places of the values of the axis."""
+    return matched(list(_known(plan)), lambda one: one.meaning)
+
+
+def _known(plan: Continuation) -> Iterator[list[Known]]:
+    """Yield the motions at each value.
+
+    A whirl with an offset is sought from that of the value before.
+    """
+    orbit: Orbit | None = None
+    for value in plan.x.values.tolist():
+        change: dict[str, Any] = {plan.x.name: value}
+        system = replace(plan.system, **change)
+        here: list[Known] = []
+        with suppress(ValueError):  # of a disc on single points, of which no formula knows
+            rests = self_centred_equilibria(system)
+            here += [_circle("self-centred", math.hypot(one.x, one.y), one.stable) for one in rests]
+        if system.offset == 0.0:
+            with suppress(ValueError):
+                here += [_circle("whirl", one.radius, one.stable) for one in whirls(system)]
+        else:
+            orbit = _orbit(system, orbit, plan.tolerance)
+            if orbit is not None:
+                radii = orbit.trajectory.radius
+                here.append(Known("whirl", float(radii.min()), float(radii.max()), orbit.stable))
+        yield here
+
+
+def _orbit(system: System, before: Orbit | None, tolerance: float) -> Orbit | None:
+    """Return the whirl by shooting from that of the value before, or else from the circle without offset."""
+    for guess in (before, None) if before is not None else (None,):
+        with suppress(ValueError, RuntimeError):  # there is none, or it is not found
+            return whirl_orbit(system, guess=guess, tolerance=tolerance, samples=SAMPLES)
+    return None
+
+
+def _circle(meaning: str, radius: float, stable: bool) -> Known:
+    return Known(meaning, radius, radius, stable)
+
+
+# --- Where formulas say that the motions change, as curves in the plane of a map.
+#
+# They hold without offset, but for that of (5); a disc is taken on the continuous ring.
+
+NODES = 101
+"""Values of each parameter between which the zeros of a margin are interpolated."""
+
+
+class Curve(NamedTuple):
+    """A curve: what happens there, and its points, shape (n, 2), in the units of the two parameters."""
+
+    meaning: str
+    points: FloatArray
+
+
+class _Margin(NamedTuple):
+    """What changes its sign on a curve."""
+
+    meaning: str
+    of: Callable[[Any], float]
+
+
+PIN = (
+    _Margin(r"(5): $\mu N = C|X_0|$", lambda pin: largest_load_with_equilibrium(pin) - pin.friction_force),
+    _Margin(r"(11): $|\omega| = k$", lambda pin: abs(pin.disc_speed) - pin.natural_frequency),
+)
+DISC = (
+    _Margin(
+        r"sticking on the axis: $b|\omega-\Omega| = \mu N R$",
+        lambda disc: (
+            disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
+            - disc.friction_force * disc.contact_radius
+        ),
+    ),
+)
+MEANINGS: dict[Kind, str] = {
+    "Hopf": "the whirl loses its stability (Hopf)",
+    "fold": "two whirls meet (fold)",
+    "onset": "the rotation about the axis loses its stability",
+}
+
+
+def curves(plan: Map) -> tuple[Curve, ...]:
+    """Return all curves in the plane of ``plan``."""
+    found = list(_zeros(plan))
+    if isinstance(plan.system, DiscOnDisc):
+        found.extend(_boundaries(plan, plan.system))
+    return tuple(found)
+
+
+def _boundaries(plan: Map, disc: DiscOnDisc) -> Iterator[Curve]:
+    """Yield what :mod:`reference_model.steady.bifurcation_curves` knows; nothing where it does not know the plane."""
+    x, y = plan.x, plan.y
+    centred = replace(disc, offset=0.0, contact_points=None)
+    try:
+        plane = ParameterPlane(centred, (x.name, y.name), (x.low, y.low), (x.high, y.high))
+    except ValueError:  # a parameter that it does not have, or a range beyond the existence of whirls
+        return
+    for kind in get_args(Kind):
+        for boundary in boundaries(plane, kind):
+            yield Curve(MEANINGS[kind], boundary.parameters)
+
+
+def _zeros(plan: Map) -> Iterator[Curve]:
+    """Yield the curves on which the margins are zero."""
+    from contourpy import contour_generator
+
+    axes = [np.linspace(axis.low, axis.high, NODES) for axis in (plan.x, plan.y)]
+    systems = [[_at(plan, x, y) for x in axes[0].tolist()] for y in axes[1].tolist()]
+    for margin in PIN if isinstance(plan.system, PinOnDisc) else DISC:
+        values = np.array([[margin.of(system) for system in row] for row in systems])
+        for points in contour_generator(x=axes[0], y=axes[1], z=values).lines(0.0):
+            yield Curve(margin.meaning, np.asarray(points))
+
+
+def _at(plan: Map, x: float, y: float) -> System:
+    changes: dict[str, Any] = {plan.x.name: x, plan.y.name: y}
+    return replace(plan.system, **changes)

@@ -1,1 +1,0 @@
-"""What a sweep computes: axes, distributions, the plan made of them, and where it refines."""

@@ -1,0 +1,159 @@
+"""Uncertain quantities: a name, and how its values are distributed."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from compare.engines import one_of
+from compare.sweep.quantities import parameters, units
+from reference_model.systems import FloatArray, System, finite_number
+
+LEAST_UNIFORM = 2.0**-54
+"""Takes the place of 0 among random numbers in [0, 1), where a normal distribution has no finite value."""
+
+
+class _Kind(NamedTuple):
+    """The names of a distribution's numbers, what they must fulfil, and what makes it of ``scipy.stats``."""
+
+    arguments: tuple[str, ...]
+    allowed: str
+    possible: Callable[..., bool]
+    frozen: Callable[..., Any]
+
+
+KINDS = {
+    "normal": _Kind(
+        ("mean", "deviation"),
+        "deviation > 0",
+        lambda mean, deviation: deviation > 0.0,
+        lambda stats, mean, deviation: stats.norm(mean, deviation),
+    ),
+    "truncnorm": _Kind(
+        ("mean", "deviation", "low", "high"),
+        "deviation > 0 and low < high",
+        lambda mean, deviation, low, high: deviation > 0.0 and low < high,
+        lambda stats, mean, deviation, low, high: stats.truncnorm(
+            (low - mean) / deviation, (high - mean) / deviation, mean, deviation
+        ),
+    ),
+    "uniform": _Kind(
+        ("low", "high"),
+        "low < high",
+        lambda low, high: low < high,
+        lambda stats, low, high: stats.uniform(low, high - low),
+    ),
+    "triangular": _Kind(
+        ("low", "mode", "high"),
+        "low <= mode <= high and low < high",
+        lambda low, mode, high: low <= mode <= high and low < high,
+        lambda stats, low, mode, high: stats.triang((mode - low) / (high - low), low, high - low),
+    ),
+    "lognormal": _Kind(
+        ("median", "deviation"),
+        "median > 0 and deviation (of the logarithm) > 0",
+        lambda median, deviation: median > 0.0 and deviation > 0.0,
+        lambda stats, median, deviation: stats.lognorm(deviation, scale=median),
+    ),
+}
+
+
+def in_words() -> str:
+    """Return how all distributions are written."""
+    return ", ".join(f"{name}({', '.join(kind.arguments)})" for name, kind in KINDS.items())
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A parameter or a component of the state at time 0 that is distributed.
+
+    Parameters
+    ----------
+    name : str
+        The parameter or component.
+    kind : str
+        One of ``KINDS``.
+    numbers : tuple of float
+        The distribution's numbers in its order, in the quantity's SI unit.
+
+    Raises
+    ------
+    ValueError
+        If there is no such distribution.
+
+    """
+
+    name: str
+    kind: str
+    numbers: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse what is no distribution."""
+        kind = KINDS[one_of("distribution", self.kind, KINDS)]
+        if len(self.numbers) != len(kind.arguments) or not kind.possible(*self.numbers):
+            raise ValueError(f"{self}: it takes ({', '.join(kind.arguments)}) with {kind.allowed}")
+
+    def __str__(self) -> str:
+        return f"{self.name}={self.kind}({', '.join(f'{number:g}' for number in self.numbers)})"
+
+    @classmethod
+    def parse(cls, text: str, system: System) -> Uncertain:
+        """Return what "NAME=KIND(NUMBER, ...)" says; raise ``ValueError`` for anything else.
+
+        Also if some of the values would be impossible for ``system``.
+        """
+        found = re.fullmatch(r"\s*(\w+)\s*=\s*(\w+)\s*\(([^()]*)\)\s*", text)
+        if not found:
+            raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION, which is one of {in_words()}")
+        name = one_of("parameter or component", found[1], units(system))
+        numbers = tuple(finite_number(name, number) for number in found[3].split(","))
+        uncertain = cls(name, found[2], numbers)
+        uncertain.check(system)
+        return uncertain
+
+    def check(self, system: System) -> None:
+        """Raise ``ValueError`` if ``system`` can't have all the values that the distribution allows."""
+        if self.name not in parameters(system):
+            return
+        largest = float(np.max(np.abs(self.values(np.array([0.0, 1.0 - LEAST_UNIFORM * 2.0])))))
+        for end in self.distribution.support():
+            # the sign of what has no end counts, and the largest size that is drawn
+            value = float(end) if math.isfinite(end) else math.copysign(largest, end)
+            changes: dict[str, Any] = {self.name: value}
+            try:
+                replace(system, **changes)
+            except ValueError as error:
+                allowed = str(error).rpartition(": ")[2]
+                raise ValueError(
+                    f"{self}: it allows {self.name} = {end:g}, and {allowed}; "
+                    "truncnorm(mean, deviation, low, high) cuts a normal distribution off"
+                ) from None
+
+    @cached_property
+    def distribution(self) -> Any:
+        """The distribution of SciPy."""
+        from scipy import stats  # takes long, and most sweeps do without
+
+        return KINDS[self.kind].frozen(stats, *self.numbers)
+
+    def values(self, uniform: FloatArray) -> FloatArray:
+        """Return the values for numbers in [0, 1), where the distribution's integral reaches them."""
+        return np.asarray(self.distribution.ppf(np.maximum(uniform, LEAST_UNIFORM)), dtype=float)
+
+
+def uniform_rows(seed: int, first: int, count: int, width: int) -> FloatArray:
+    """Return rows ``first`` to ``first + count`` of a table of random numbers in [0, 1), shape (count, width).
+
+    The generator counts (Philox), so that any part of the table can be made alone.
+    """
+    blocks = -(-width // 4)  # four numbers at every count
+    generator = np.random.Philox(key=seed)
+    generator.advance(first * blocks)
+    rows: FloatArray = np.random.Generator(generator).random((count, 4 * blocks))
+    return rows[:, :width]

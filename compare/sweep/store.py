@@ -1,0 +1,239 @@
+"""Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets, valid at every moment.
+
+- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose regions are written by those who
+  simulate them (:mod:`compare.sweep.arrays`).
+- ``check``, ``result``, ``curves``, ``branches``: written when all chunks are done.
+
+A group is there once it is sealed (:meth:`compare.sweep.arrays.Group.seal`). The attributes of the store
+contain the plan, the digest of the code that computed it and their checksum; whoever writes them first makes the
+store. Groups and chunks that are damaged are computed again, and ``SweepStore.broken`` lists them. A store of few
+trajectories in a folder of this machine becomes one file when the sweep is finished (:meth:`SweepStore.pack`).
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from compare.output.outside_text import all_printable
+from compare.run.provenance import stamp as stamp_now
+from compare.run.provenance import version_of
+from compare.sweep.arrays import (
+    CHECKSUM,
+    DESCRIPTION,
+    Chunks,
+    Group,
+    Large,
+    Round,
+    checksum,
+    description_of,
+    group_content,
+)
+from compare.sweep.files import Files, is_remote, pack, told, unpacked
+from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_json
+from compare.sweep.quantities import RESULTS, components
+
+SMALL = 1_000_000
+"""Trajectories from which on a finished store stays a folder."""
+
+MOST_NAMED = 10
+"""Chunks that a sentence lists."""
+
+ROUND = "round-{}"
+
+
+class SweepStore:
+    """A store that is open, of a plan.
+
+    Parameters
+    ----------
+    files : Files
+        Of the store.
+    plan : Plan
+        What is computed.
+    chunk : int
+        Number of trajectories that are computed and written together.
+    stamp : str
+        Of the code that computes them.
+    place : str, optional
+        The URL that it is asked for by, if ``files`` are those of an unpacked archive.
+
+    """
+
+    def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str, place: str = "") -> None:
+        self.files, self.plan, self.chunk, self.stamp = files, plan, chunk, stamp
+        self.broken: list[str] = []  # what is not as it was written, in words
+        self._place = place or files.url
+        self._whole: set[str] = set()
+        self._description = description_of(files)
+        self._unpacked: tempfile.TemporaryDirectory[str] | None = None
+
+    @property
+    def path(self) -> str:
+        """Where it is, in words."""
+        archive = archive_of(self._place)
+        return str(archive) if archive is not None and archive.exists() else self._place
+
+    @classmethod
+    def create(cls, path: str | Path, plan: Plan, chunk: int) -> SweepStore:
+        """Make a store where nothing is yet; ``FileExistsError`` where something is, or another was the first."""
+        files = Files.at(path)
+        if not is_free(files):
+            raise FileExistsError(files.url)
+        libraries = ("friction-discs", "numpy", "scipy", "numba", "xarray", "zarr")
+        attributes = {
+            "title": f"friction-discs sweep: {plan.kind}",
+            "plan": json.dumps(plan_as_json(plan)),
+            "chunk": chunk,
+            "stamp": stamp_now(),
+            "versions": json.dumps({name: version_of(name) for name in libraries}),
+            "id": secrets.token_hex(8),
+        }
+        files.claim(DESCRIPTION, group_content(attributes | {CHECKSUM: checksum(attributes)}))
+        return cls(files, plan, chunk, stamp_now())
+
+    @classmethod
+    def open(cls, path: str | Path) -> SweepStore:
+        """Open a store; raise ``ValueError`` if there is none of a sweep, or its description is broken."""
+        files, folder = Files.at(path), None
+        archive, place = archive_of(files.url), files.url
+        try:  # not by Zarr, which would look at all groups, and one of them may be broken
+            if archive is not None and archive.exists():
+                folder = unpacked(archive)
+                files = Files.at(folder.name)
+            content = files.read(DESCRIPTION) or b""
+            attributes = json.loads(content)["attributes"]
+            whole = content == group_content(attributes)
+            whole = attributes.pop(CHECKSUM) == checksum(attributes) and whole
+            plan = plan_from_json(all_printable(json.loads(attributes["plan"])))
+            chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
+        except (OSError, AttributeError, KeyError, TypeError, ValueError):
+            whole = False
+        if not whole:
+            if folder is not None:
+                folder.cleanup()
+            raise ValueError(f"{place!r} is no store of a sweep, or its description is broken")
+        store = cls(files, plan, chunk, stamp, place)
+        store._unpacked = folder
+        return store
+
+    def pack(self) -> None:
+        """Make one file of a small store that is finished; :meth:`tidy` removes the folder."""
+        archive = archive_of(self._place)
+        if archive is None or count(self.plan) >= SMALL:
+            return
+        if not archive.exists() or self.broken:
+            with told(str(archive)):
+                pack(Path(self.files.url), archive)
+
+    def tidy(self) -> None:
+        """Remove the folders of a store that is one file by now; it can't be read any more then."""
+        archive = archive_of(self._place)
+        if archive is not None and archive.exists():
+            shutil.rmtree(self._place, ignore_errors=True)
+        if self._unpacked is not None:
+            self._unpacked.cleanup()
+
+    def round(self, i: int, numbers: Numbers) -> Round:
+        """Return round ``i`` of the trajectories ``numbers``, made if :meth:`look` does not find it."""
+        if found := self.look(i, numbers):
+            return found
+        group = self.begin(ROUND.format(i), self._template(len(numbers)))
+        self.end(group, xr.Dataset(coords={"component": list(components(self.plan.system))}))
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
+
+    def look(self, i: int, numbers: Numbers) -> Round | None:
+        """Return round ``i`` of the trajectories ``numbers``, None if it is not there or broken."""
+        group = self._group(ROUND.format(i))
+        if not self._is_intact(group, f"the description of {group.name}", ["component"]):
+            return None
+        return Round(Chunks(group, len(numbers), self.chunk), numbers)
+
+    def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
+        """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
+        if chunks:
+            shown = ", ".join(map(str, chunks[:MOST_NAMED]))
+            more = f" and {len(chunks) - MOST_NAMED} more" if len(chunks) > MOST_NAMED else ""
+            self.broken.append(f"of {count} chunks of {ROUND.format(i)} these: {shown}{more}")
+
+    def put(self, name: str, dataset: xr.Dataset) -> None:
+        """Write a group, in place of an older one."""
+        self.end(self.begin(name, {}), dataset)
+
+    def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
+        """Begin a group, in place of an older one, with arrays that others write; :meth:`end` ends it."""
+        self.files.remove(name)
+        group = self._group(name)
+        with told(self.files.url):
+            group.create(arrays)
+        return group
+
+    def end(self, group: Group, dataset: xr.Dataset) -> None:
+        """End a group with what else is to be in it."""
+        with told(self.files.url):
+            group.add(dataset)
+        group.seal()
+        self._whole.add(group.name)
+
+    def get(self, name: str) -> xr.Dataset | None:
+        """Return a group that was read once and is whole, or None if it is not there or broken."""
+        group = self._group(name)
+        return group.dataset() if self._is_intact(group, name) else None
+
+    def _group(self, name: str) -> Group:
+        return Group(self.files, self._description, name)
+
+    def _template(self, count: int) -> dict[str, Large]:
+        """Return the arrays of a round of ``count`` trajectories."""
+        arrays: dict[str, Large] = {}
+        for name, result in RESULTS.items():
+            more = (len(components(self.plan.system)),) if name == "states" else ()
+            attributes = {"long_name": result.meaning, "units": result.unit} | flags(name)
+            dimensions = ("trajectory", "component")[: 1 + len(more)]
+            arrays[name] = Large(dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes)
+        return arrays
+
+    def _is_intact(self, group: Group, called: str, names: Sequence[str] = ()) -> bool:
+        """Return whether a group is as it was sealed, with all pieces of its arrays or of those with ``names``.
+
+        Note it as broken otherwise, unless it was never sealed: then it is unfinished.
+        """
+        if group.name in self._whole:
+            return True
+        if not group.has_seal():
+            return False
+        if group.is_sealed() and group.is_whole(names):
+            self._whole.add(group.name)
+            return True
+        self.broken.append(called)
+        return False
+
+
+def archive_of(place: str) -> Path | None:
+    """Return the file that the store at a place becomes if it is small, None in an object store."""
+    return None if is_remote(place) else Path(f"{place}.zip")
+
+
+def is_free(files: Files) -> bool:
+    """Return whether nothing is there."""
+    archive = archive_of(files.url)
+    return not files.inside() and (archive is None or not archive.exists())
+
+
+def flags(variable: str) -> dict[str, Any]:
+    """Return what the values of an end mean, after the CF conventions."""
+    if variable != "end":
+        return {}
+    from reference_model.ensemble import EndState
+
+    return {
+        "flag_values": [int(end) for end in EndState],
+        "flag_meanings": " ".join(end.name.lower() for end in EndState),
+    }

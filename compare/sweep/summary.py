@@ -1,0 +1,125 @@
+"""Results of a sweep in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from compare.sweep.compute.run import CHECK, RESULT
+from compare.sweep.figures import MOST_DRAWS
+from compare.sweep.plan import Continuation, Uncertainty
+from compare.sweep.quantities import units
+from compare.sweep.store import SweepStore
+from reference_model.ensemble import EndState
+from reference_model.systems import COLUMNS
+
+QUANTILES = (0.05, 0.5, 0.95)
+
+
+def summary(store: SweepStore) -> Iterator[str]:
+    """Yield the lines of what a finished sweep found."""
+    result, check = _group(store, RESULT), _group(store, CHECK)
+    total = result["end"].size
+    if "simulated" in result:
+        yield f"{np.count_nonzero(result['simulated'].values)} of {total} starts simulated"
+    else:
+        yield f"{total} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
+    for end in EndState:
+        count = int(result["count"][end])
+        if count == 0:
+            continue
+        line = f"  {end.name.lower().replace('_', ' '):14}"
+        if "share" in result and result["share"].ndim == 1:
+            share, low, high = (
+                100.0 * float(result[name][end]) for name in ("share", "share_low", "share_high")
+            )
+            yield f"{line} {share:8.4f} %, between {low:.4f} and {high:.4f} %"
+        else:
+            yield f"{line} {count}"
+    if "share" in result and result["share"].ndim == 1:
+        yield f"  bounds: {result['share_low'].attrs['long_name']}"
+    if isinstance(store.plan, Uncertainty):
+        yield from _uncertainty(result)
+    if isinstance(store.plan, Continuation):
+        yield from _continuation(store.plan, result)
+    yield _checked(store, check)
+
+
+def same_ends(store: SweepStore) -> bool:
+    """Return whether no trajectory of the random sample ended as something else with the plain reference."""
+    return not np.any(_differing(_group(store, CHECK)))
+
+
+def undecided(store: SweepStore) -> float:
+    """Return the share of the trajectories that are undecided."""
+    count = _group(store, RESULT)["count"].values
+    return float(count[EndState.UNDECIDED] / np.sum(count))
+
+
+def _uncertainty(result: xr.Dataset) -> Iterator[str]:
+    radii = result["largest_radius"][:MOST_DRAWS].values
+    radii = radii[np.isfinite(radii)]
+    if radii.size:
+        values = ", ".join(
+            f"{100.0 * part:g} %: {value:.4g} m"
+            for part, value in zip(QUANTILES, np.quantile(radii, QUANTILES), strict=True)
+        )
+        which = "draws" if result.sizes["sample"] <= MOST_DRAWS else f"first {MOST_DRAWS} draws"
+        yield f"largest radius below which a part of the {which} lies: {values}"
+    for quantity in result["quantity"].values:
+        words = "largest radius" if quantity == "largest_radius" else "whirl or not"
+        for name in result["uncertain"].values:
+            at = {"quantity": quantity, "uncertain": name}
+            first, total, first_error, total_error = (
+                float(result[f"sobol_{which}"].sel(at))
+                for which in ("first", "total", "first_error", "total_error")
+            )
+            if np.isfinite(first):
+                yield (
+                    f"  {words} by {name}: first order {first:.3f} ± {first_error:.3f}, "
+                    f"total {total:.3f} ± {total_error:.3f}"
+                )
+            else:
+                yield f"  {words} by {name}: does not vary"
+
+
+def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
+    """Yield from where to where each motion goes, and what it is at both ends."""
+    name, unit = plan.x.name, units(plan.system)[plan.x.name]
+    for j, end in enumerate(result["motion_end"].values):
+        share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
+        first, last = np.flatnonzero(np.isfinite(share))[[0, -1]]
+        low, high = plan.x.values[[first, last]]
+        yield (
+            f"  {EndState(end).name.lower().replace('_', ' '):14} {name} from {low:.4g} to {high:.4g} {unit}: "
+            f"largest radius {largest[first]:.4g} to {largest[last]:.4g} m, "
+            f"share {100.0 * share[first]:.2f} to {100.0 * share[last]:.2f} %"
+        )
+
+
+def _checked(store: SweepStore, check: xr.Dataset) -> str:
+    """Return how a random sample compares with the plain reference."""
+    velocities = COLUMNS[type(store.plan.system)].index(("vx", "m/s"))
+    difference = check["difference"].values
+    place = np.hypot(difference[:, 0], difference[:, 1])
+    speed = np.hypot(difference[:, velocities], difference[:, velocities + 1])
+    undecided = int(np.count_nonzero(check["plain_end"].values == EndState.UNDECIDED))
+    return (
+        f"{len(place)} of them by the plain reference: {np.count_nonzero(_differing(check))} end differently, "
+        f"{undecided} undecided; states differ by up to {np.nanmax(place):.1e} m and {np.nanmax(speed):.1e} m/s"
+    )
+
+
+def _differing(check: xr.Dataset) -> np.ndarray:
+    found, plain = check["end"].values, check["plain_end"].values
+    differing: np.ndarray = (found != plain) & (found != EndState.UNDECIDED) & (plain != EndState.UNDECIDED)
+    return differing
+
+
+def _group(store: SweepStore, name: str) -> xr.Dataset:
+    group = store.get(name)
+    if group is None:
+        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+    return group
