@@ -1,8 +1,10 @@
 """What holds for every study: sound engines agree, each claim fails for a gross and for a small fault."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from studies_under_test import AGREES, DIFFERS, INCONCLUSIVE, verdicts
+from studies_under_test import AGREES, DIFFERS, INCONCLUSIVE, engine_named, verdicts
 from tested_studies import TESTED
 
 from compare.studies import STUDIES
@@ -37,6 +39,16 @@ def test_the_theory_holds(tested):
     assert len(claims) == sum(not one.of_engine for one in tested.study.declared for _ in one.cases())
     assert {name for name, verdict in claims.items() if verdict is INCONCLUSIVE} == set(tested.open_theory)
     assert DIFFERS not in claims.values()
+
+
+def test_an_engine_of_single_points_is_measured_on_these_and_the_report_says_what_is_missing(tested):
+    if "reference" not in tested.sound:
+        pytest.skip("nothing to compare with")
+    points = replace(engine_named("reference"), name="points", kinds=("points",))
+    found, everything = tested.study.measure(points, tested.few), verdicts(tested.found("reference"))
+    assert verdicts(found).items() <= everything.items()
+    assert bool(found.not_simulated) == (len(found.claims) < len(everything))
+    assert set(tested.study.draw({"points": found.data} if found.data else {})) <= set(tested.study.figures)
 
 
 def unbroken(tested, faults):

@@ -1,4 +1,4 @@
-"""The study of the laws of contact: what its claims see, of engines and of laws that are broken on purpose."""
+"""The study of the laws of contact: claims of the theory fail for laws that are broken on purpose."""
 
 import math
 

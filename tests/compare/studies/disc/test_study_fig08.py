@@ -1,4 +1,4 @@
-"""The study of Fig. 8: what its claims see, and that its formulas are those of an independent solution."""
+"""The study of Fig. 8: its formulas agree with an independent solution."""
 
 import functools
 from dataclasses import replace

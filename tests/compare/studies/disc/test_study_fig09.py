@@ -1,4 +1,4 @@
-"""The study of Figs. 9 and 10: what its claims see, and where its motions end."""
+"""The study of Figs. 9 and 10: limits of its formulas, and wrong formulas are seen."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The study of Fig. 11: what its claims see, and that its theory holds together."""
+"""The study of Fig. 11: eigenvalues, multipliers and spectra agree with each other."""
 
 from __future__ import annotations
 

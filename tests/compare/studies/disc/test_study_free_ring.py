@@ -1,4 +1,4 @@
-"""The study of the free ring: what its claims see, and that its integrals are those of the motion in time."""
+"""The study of the free ring: its integrals are those of the motion in time."""
 
 import math
 from dataclasses import replace

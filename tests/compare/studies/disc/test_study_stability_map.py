@@ -1,4 +1,4 @@
-"""The study of the stability map: what its claims see, and that its text says what it finds."""
+"""The study of the stability map: its text says what it finds."""
 
 from dataclasses import replace
 

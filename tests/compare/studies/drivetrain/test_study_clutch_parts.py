@@ -1,4 +1,4 @@
-"""The study of judder, heat and energy agrees, and each of its claims fails for a wrong part."""
+"""The study of judder, heat and energy: its closed forms solve the equations."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The study of the coupled clutches agrees, and each of its claims fails for a wrong clutch or a wrong record."""
+"""The study of the coupled clutches: Exudyn's own connector, and records that are wrong."""
 
 from dataclasses import replace
 

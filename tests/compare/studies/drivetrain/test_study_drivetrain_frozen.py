@@ -1,4 +1,4 @@
-"""The car's drivetrain agrees with the reference at frozen speeds, and a drivetrain that is another one does not."""
+"""The car's drivetrain at frozen speeds: its whirls and eigenvalues are those of the reference."""
 
 from dataclasses import replace
 

@@ -1,15 +1,11 @@
-"""The study of an isolated drivetrain agrees, and finds out a moment from outside and a shaft without its arm."""
+"""The study of an isolated drivetrain contains every pair of bodies, which exchange angular momentum."""
 
 from itertools import combinations
-from typing import Any
 
-import exudyn.itemInterface
 import numpy as np
 from tested_studies import MOMENTUM
 
 from compare.studies.drivetrain.momentum.study import DRIVETRAINS, KINDS
-
-items: Any = exudyn.itemInterface
 
 
 def test_every_kind_of_each_body_meets_every_kind_of_the_others():

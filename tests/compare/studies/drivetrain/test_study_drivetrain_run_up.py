@@ -1,4 +1,4 @@
-"""The run-up balances its energy, its figures show what is there, and its spectrum finds a known whirl."""
+"""The run-up: its figures show what is there, and its spectrum finds a known whirl."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The study of the clutch's scale: what its claims see."""
+"""The study of the clutch's scale: its systems are those of the paper in other units."""
 
 import pytest
 from tested_studies import CLUTCH_SCALE

@@ -1,4 +1,4 @@
-"""The study of convergence: engines whose errors do not fall as declared differ, and its means of measurement."""
+"""The study of convergence: exponents, orders and the shift by creep are found where they are known."""
 
 import numpy as np
 import pytest
@@ -12,17 +12,12 @@ from compare.studies.engines.engine_convergence.study import STUDY
 from compare.studies.engines.engine_convergence.theory import release_shift_by_creep
 from reference_model.motion.pin_equations import SlipMotion
 
-# --- engines and solvers that are broken on purpose
-
 
 @pytest.mark.parametrize("names", [("exudyn", "reference"), ("reference",), ("exudyn",), ()])
 def test_figures_are_drawn_from_whatever_engines_have_finished(names):
     figures = STUDY.draw({name: ENGINE_CONVERGENCE.found(name).data for name in names})
     assert set(figures) <= set(STUDY.figures)
     assert ("engine-convergence-orders" in figures) == ("exudyn" in names)
-
-
-# --- the means of measurement
 
 
 def test_creep_shifts_a_release_as_an_integration_of_the_creep_says():

@@ -1,4 +1,4 @@
-"""The study of error estimates: sound engines have ones that mean something, and a bad kind of motion shows."""
+"""The study of error estimates: errors that are known are covered and exceeded as computed."""
 
 from dataclasses import replace
 

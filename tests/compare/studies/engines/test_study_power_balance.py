@@ -1,4 +1,4 @@
-"""The study of power agrees for every sound engine, and each of its claims fails for broken ones."""
+"""The study of power: which motions it takes, and over which time."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The study of plain motions: what its claims see of parameters, forces and outputs that are slightly wrong."""
+"""The study of plain motions: how motions are drawn, pooled and integrated."""
 
 from dataclasses import replace
 
@@ -18,11 +18,6 @@ from compare.studies.engines.trajectories.theory import NODES, by_reference, for
 from reference_model.systems import DiscOnDisc
 
 PIN, RING, SIX = "a pin", "a disc on the continuous ring", "a disc on six points"
-
-OF_PIN, OF_DISC = (
-    [name for name, value in vars(MOTIONS[body].system).items() if value] for body in (PIN, RING)
-)
-"""Names of the parameters that a pin, and that a disc has."""
 
 
 def test_no_two_parameters_are_equal():

@@ -1,4 +1,4 @@
-"""The study of the basins: what its claims see, of engines and of ends that are wrong."""
+"""The study of the basins: claims of the theory fail for wrong ends of motions."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The study of Fig. 3: what its claims see, and how the limit (5) is extrapolated."""
+"""The study of Fig. 3: how the limit (5) is extrapolated."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The study of Fig. 4: what its claims see, and that its theory is what bounds (18)."""
+"""The study of Fig. 4: the theory alone bounds the error of (18)."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The study of Fig. 5: what its claims see, and that its ways to the same numbers agree."""
+"""The study of Fig. 5: two ways to the same number agree."""
 
 import io
 import itertools

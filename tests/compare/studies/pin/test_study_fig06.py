@@ -1,4 +1,4 @@
-"""The study of Fig. 6: what its claims see, and that its curves are those of the branch."""
+"""The study of Fig. 6: its curves are those of the branch."""
 
 from dataclasses import replace
 

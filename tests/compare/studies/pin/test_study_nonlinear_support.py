@@ -1,4 +1,4 @@
-"""The study of nonlinear supports: what its claims see, and that its motions pass the bends."""
+"""The study of nonlinear supports: its motions pass the bends."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The study of sticking: what its claims see, and where its starts are."""
+"""The study of sticking: where its starts are."""
 
 import numpy as np
 import pytest

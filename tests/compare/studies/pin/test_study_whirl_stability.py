@@ -1,4 +1,4 @@
-"""The study of the whirl: what its claims see, and that its theory sees wrong formulas."""
+"""The study of the whirl: its theory sees wrong formulas."""
 
 import numpy as np
 import pytest

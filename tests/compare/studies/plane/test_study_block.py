@@ -1,4 +1,4 @@
-"""The study of the block: what its claims see, and that its closed forms are those of the motion in time."""
+"""The study of the block: its closed forms are those of the motion in time."""
 
 import math
 from dataclasses import replace

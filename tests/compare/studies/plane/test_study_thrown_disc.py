@@ -1,4 +1,4 @@
-"""The study of thrown discs: what its claims see, and that its closed forms are those of the contact."""
+"""The study of thrown discs: its closed forms are those of the contact."""
 
 import math
 
