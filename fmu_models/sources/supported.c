@@ -84,7 +84,12 @@ static double held_by(const State *s, double force[3], double by[2]) {
     return friction_needed(&contact, hypot(force[0], force[1]), force[2], by);
 }
 
-/* The same along dz. */
+/* Slip in m/s along the friction that holds: positive where the body turns back. */
+static double slip_along(const double force[3], double needed, const double slip[3]) {
+    return (force[0] * slip[0] + force[1] * slip[1] + force[2] * slip[2]) / needed;
+}
+
+/* As held_by along dz. */
 static double held_tangent(const State *s, const double dz[2], const double force[3], const double by[2],
                            double d_force[3]) {
     const double *v = s->v;
@@ -138,11 +143,8 @@ void model_evaluate(State *s) {
             v[V_indicator] = v[V_friction_force] - needed;
             rests(s);
         } else { /* it ends where the slip is fast enough, or turns back */
-            double along = 0.0;
-            for (int i = 0; i < 3; i++) {
-                along += force[i] / needed * slip[i];
-                force[i] *= v[V_friction_force] / needed;
-            }
+            double along = slip_along(force, needed, slip);
+            for (int i = 0; i < 3; i++) force[i] *= v[V_friction_force] / needed;
             s->slowest = v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
             v[V_indicator] = fmin(s->leaving - v[V_slip_speed], s->epsilon - along);
             slips(s, force);
@@ -249,7 +251,10 @@ int model_change(State *s) {
     }
     slip_of(v, slip);
     speed = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
-    if (s->mode == LEAVES && speed >= 0.99 * s->leaving) {
+    /* What turns back with more than ε of slip across slides on to its rest. */
+    if (s->mode == LEAVES &&
+        (speed >= 0.99 * s->leaving ||
+         (speed > 1.01 * s->epsilon && slip_along(force, needed, slip) >= 0.99 * s->epsilon))) {
         s->mode = SLIPS;
         return 1;
     }

@@ -1,22 +1,337 @@
-"""Tests of studies whose faults are parts of Exudyn models."""
+"""Faults in what the studies of drivetrains, of convergence and of thrown discs are built of.
+
+Each function takes a ``MonkeyPatch`` and puts one fault in, or returns a function that does so.
+"""
+
+from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
+import exudyn.itemInterface
+import numpy as np
 import pytest
-from study_harness import StudyTests, engine_named
+
+import compare.studies.drivetrain.clutch_parts as clutch_parts
+import compare.studies.drivetrain.coupled_clutches.study as coupled_clutches
+import compare.studies.drivetrain.coupled_clutches.theory as coupled_models
+import exudyn_models
+from compare.studies.drivetrain.frozen import whirls
+from compare.studies.drivetrain.run_up import study as run_up
+from compare.studies.plane import thrown_disc as thrown_disc
+from compare.studies.toolkit.drivetrain_bench import (
+    RPM,
+    Operation,
+    centred_car,
+    natural_frequency,
+    passenger_car,
+)
+from exudyn_models.parts.friction_sensors import RingFriction
+from exudyn_models.solver import linear_matrices
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Ring
+from reference_model.trajectory import Solution, Trajectory
+
+items: Any = exudyn.itemInterface
+
+CAR = centred_car()
 
 
-class WrongPartTests(StudyTests):
-    """Checks of what is built of Exudyn's parts: each of ``faults`` puts a wrong one in by a ``MonkeyPatch``."""
+def factors_on(owner, factors):
+    """Return the attributes of ``owner`` multiplied by ``factors``, by their names."""
+    return {name: factor * getattr(owner, name) for name, factor in factors.items()}
 
-    sound = ("exudyn",)
 
-    @classmethod
-    def measured_with(cls, fault, few, only):
-        """Measure while a part is wrong, under a name of its own: nothing sound is remembered for it."""
-        with pytest.MonkeyPatch.context() as patch:
-            cls.faults[fault](patch)
-            return cls.study.measure(replace(engine_named("exudyn"), name=fault), few, only)
+# ---------------------------------------------------------------- judder and heat
 
-    def test_of_nothing_nothing_is_drawn(self):
-        assert self.study.draw({}) == {}
+
+def clutch_parts_off(**factors):
+    """Build the models with parameters that are off by ``factors``; the prediction keeps the right ones."""
+
+    def put(patch):
+        def wrong(build):
+            def built(*arguments):
+                with pytest.MonkeyPatch.context() as inner:
+                    for name, value in factors_on(clutch_parts, factors).items():
+                        inner.setattr(clutch_parts, name, value)
+                    return build(*arguments)
+
+            return built
+
+        for name in ("juddering", "heating"):
+            patch.setattr(clutch_parts, name, wrong(getattr(clutch_parts, name)))
+
+    return put
+
+
+def heat_astray(share):
+    """Let a share of the heat not reach the thermal node."""
+
+    def put(patch):
+        add = exudyn_models.add_ring_friction
+
+        def added(*arguments, **options):
+            friction = add(*arguments, **options)
+            options["thermal_node"].heated_by(lambda mbs, t: -share * friction.power(mbs, t))
+            return friction
+
+        patch.setattr(exudyn_models, "add_ring_friction", added)
+
+    return put
+
+
+# ---------------------------------------------------------------- coupled clutches
+
+
+def coarsely(patch):
+    """Take twice each ε, which takes half the steps."""
+    patch.setattr(coupled_clutches, "EPSILONS", 2.0 * coupled_clutches.EPSILONS)
+
+
+def coupled_off(coarse=True, **factors):
+    """Let all models be built with numbers that are off by ``factors``; not ``coarse`` where rounding counts."""
+
+    def put(patch):
+        if coarse:
+            coarsely(patch)
+        for name, factor in factors.items():
+            patch.setattr(coupled_models, name, np.multiply(factor, getattr(coupled_models, name)).tolist())
+
+    return put
+
+
+def first_load_late(patch):
+    """Let the first clutch be loaded 1 ms late."""
+    on_time = coupled_models.first_load
+    late = lambda time: on_time(time - 1e-3)  # noqa: E731
+    patch.setattr(coupled_models, "first_load", late)
+    patch.setattr(coupled_models, "LOADS", (late, *coupled_models.LOADS[1:]))
+
+
+def torque_late(patch):
+    """Let the torque come 0.1 ms late."""
+    coarsely(patch)
+    on_time = coupled_models.torque
+    patch.setattr(coupled_models, "torque", lambda time: on_time(time - 1e-4))
+
+
+def creep_of_another_order(patch):
+    """Let ε be the root of what is asked for."""
+    coarsely(patch)
+    build = coupled_models.with_our_contact
+    patch.setattr(coupled_clutches, "with_our_contact", lambda epsilon: build(epsilon**0.5 * 0.01))
+
+
+# ---------------------------------------------------------------- the drivetrain at frozen speeds
+
+
+def bench_off(**factors):
+    """Let the drivetrain on the bench be another one, off by ``factors``."""
+
+    def put(patch):
+        build, other = Operation.build, replace(CAR, **factors_on(CAR, factors))
+        patch.setattr(Operation, "build", lambda operation, car: build(operation, other))
+
+    return put
+
+
+def radial_damping_off(factor):
+    """Let the whole drivetrain's radial damping be off by ``factor``."""
+
+    def put(patch):
+        build = exudyn_models.build_drivetrain
+
+        def built(car, **options):
+            return build(replace(car, radial_damping=factor * CAR.radial_damping), **options)
+
+        patch.setattr(exudyn_models, "build_drivetrain", built)
+
+    return put
+
+
+def reaction_without_the_arm_of_the_force(patch):
+    """Let the engine's row of the state matrix follow from that of the disc."""
+    matrix = linear_matrices.state_matrix
+
+    def without_arm(mbs):
+        result = matrix(mbs)
+        result[5] = -result[9] * CAR.disc_inertia / CAR.engine_inertia
+        return result
+
+    patch.setattr(linear_matrices, "state_matrix", without_arm)
+
+
+def whirling_car_off(**factors):
+    """Let the car in a whirl be another one, off by ``factors``."""
+
+    def put(patch):
+        build, other = whirls.build, replace(CAR, **factors_on(CAR, factors))
+        patch.setattr(whirls, "build", lambda car, whirl, **options: build(other, whirl, **options))
+
+    return put
+
+
+def balance_that_does_not_close(patch):
+    """Let a millionth of the energy be missing."""
+    energy = SimpleNamespace(residual=np.array([0.0, 2e-6]), turnover=1.0)
+    motion = SimpleNamespace(times=np.zeros(2), disc=np.zeros((2, 3)), slip=np.zeros(2), energy=energy)
+    model = SimpleNamespace(run=lambda *_, **options: motion)
+    patch.setattr(whirls, "build", lambda *_, **options: model)
+
+
+# ---------------------------------------------------------------- an isolated drivetrain, and the run-up
+
+
+def moment_from_outside(moment):
+    """Let a moment in N m act on the disc, where it is planar."""
+
+    def put(patch):
+        add = exudyn_models.add_radial_support
+
+        def with_moment(mbs, base, disc, **parameters):
+            marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=2))
+            mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=moment))
+            return add(mbs, base, disc, **parameters)
+
+        patch.setattr(exudyn_models, "add_radial_support", with_moment)
+
+    return put
+
+
+def shaft_of_exudyns_own_springs(patch):
+    """Let the shaft's force act on either body at that body's own centre, and not along the line between them."""
+
+    def springs(mbs, base, disc, *, stiffness, damping, offset):
+        markers = [mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)) for node in (base, disc)]
+        mbs.AddObject(
+            items.CartesianSpringDamper(
+                markerNumbers=markers,
+                stiffness=[stiffness] * 3,
+                damping=[damping] * 3,
+                offset=[*offset, 0.0],
+            )
+        )
+
+    patch.setattr(exudyn_models, "add_radial_support", springs)
+
+
+def run_up_with(orders, until=6000.0):
+    """Return data of a run-up in which the disc circles with the given orders of the engine, by amplitude in m."""
+    times = np.linspace(0.0, 5.0, 10001)
+    start, end = 800.0 * RPM, until * RPM
+    speed = start + (end - start) * times / times[-1]
+    angle = start * times + 0.5 * (end - start) * times**2 / times[-1]
+    z = sum(amplitude * np.exp(1j * order * angle) for order, amplitude in orders.items())
+    disc = np.column_stack((z.real, z.imag, angle))
+    return {
+        "times": times,
+        "engine": np.column_stack((angle, speed)),
+        "disc": disc,
+        "slip": 12.0 + 0.0 * times,
+    }
+
+
+def as_predicted(off=0.0):
+    """Return data of a run-up on the lines of the claim, but for ``off`` orders, as it turns faster."""
+    data = run_up_with({1.0: 1e-4})
+    car = passenger_car()
+    times, (angle, speed) = data["times"], data["engine"].T
+    circling, _, frequency = run_up.whirls_above_onset(car).T
+    below = speed < 0.5 * (circling[0] + natural_frequency(car))
+    own = np.where(below, speed - run_up.SLIP, np.interp(speed, circling, frequency)) + off * speed
+    phase = np.concatenate(([0.0], np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(times))))
+    z = 3e-4 * np.exp(1j * phase) + 1e-4
+    return data | {"disc": np.column_stack((z.real, z.imag, angle))}
+
+
+def moving(data):
+    """Let every run-up be one with this data, whose energy is balanced."""
+
+    def put(patch):
+        angle, speed = data["engine"].T
+        energy = SimpleNamespace(residual=np.zeros(len(angle)), turnover=1.0)
+        motion = SimpleNamespace(**data, engine_angle=angle, engine_speed=speed, energy=energy)
+        patch.setattr(run_up, "_run_ups", lambda engine, top: (motion, motion))
+
+    return put
+
+
+def heat_counted_wrong(factor):
+    """Let the power of friction be off by ``factor``."""
+
+    def put(patch):
+        power = RingFriction.power
+        patch.setattr(RingFriction, "power", lambda friction, mbs, t: factor * power(friction, mbs, t))
+
+    return put
+
+
+# ---------------------------------------------------------------- Exudyn's solvers
+
+
+def euler(pin, start, times, *, integrator, step, regularisation=0.0):
+    """Explicit Euler, whatever name it is given."""
+    x, y, vx, vy = start
+    z, v = complex(x, y), complex(vx, vy)
+    states = [start]
+    inside = round((times[1] - times[0]) / step)
+    for _ in times[1:]:
+        for _ in range(inside):
+            slip = v - 1j * pin.disc_speed * z
+            friction = -pin.friction_force * slip / abs(slip)
+            force = friction - pin.damping * v - pin.stiffness * (z - pin.offset)
+            z, v = z + step * v, v + step * force / pin.mass
+        states.append((z.real, z.imag, v.real, v.imag))
+    return Trajectory(pin, times.copy(), np.array(states), (), Solution("Euler", np.nan, 0, 0, 0.0))
+
+
+def first_order(patch):
+    """Let every solver with fixed steps be of first order."""
+    patch.setattr(exudyn_models, "simulate_fixed_step", euler)
+
+
+def wider(factor):
+    """Let solvers smooth friction with another ε than they are asked for."""
+
+    def put(patch):
+        right = exudyn_models.simulate_fixed_step
+
+        def wide(*arguments, **options):
+            if "regularisation" in options:
+                options["regularisation"] *= factor
+            return right(*arguments, **options)
+
+        patch.setattr(exudyn_models, "simulate_fixed_step", wide)
+
+    return put
+
+
+def half_order(patch):
+    """Let ε fall like the root of what is asked for."""
+    right = exudyn_models.simulate
+
+    def rough(*arguments, tolerance, regularisation):
+        return right(*arguments, tolerance=tolerance, regularisation=1e-2 * regularisation**0.5)
+
+    patch.setattr(exudyn_models, "simulate", rough)
+
+
+# ---------------------------------------------------------------- the full disc
+
+
+def full_disc_as_a_ring(patch):
+    """Let all the load of a full disc be on its rim."""
+    patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Ring(outer))
+
+
+def full_disc_with_a_small_hole(patch):
+    """Let a full disc have a hole of 2 % of its radius."""
+    patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
+
+
+def part_with_a_small_hole(patch):
+    """Let Exudyn's part have a hole of 2 % of its radius."""
+    add = exudyn_models.add_ring_friction
+    hole = {"inner_radius": 0.02 * thrown_disc.RADIUS}
+    patch.setattr(exudyn_models, "add_ring_friction", lambda *nodes, **contact: add(*nodes, **contact | hole))

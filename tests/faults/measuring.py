@@ -1,19 +1,16 @@
-"""Measure all sound and faulty engines with the study of trajectories, in processes as a report does."""
+"""Measure all sound and faulty engines with the study of trajectories, motion by motion."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from compare.claims.claim import Kind, Verdict
-from compare.claims.study import Findings
-from compare.engines import Engine
-from compare.run.runner import measured
-from compare.run.workers import Failure, Workers
+from compare.engines import BadTrajectoryError, Engine
 from compare.studies.engines.trajectories import STUDY
-from faults.catalogue import FAULTS, SOUND
+from reference_model.trajectory import SimulationError
 
-LIMIT = 120.0
-"""Seconds for one engine. A fault may make a motion so stiff that it never ends."""
+OF_ENGINES = [one for one in STUDY.declared if one.of_engine]
 
 
 @dataclass(frozen=True)
@@ -29,32 +26,37 @@ class Caught:
 
     """
 
-    sentences: tuple[str, ...]
-    kinds: frozenset[Kind]
+    sentences: tuple[str, ...] = ()
+    kinds: frozenset[Kind] = frozenset()
 
     @property
     def twice(self) -> bool:
         """Whether a comparison of trajectories and a claim of another kind differ."""
         return "trajectory" in self.kinds and len(self.kinds) > 1
 
-
-def caught_by_name(jobs: int) -> dict[str, Caught]:
-    """Return what the study of trajectories finds in each sound and each faulty engine, by the engine's name."""
-    with Workers(jobs, LIMIT) as workers:
-        for engine in (*SOUND, *(fault.engine for fault in FAULTS)):
-            workers.submit(engine.name, measured, STUDY, engine)
-        return {str(done.key): caught(done.value) for done in workers.finished()}
+    def __or__(self, other: Caught) -> Caught:
+        """Return what both report."""
+        return Caught(self.sentences + other.sentences, self.kinds | other.kinds)
 
 
-def caught_now(engine: Engine) -> Caught:
-    """Return what the study of trajectories finds in ``engine``, measured in this process."""
-    return caught(measured(STUDY, engine))
+def caught(engine: Engine) -> Iterator[Caught]:
+    """Yield what the claims about each kind of motion report about ``engine``."""
+    for motion in dict.fromkeys(case for one in OF_ENGINES for case, _ in one.cases()):
+        parts = {one.part(case) for one in OF_ENGINES for case, _ in one.cases() if case == motion}
+        try:
+            claims = STUDY.measure(engine, only=parts).claims
+        except (BadTrajectoryError, SimulationError) as error:
+            yield Caught((f"the engine failed: {error}",), frozenset(one.kind for one in OF_ENGINES))
+            continue
+        differ = [claim for claim in claims if claim.verdict is Verdict.DIFFERS]
+        yield Caught(tuple(claim.sentence for claim in differ), frozenset(claim.kind for claim in differ))
 
 
-def caught(outcome: Findings | Failure) -> Caught:
-    """Return what differs in the ``outcome`` of one measurement."""
-    if isinstance(outcome, Failure):
-        kinds = frozenset(one.kind for one in STUDY.declared if one.of_engine)
-        return Caught((f"the engine failed: {outcome.reason}",), kinds)
-    differ = [claim for claim in outcome.claims if claim.verdict is Verdict.DIFFERS]
-    return Caught(tuple(claim.sentence for claim in differ), frozenset(claim.kind for claim in differ))
+def caught_at_last(engine: Engine) -> Caught:
+    """Return what the claims report about ``engine`` until it is caught twice, or all of it."""
+    so_far = Caught()
+    for found in caught(engine):
+        so_far |= found
+        if so_far.twice:
+            break
+    return so_far

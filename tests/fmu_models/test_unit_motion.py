@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import reference_model
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
+from reference_model.formulas.pin import squared_holding_force
 from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc
 
 SLIPS, STICKS, LEAVES = range(3)
@@ -211,3 +212,21 @@ def put(unit, values):
     states = {one.name for one in unit.model.states}
     unit.set(**{name: value for name, value in values.items() if name not in states})
     unit.state = [values.get(one.name, 0.0) for one in unit.model.states]
+
+
+@pytest.mark.parametrize("lacking", [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9])
+def test_a_pin_that_friction_all_but_holds_is_let_go_for_a_moment_and_sticks_again(instance, lacking):
+    """(7) has a maximum as the pin is carried round; friction lacks so small a share of it."""
+    radius, angles = 0.1, np.linspace(0.0, 2.0 * np.pi, 100_001)
+    squared = squared_holding_force(FIG5, radius, angles)
+    pin = replace(FIG5, friction_force=(1.0 - lacking) * np.sqrt(squared.max()))
+    start = radius * np.exp(1j * (angles[np.argmax(squared)] - 0.5))
+    carried = 1j * pin.disc_speed * start
+    unit = started(instance, pin, (start.real, start.imag, carried.real, carried.imag))
+    until = 1.0 / pin.disc_speed  # half a radian past the maximum
+    unit.to(until)
+    modes = unit.changes[1].tolist()
+    assert modes in ([STICKS, LEAVES, STICKS], [STICKS, LEAVES, SLIPS, STICKS])
+    end = start * np.exp(1j * pin.disc_speed * until)
+    np.testing.assert_allclose(unit.state[:2], [end.real, end.imag], rtol=0.0, atol=lacking * radius)
+    assert unit["slip_speed"] == 0.0

@@ -100,3 +100,20 @@ def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
     assert mbs.GetSensorValues(spin) < -2.5
     assert mbs.GetSensorValues(share) == 1.0
     assert mbs.GetSensorValues(mode) == -1.0
+
+
+def test_a_contact_that_closes_while_it_slips_at_its_capacity_slips():
+    """Within the band the mode stays as it was: an open contact counts as one that slips, whatever it was before."""
+    closes = 0.0105
+
+    def when_closed(value):
+        return lambda time: value if time >= closes else 0.0
+
+    # The torque balances friction, so the slip stays at ε.
+    times, _, share, mode = told(
+        when_closed(CAPACITY), 0.02, spin=EPSILON / RADIUS, normal_load=when_closed(LOAD)
+    )
+    closed = times >= closes
+    np.testing.assert_allclose(share[closed], 1.0, rtol=1e-6)
+    assert set(mode[~closed]) == {2.0}
+    assert set(mode[closed]) == {1.0}

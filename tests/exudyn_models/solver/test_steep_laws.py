@@ -1,5 +1,7 @@
 """Implicit steps across a peak of friction: a load below static friction comes to rest and is held."""
 
+import warnings
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -53,3 +55,12 @@ def test_a_load_beyond_static_friction_rolls_back_as_by_hand(solver):
 def test_a_fixed_step_across_the_peak_is_told(solver):
     with pytest.warns(RuntimeWarning, match="skips a peak of friction"):
         assert speed_after_a_stop(solver, 5.2, adaptive=False, **LAWS["steep table"]) < -0.1
+
+
+@IMPLICIT
+def test_no_peak_is_told_of_a_contact_that_slips_on_however_much_faster(solver):
+    """From twice ε the first step adds more slip than there was, on the falling side of the peak."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        speed = speed_after_a_stop(solver, -2e-3 / LEVER, load=40.0, adaptive=False, **LAWS["steep table"])
+    assert speed == pytest.approx(-(40.0 - SLIDING) / 0.5 * 0.15, rel=0.02)

@@ -30,6 +30,7 @@ from exudyn_models import (
 from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
+    friction_of_slip,
     point_regularisation,
     slip_potential_of_contact,
 )
@@ -282,3 +283,15 @@ def test_a_damper_of_the_limit_takes_no_less_power_than_friction_and_as_much_in_
         assert slip_potential_of_contact(*slip, angle, contact) ** 2 == pytest.approx(
             slip @ damper @ slip, rel=1e-8
         )
+
+
+@pytest.mark.parametrize("points", [3, 6])
+def test_the_damper_with_one_point_held_takes_no_less_power_than_friction_and_hardly_more(points):
+    contact, angle = (1.0, points, 1.0, 1.0, 1, 0.0), 0.4
+    (damper,) = slip_dampers(contact, angle)
+    shares, rng = [], np.random.default_rng(1)
+    for size in 10.0 ** rng.uniform(-6.0, 0.0, 400):
+        slip = size * rng.normal(size=3)
+        power = -np.dot(friction_of_slip(*slip.tolist(), angle, contact), slip)
+        shares.append(power / (slip @ damper @ slip))
+    assert 0.8 < max(shares) <= 1.0

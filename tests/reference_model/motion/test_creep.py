@@ -94,6 +94,18 @@ def test_states_between_the_steps_of_a_strongly_damped_pin_are_as_accurate_as_at
     assert (np.abs(found.states - tight.states) / scales).max() < 2e-9
 
 
+def test_states_between_long_steps_are_accurate_though_the_last_term_of_the_interpolant_is_small():
+    """The fast root decays 79 times as fast as the springs swing: within a step it may hide from that term."""
+    pin = PinOnDisc(
+        mass=1.0, stiffness=5.4, damping=184.55, friction_force=0.0786, disc_speed=2.7, offset=0.29
+    )
+    start, times = [-1.25, -0.13, 0.19, 0.69], np.linspace(0.0, 1.57, 301)
+    found, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-6, 1e-13))
+    # The unit of length is the start's distance from the axis, that of time 1/ω.
+    scales = math.hypot(*start[:2]) * np.array([1.0, 1.0, pin.disc_speed, pin.disc_speed])
+    assert (np.abs(found.states - tight.states) / scales).max() < 1e-6
+
+
 @pytest.mark.parametrize("value", [1e300, -1e200, 1e60])
 def test_state_whose_powers_overflow_is_refused_by_name(value):
     with pytest.raises(ValueError, match=r"initial_state\[2\] = .* it must not be larger than 1e\+50"):

@@ -2,47 +2,37 @@
 
 import numpy as np
 import pytest
-from study_harness import StudyTests
+from tested_studies import SIMULATED_MAP
 
 from compare.claims.claim import Verdict
-from compare.output.figures import paper_style, saved
 from compare.studies.disc.simulated_map import DAMPING, SHAFT_DAMPING, STUDY, simulated
 from reference_model.ensemble import EndState
 
 CLAIMS = ("leaves_axis", "no_unstable_whirl")
 
 
-class TestSimulatedMap(StudyTests):
-    study = STUDY
-    # Nothing is claimed of an engine; broken ends take the place of broken engines, below.
-    test_every_claim_holds_in_a_sound_engine = None
-    test_each_claim_sees_the_faults_that_concern_it = None
+def test_all_is_of_theory_and_decided():
+    assert len(SIMULATED_MAP.found("theory").claims) == len(CLAIMS)
+    assert np.mean(simulated() == EndState.UNDECIDED) < 0.01
 
-    def test_all_is_of_theory_and_decided(self):
-        assert len(self.found("theory").claims) == len(CLAIMS)
-        assert np.mean(simulated() == EndState.UNDECIDED) < 0.01
 
-    def test_the_figure_can_be_saved(self):
-        with paper_style():
-            figures = STUDY.draw({"theory": self.found("theory").data})
-        assert saved(figures["simulated-map"])[1].startswith(b"\x89PNG")
+def test_the_disc_of_fig_11_is_modulated():
+    column = np.argmin(np.abs(DAMPING - 0.5))
+    row = np.argmin(np.abs(SHAFT_DAMPING - 0.015))
+    assert simulated()[row, column] == EndState.MODULATED
 
-    def test_the_disc_of_fig_11_is_modulated(self):
-        column = np.argmin(np.abs(DAMPING - 0.5))
-        row = np.argmin(np.abs(SHAFT_DAMPING - 0.015))
-        assert simulated()[row, column] == EndState.MODULATED
 
-    @pytest.mark.parametrize(
-        ("where", "instead", "seen_by"),
-        [
-            (EndState.SELF_CENTRED, EndState.WHIRL, "leaves_axis"),
-            (EndState.MODULATED, EndState.SELF_CENTRED, "leaves_axis"),
-            (EndState.MODULATED, EndState.WHIRL, "no_unstable_whirl"),
-        ],
-    )
-    def test_ends_that_can_not_be_are_found_out(self, where, instead, seen_by):
-        ends = simulated()
-        wrong = np.where(ends == where, instead, ends).astype(np.uint8)
-        findings = STUDY.measure_theory({name: {"ends": wrong} for name in CLAIMS}, only=CLAIMS)
-        differing = [claim.verdict is Verdict.DIFFERS for claim in findings.claims]
-        assert differing == [name == seen_by for name in CLAIMS]
+@pytest.mark.parametrize(
+    ("where", "instead", "seen_by"),
+    [
+        (EndState.SELF_CENTRED, EndState.WHIRL, "leaves_axis"),
+        (EndState.MODULATED, EndState.SELF_CENTRED, "leaves_axis"),
+        (EndState.MODULATED, EndState.WHIRL, "no_unstable_whirl"),
+    ],
+)
+def test_ends_that_can_not_be_are_found_out(where, instead, seen_by):
+    ends = simulated()
+    wrong = np.where(ends == where, instead, ends).astype(np.uint8)
+    findings = STUDY.measure_theory({name: {"ends": wrong} for name in CLAIMS}, only=CLAIMS)
+    differing = [claim.verdict is Verdict.DIFFERS for claim in findings.claims]
+    assert differing == [name == seen_by for name in CLAIMS]

@@ -1,125 +1,89 @@
-"""The study of the stability map: what its claims see, and that its text says what it finds."""
+"""The study of the stability map: its text says what it finds."""
 
 from dataclasses import replace
 
 import numpy as np
-from faults.reference import simulate
-from studies_under_test import altered
-from study_harness import LEFT_OUT, SEES, StudyTests
+from tested_studies import STABILITY_MAP
 
 from compare.claims.claim import Verdict
-from compare.engines import EVERY_KIND, Engine
 from compare.report.numbers import with_digits
 from compare.report.quotes import filled
-from compare.studies.disc.stability_map import STUDY, borders, regions, theory
+from compare.studies.disc.stability_map import STUDY, borders, theory
 from compare.studies.disc.stability_map.theory import DISC
 from compare.studies.toolkit.fig11 import LAWS, PLANES, curves_in
-from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.steady.bifurcation_curves import crossings
 
-LINES = {"lines": (("load", "disc_speed", 1.5),)}
+
+def test_a_curve_that_is_a_little_off_does_not_pass():
+    (curve,) = curves_in("inertia", "Hopf", "(23)", step=0.2)
+    shifted = replace(curve, alpha=curve.alpha + 1e-7)
+    for points, verdict in ((curve, Verdict.AGREES), (shifted, Verdict.DIFFERS)):
+        few = {"marginal": {"curves": {("inertia", "(23)", "Hopf"): (points,)}}}
+        (found,) = STUDY.measure_theory(few, only=("marginal",)).claims
+        assert found.verdict is verdict
 
 
-def with_three_terms(system, initial_state, times, *, tolerance=1e-9):
-    """Simulate (23) in place of the ring."""
-    law = ThreeTermRing(system.contact_radius)
-    return simulate(system, initial_state, times, tolerance=tolerance, contact=law)
+def test_a_rotation_that_is_damped_a_little_more_needs_another_remedy(monkeypatch):
+    growth = borders.growth_of_rotation
+    monkeypatch.setattr(
+        borders,
+        "growth_of_rotation",
+        lambda disc: growth(replace(disc, damping=(1.0 + 1e-9) * disc.damping)),
+    )
+    (claim,) = STUDY.measure_theory(only=("remedies",)).claims
+    assert claim.verdict is Verdict.DIFFERS
+    assert np.all(claim.difference > claim.budget.total)
 
 
-class TestStabilityMap(StudyTests):
-    study = STUDY
-    sound = ("reference", "exudyn")
-    few = {
-        "rates": LINES,
-        "sides": LINES,
-        "regions": {"starts": regions.starts_in_regions()[1:4]},
-        "coexist": {"starts": regions.coexisting()[:2], "loads": (0.0221,)},
-    }
-    faults = {
-        "(23)": Engine("(23)", with_three_terms, EVERY_KIND),
-        "4 % more inertia": altered(polar_inertia=1.04),
-        # So much more shaft damping that the whirl of Fig. 11 is stable.
-        "8 % more shaft damping": altered(shaft_damping=1.08),
-    }
-    columns = ("rates", "sides", "regions", "coexist")
-    table = {
-        "(23)": (SEES, SEES, SEES, SEES),
-        "4 % more inertia": (SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT),
-        "8 % more shaft damping": (SEES, SEES, SEES, SEES),
-    }
+def test_without_a_border_there_is_no_change_of_stability():
+    value, _ = theory.change_of_stability("friction_force", 0.024, LAWS["ring"])
+    assert np.isnan(value)
 
-    def test_an_engine_for_pins_only_is_neither_passed_nor_failed(self):
-        findings = STUDY.measure(Engine("pins", simulate), self.few)
-        assert not findings.claims
-        assert "continuous ring" in findings.not_simulated
 
-    def test_a_curve_that_is_a_little_off_does_not_pass(self):
-        (curve,) = curves_in("inertia", "Hopf", "(23)", step=0.2)
-        shifted = replace(curve, alpha=curve.alpha + 1e-7)
-        for points, verdict in ((curve, Verdict.AGREES), (shifted, Verdict.DIFFERS)):
-            few = {"marginal": {"curves": {("inertia", "(23)", "Hopf"): (points,)}}}
-            (found,) = STUDY.measure_theory(few, only=("marginal",)).claims
-            assert found.verdict is verdict
+def test_the_text_gives_the_numbers_of_the_map():
+    """What is said to an engineer, from the curves."""
+    disc, ring = DISC, LAWS["ring"]
+    text = filled(STUDY.prose.paper, STABILITY_MAP.found("theory").claims)
 
-    def test_a_rotation_that_is_damped_a_little_more_needs_another_remedy(self, monkeypatch):
-        growth = borders.growth_of_rotation
-        monkeypatch.setattr(
-            borders,
-            "growth_of_rotation",
-            lambda disc: growth(replace(disc, damping=(1.0 + 1e-9) * disc.damping)),
-        )
-        (claim,) = STUDY.measure_theory(only=("remedies",)).claims
-        assert claim.verdict is Verdict.DIFFERS
-        assert np.all(claim.difference > claim.budget.total)
+    def borders(plane, name, kind="Hopf", law=ring):
+        fixed = next(other for other in PLANES[plane].names if other != name)
+        return crossings(PLANES[plane], kind, fixed, getattr(disc, fixed), law)
 
-    def test_without_a_border_there_is_no_change_of_stability(self):
-        value, _ = theory.change_of_stability("friction_force", 0.024, LAWS["ring"])
-        assert np.isnan(value)
+    def percent(value, of, digits=2):
+        change = 100.0 * (value / of - 1.0)
+        return "+" * (change > 0.0) + with_digits(change, digits)
 
-    def test_the_text_gives_the_numbers_of_the_map(self):
-        """What is said to an engineer, from the curves."""
-        disc, ring = DISC, LAWS["ring"]
-        text = filled(STUDY.prose.paper, self.found("theory").claims)
+    for plane, name, digits in (
+        ("load", "friction_force", 4),
+        ("dampers", "shaft_damping", 4),
+        ("dampers", "damping", 3),
+    ):
+        here = getattr(disc, name)
+        for value in borders(plane, name):
+            assert f"{value:.{digits}f}" in text
+            assert f"({percent(value, here)} %)" in text
+    near = theory.nearest(borders("speeds", "shaft_speed"), disc.shaft_speed)
+    for value in near:
+        assert f"{value:.3f}" in text
+    (inertia,) = borders("inertia", "polar_inertia")
+    assert f"{inertia:.2f} kg m² ({percent(inertia, disc.polar_inertia)} %)" in text
 
-        def borders(plane, name, kind="Hopf", law=ring):
-            fixed = next(other for other in PLANES[plane].names if other != name)
-            return crossings(PLANES[plane], kind, fixed, getattr(disc, fixed), law)
+    (damping,) = borders("dampers", "damping", "onset")
+    (shaft_damping,) = borders("dampers", "shaft_damping", "onset")
+    (load,) = borders("load", "friction_force", "onset")
+    shaft_speed = min(borders("speeds", "shaft_speed", "onset"))
+    slip = (disc.disc_speed - shaft_speed) / (disc.disc_speed - disc.shaft_speed)
+    remedies = (
+        shaft_damping / disc.shaft_damping,
+        slip,
+        damping / disc.damping,
+        load / disc.friction_force,
+    )
+    words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, "
+    words += "or {} % of friction force"
+    assert words.format(*(percent(ratio, 1.0, 3) for ratio in remedies)) in text
 
-        def percent(value, of, digits=2):
-            change = 100.0 * (value / of - 1.0)
-            return "+" * (change > 0.0) + with_digits(change, digits)
-
-        for plane, name, digits in (
-            ("load", "friction_force", 4),
-            ("dampers", "shaft_damping", 4),
-            ("dampers", "damping", 3),
-        ):
-            here = getattr(disc, name)
-            for value in borders(plane, name):
-                assert f"{value:.{digits}f}" in text
-                assert f"({percent(value, here)} %)" in text
-        near = theory.nearest(borders("speeds", "shaft_speed"), disc.shaft_speed)
-        for value in near:
-            assert f"{value:.3f}" in text
-        (inertia,) = borders("inertia", "polar_inertia")
-        assert f"{inertia:.2f} kg m² ({percent(inertia, disc.polar_inertia)} %)" in text
-
-        (damping,) = borders("dampers", "damping", "onset")
-        (shaft_damping,) = borders("dampers", "shaft_damping", "onset")
-        (load,) = borders("load", "friction_force", "onset")
-        shaft_speed = min(borders("speeds", "shaft_speed", "onset"))
-        slip = (disc.disc_speed - shaft_speed) / (disc.disc_speed - disc.shaft_speed)
-        remedies = (
-            shaft_damping / disc.shaft_damping,
-            slip,
-            damping / disc.damping,
-            load / disc.friction_force,
-        )
-        words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, "
-        words += "or {} % of friction force"
-        assert words.format(*(percent(ratio, 1.0, 3) for ratio in remedies)) in text
-
-        three = LAWS["(23)"]
-        limits = [borders("load", "friction_force", kind, three)[0] for kind in ("fold", "Hopf", "onset")]
-        assert [f"{value:.4f}" for value in limits] == ["0.0197", "0.0202", "0.0205"]
-        assert "only between 0.0197 and 0.0202 N, below the onset at 0.0205 N" in text
+    three = LAWS["(23)"]
+    limits = [borders("load", "friction_force", kind, three)[0] for kind in ("fold", "Hopf", "onset")]
+    assert [f"{value:.4f}" for value in limits] == ["0.0197", "0.0202", "0.0205"]
+    assert "only between 0.0197 and 0.0202 N, below the onset at 0.0205 N" in text

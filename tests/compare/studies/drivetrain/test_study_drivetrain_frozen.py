@@ -1,145 +1,46 @@
-"""The car's drivetrain agrees with the reference at frozen speeds, and a drivetrain that is another one does not."""
+"""The car's drivetrain at frozen speeds: its whirls and eigenvalues are those of the reference."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from study_harness import BLIND, LEFT_OUT, SEES, engine_named
-from wrong_parts import WrongPartTests
+from studies_under_test import engine_named
+from tested_studies import FROZEN
 
-import exudyn_models
 from compare.claims.claim import Verdict
-from compare.studies.drivetrain.frozen import STUDY, whirls
+from compare.studies.drivetrain.frozen import STUDY
 from compare.studies.drivetrain.frozen.theory import (
     of_modulation,
     state_matrix_of,
     whirl_growth,
     whirl_under_surplus,
 )
-from compare.studies.toolkit.drivetrain_bench import RPM, Operation, centred_car, facings
-from exudyn_models.solver import linear_matrices
+from compare.studies.toolkit.drivetrain_bench import RPM, centred_car, facings
 from reference_model import DiscOnDisc
 from reference_model import whirls as whirls_of_reference
 from reference_model.steady.stability import whirl_eigenvalues
 
 CAR = centred_car()
 
-SLOW, FAST = (1500.0,), (6000.0,)
-"""Turns a minute: one speed below the onset, and one above, in place of three."""
+
+def test_where_no_speed_divides_growth_from_decay_there_is_no_border():
+    few = {"border": {"between": (4300.0, 4500.0)}}
+    (claim,) = STUDY.measure(engine_named("exudyn"), few, only=("border",)).claims
+    assert np.all(np.isnan(claim.measured))
+    assert claim.verdict is Verdict.DIFFERS
 
 
-def bench_with(**factors):
-    """Let the drivetrain on the bench be another one, off by ``factors``."""
-
-    def put(patch):
-        build = Operation.build
-        changes = {name: factor * getattr(CAR, name) for name, factor in factors.items()}
-        patch.setattr(Operation, "build", lambda operation, car: build(operation, replace(car, **changes)))
-
-    return put
-
-
-def damping_of_the_whole_drivetrain(patch):
-    build = exudyn_models.build_drivetrain
-    other = CAR.radial_damping * (1.0 + 1e-9)
-    patch.setattr(
-        exudyn_models,
-        "build_drivetrain",
-        lambda car, **options: build(replace(car, radial_damping=other), **options),
-    )
-
-
-def reaction_without_the_arm_of_the_force(patch):
-    matrix = linear_matrices.state_matrix
-
-    def without_arm(mbs):
-        result = matrix(mbs)
-        # The engine's row, from that of the disc.
-        result[5] = -result[9] * CAR.disc_inertia / CAR.engine_inertia
-        return result
-
-    patch.setattr(linear_matrices, "state_matrix", without_arm)
-
-
-def whirl_of_a_car_with(**factors):
-    """Let the car in a whirl be another one, off by ``factors``."""
-
-    def put(patch):
-        build = whirls.build
-        other = replace(CAR, **{name: factor * getattr(CAR, name) for name, factor in factors.items()})
-        patch.setattr(whirls, "build", lambda car, whirl, **options: build(other, whirl, **options))
-
-    return put
-
-
-def balance_that_does_not_close(patch):
-    motion = SimpleNamespace(
-        times=np.zeros(2),
-        disc=np.zeros((2, 3)),
-        slip=np.zeros(2),
-        energy=SimpleNamespace(residual=np.array([0.0, 2e-6]), turnover=1.0),
-    )
-    model = SimpleNamespace(run=lambda *_, **options: motion)
-    patch.setattr(whirls, "build", lambda *_, **options: model)
-
-
-class TestDrivetrainFrozen(WrongPartTests):
-    study = STUDY
-    few = {
-        "rests": {"below": SLOW},
-        "radius": {"above": FAST},
-        "frequency": {"above": FAST},
-        "slips": {"below": SLOW, "above": FAST},
-        "balance": {"until": 0.1},
-        "curves": {"every": 3},
-    }
-    faults = {
-        "stop": bench_with(stop_gap=1.0 + 1e-6),
-        "radial stiffness": bench_with(radial_stiffness=1.0 + 1e-5),
-        "coefficient of friction": bench_with(inner_radius=1.0 + 1e-5),
-        "damping": damping_of_the_whole_drivetrain,
-        "reaction without its arm": reaction_without_the_arm_of_the_force,
-        "friction in the whirl": whirl_of_a_car_with(inner_radius=1.0 + 1e-6),
-        "engine's inertia in the whirl": whirl_of_a_car_with(engine_inertia=1.01),
-        "balance": balance_that_does_not_close,
-    }
-    columns = (
-        *("loses_stability", "rests", "radius", "frequency", "slips"),
-        *("linearised", "border", "growth", "balance"),
-    )
-    table = {
-        "stop": (LEFT_OUT, BLIND, SEES, BLIND, BLIND, *[LEFT_OUT] * 4),
-        "radial stiffness": (LEFT_OUT, SEES, SEES, LEFT_OUT, LEFT_OUT, *[LEFT_OUT] * 4),
-        "coefficient of friction": (LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, *[LEFT_OUT] * 4),
-        "damping": (SEES, *[LEFT_OUT] * 8),
-        "reaction without its arm": (*[LEFT_OUT] * 5, SEES, *[LEFT_OUT] * 3),
-        "friction in the whirl": (*[LEFT_OUT] * 6, SEES, LEFT_OUT, LEFT_OUT),
-        "engine's inertia in the whirl": (*[LEFT_OUT] * 7, SEES, LEFT_OUT),
-        "balance": (*[LEFT_OUT] * 8, SEES),
-    }
-
-    def test_another_friction_is_far_from_the_border_of_the_modulation(self):
-        (claim,) = self.claims_of_fault("friction in the whirl", "border")
-        assert np.all(claim.difference > 10.0 * claim.budget.total)
-
-    def test_where_no_speed_divides_growth_from_decay_there_is_no_border(self):
-        few = {"border": {"between": (4300.0, 4500.0)}}
-        (claim,) = STUDY.measure(engine_named("exudyn"), few, only=("border",)).claims
-        assert np.all(np.isnan(claim.measured))
-        assert claim.verdict is Verdict.DIFFERS
-
-    def test_a_whirl_on_the_stop_is_steady_and_one_in_the_play_at_speed_is_not(self):
-        theory = self.found("theory").data
-        growth, radius = np.moveaxis(theory["over speed"], -1, 0)
-        there = np.isfinite(growth)
-        on_stop = there & (radius > CAR.stop_gap)
-        assert np.any(on_stop)
-        assert np.all(growth[on_stop] < 0.0)
-        in_play = there & (radius < CAR.stop_gap)
-        speeds = np.broadcast_to(theory["speeds"], growth.shape)
-        assert np.all(growth[in_play & (speeds > 4200.0)] > 0.0)
-        assert np.all(growth[in_play & (speeds < 4000.0)] < 0.0)
+def test_a_whirl_on_the_stop_is_steady_and_one_in_the_play_at_speed_is_not():
+    theory = FROZEN.found("theory").data
+    growth, radius = np.moveaxis(theory["over speed"], -1, 0)
+    there = np.isfinite(growth)
+    on_stop = there & (radius > CAR.stop_gap)
+    assert np.any(on_stop)
+    assert np.all(growth[on_stop] < 0.0)
+    in_play = there & (radius < CAR.stop_gap)
+    speeds = np.broadcast_to(theory["speeds"], growth.shape)
+    assert np.all(growth[in_play & (speeds > 4200.0)] > 0.0)
+    assert np.all(growth[in_play & (speeds < 4000.0)] < 0.0)
 
 
 def reduced(whirl, damping=0.3):

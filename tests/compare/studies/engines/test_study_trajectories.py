@@ -1,15 +1,14 @@
-"""The study of plain motions: what its claims see of parameters, forces and outputs that are slightly wrong."""
+"""The study of plain motions: how motions are drawn, pooled and integrated."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from faults.reference import simulate
-from studies_under_test import GROSS, altered, fault, made
-from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
+from studies_under_test import engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import EVERY_KIND, Engine
+from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
 from compare.studies.engines.trajectories.study import STUDY, measure, moves, pooled
@@ -26,83 +25,31 @@ from reference_model.systems import DiscOnDisc
 
 PIN, RING, SIX = "a pin", "a disc on the continuous ring", "a disc on six points"
 
-OF_PIN, OF_DISC = (
-    [name for name, value in vars(MOTIONS[body].system).items() if value] for body in (PIN, RING)
-)
-"""Names of the parameters that a pin, and that a disc has."""
+
+def test_no_two_parameters_are_equal():
+    for name in (PIN, RING):
+        values = [value for value in vars(MOTIONS[name].system).values() if value]
+        assert len(set(values)) == len(values)
+        assert 1.0 not in values
 
 
-ALL, DISCS, NONE = (SEES,) * 3, (LEFT_OUT, SEES, SEES), (LEFT_OUT,) * 3
-PIN_ALONE, SIX_ALONE = (SEES, LEFT_OUT, LEFT_OUT), (LEFT_OUT, LEFT_OUT, SEES)
-"""Parts of the table: of a claim on a pin, a ring, and six points."""
+@pytest.mark.parametrize("name", ["exudyn", "intact"])
+def test_sound_engines_move_as_the_reference_and_their_forces_add_up(name):
+    found = measure(engine_named(name), MOTIONS).claims
+    assert len(found) == 3 * len(MOTIONS)
+    assert {claim.verdict for claim in found} == {Verdict.AGREES}
 
 
-def wrapped(system, initial_state, times, *, tolerance=1e-9):
-    """Return angles within a turn, which are not the integral of spin."""
-    run = simulate(system, initial_state, times, tolerance=tolerance)
-    states = run.states.copy()
-    states[:, 2] = (states[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
-    return replace(run, states=states)
+def test_native_contact_does_so_over_the_whole_range_of_what_it_simulates():
+    found = STUDY.measure(engine_named("exudyn-native"))
+    of_rings = 3 * (sum("ring" in name for name in MOTIONS) + 1)
+    assert len(found.claims) == 3 * (len(MOTIONS) + len(DRAWN)) - of_rings
+    assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}
 
 
-class TestTrajectories(StudyTests):
-    study = STUDY
-    sound = ("reference",)
-    faults = (
-        {f"{parameter} off by 1e-6": altered(**{parameter: 1.0 + 1e-6}) for parameter in OF_DISC}
-        | {name: GROSS[name] for name in ("wrong sign", "half the damping")}
-        | {
-            "moment 1 % off": made(moment=1.01),
-            "five points": fault("one-point-too-few"),
-            "angle within a turn": Engine("wrapped", wrapped, EVERY_KIND),
-            "friction stronger at extreme speeds": fault("friction-stronger-at-extremes"),
-        }
-    )
-    columns = tuple(
-        f"{claim}/{name}" for claim in ("moves", "momentum", "kinematics") for name in (PIN, RING, SIX)
-    )
-    table = {f"{name} off by 1e-6": (*2 * (ALL if name in OF_PIN else DISCS), *NONE) for name in OF_DISC} | {
-        "wrong sign": (*2 * PIN_ALONE, *NONE),
-        "half the damping": (*2 * PIN_ALONE, *NONE),
-        "moment 1 % off": (*2 * SIX_ALONE, *NONE),
-        "five points": (*2 * SIX_ALONE, *NONE),
-        # No force depends on the angle of a ring.
-        "angle within a turn": (
-            LEFT_OUT,
-            SEES,
-            LEFT_OUT,
-            LEFT_OUT,
-            BLIND,
-            LEFT_OUT,
-            LEFT_OUT,
-            SEES,
-            LEFT_OUT,
-        ),
-        # It passes all motions at usual speeds, which is why the range has to be whole.
-        "friction stronger at extreme speeds": (BLIND,) * 9,
-    }
-
-    def test_no_two_parameters_are_equal(self):
-        for name in (PIN, RING):
-            values = [value for value in vars(MOTIONS[name].system).values() if value]
-            assert len(set(values)) == len(values)
-            assert 1.0 not in values
-
-    @pytest.mark.parametrize("name", ["exudyn", "intact"])
-    def test_sound_engines_move_as_the_reference_and_their_forces_add_up(self, name):
-        found = measure(engine_named(name), MOTIONS).claims
-        assert len(found) == 3 * len(MOTIONS)
-        assert {claim.verdict for claim in found} == {Verdict.AGREES}
-
-    def test_native_contact_does_so_over_the_whole_range_of_what_it_simulates(self):
-        found = STUDY.measure(engine_named("exudyn-native"))
-        of_rings = 3 * (sum("ring" in name for name in MOTIONS) + 1)
-        assert len(found.claims) == 3 * (len(MOTIONS) + len(DRAWN)) - of_rings
-        assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}
-
-    def test_one_that_is_another_in_its_contact_alone_is_asked_for_one_of_each_kind(self):
-        contact_only = replace(engine_named("exudyn-native"), contact_only=True)
-        assert len(STUDY.measure(contact_only).claims) == 9
+def test_one_that_is_another_in_its_contact_alone_is_asked_for_one_of_each_kind():
+    contact_only = replace(engine_named("exudyn-native"), contact_only=True)
+    assert len(STUDY.measure(contact_only).claims) == 9
 
 
 def test_the_whole_range_has_slow_and_fast_discs_in_both_senses_and_all_that_a_mistake_may_be_confined_to():
@@ -139,32 +86,6 @@ def test_a_moment_of_stick_is_no_phase_but_one_of_a_millisecond_is():
             replace(slip, start=again + moment),
         )
         assert stick_times(replace(run, phases=split)).shape == (2 * phases,)
-
-
-CONFINED = {
-    "friction-stronger-at-extremes": "pins",
-    "friction-weaker-backwards": "pins",
-    "friction-stronger-beside": "pins",
-    "stiffer-in-y": "pins",
-    "damping-on-slip": "pins",
-    "output-late": "pins",
-    "stop-on-one-side": "pins on stops",
-    "moment-larger-in-slip": "rings",
-    "points-lag": "points",
-    "no-centripetal-term-in-stick": "pins that stick",
-    "release-late-by-1e-3": "pins that stick",
-    "phases-late": "pins that stick",
-}
-
-
-@pytest.mark.parametrize("name", CONFINED)
-def test_a_mistake_that_is_small_or_confined_is_seen_by_two_kinds_of_claims(name):
-    case = f"{CONFINED[name]} with parameters from the whole range"
-    only = {f"{one.function.__name__}/{case}" for one in STUDY.declared}
-    found = STUDY.measure(fault(name), only=only).claims
-    kinds = {claim.kind for claim in found if claim.verdict is Verdict.DIFFERS}
-    assert "trajectory" in kinds
-    assert len(kinds) >= 2
 
 
 def test_pooled_claims_keep_every_number_and_its_own_error_bar():

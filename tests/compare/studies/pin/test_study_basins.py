@@ -1,64 +1,22 @@
-"""The study of the basins: what its claims see, of engines and of ends that are wrong."""
+"""The study of the basins: claims of the theory fail for wrong ends of motions."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from studies_under_test import altered
-from study_harness import LEFT_OUT, SEES, StudyTests
+from tested_studies import BASINS
 
 from compare.claims.claim import Verdict
-from compare.claims.parameters import FIG5
-from compare.output.figures import paper_style, saved
 from compare.studies.pin.basins import study, theory
 from compare.studies.pin.basins.study import STUDY
 from compare.studies.pin.basins.theory import enclosed, smooth
 from reference_model.ensemble import EndState
 
-GRID = {"side": 100, "cells": 6}
-SAMPLE = {"starts": 400, "speeds": tuple(np.linspace(1.1, 3.0, 6))}
-COARSE = {
-    "divides": GRID,
-    "area": GRID | {"pins": (FIG5,)},
-    "recomputes": {"count": 6, "starts": 400, "cells": 6},
-    "shrinks": SAMPLE,
-    "curves": GRID | SAMPLE,
-    "parts": {"places": 2},
-}
-"""A hundredth of the starts, at one speed, and a boundary from as few points as can be."""
 
-
-class TestBasins(StudyTests):
-    study = STUDY
-    sound = ("reference", "exudyn", "intact")
-    few = COARSE
-    faults = {
-        "friction 5 % off": altered(friction_force=1.05),
-        "damping 1e-5 off": altered(damping=1.0 + 1e-5),
-    }
-    columns = ("closes", "returns", "parts")
-    table = {
-        "friction 5 % off": (SEES, SEES, SEES),
-        "damping 1e-5 off": (LEFT_OUT, SEES, LEFT_OUT),
-    }
-
-    def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier(self):
-        (claim,) = self.claims_of_fault("damping 1e-5 off", "returns")
-        assert np.all((claim.difference > claim.budget.total)[[0, 2]])
-
-    def test_the_theory_holds(self):
-        claims = {claim.identity: claim.verdict for claim in self.found("theory").claims}
-        # The boundary passes through too many of so few cells.
-        assert claims.pop("basins/area") is Verdict.INCONCLUSIVE
-        assert claims == dict.fromkeys(
-            ("basins/divides", "basins/recomputes", "basins/shrinks"), Verdict.AGREES
-        )
-
-    def test_the_figure_is_saved(self):
-        with paper_style():
-            figures = STUDY.draw({"theory": self.found("theory").data})
-        assert set(figures) == set(STUDY.figures)
-        assert saved(figures["basins"])[1].startswith(b"\x89PNG")
+def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier():
+    (claim,) = BASINS.claims_of_fault(altered(damping=1.0 + 1e-5), ("returns",))
+    assert np.all((claim.difference > claim.budget.total)[[0, 2]])
 
 
 @pytest.fixture
@@ -72,11 +30,11 @@ def anew(monkeypatch):
         each.cache_clear()
 
 
-def claims_of_theory(*functions, few=COARSE):
+def claims_of_theory(*functions, few=BASINS.few):
     return STUDY.measure_theory(few, only=functions).claims
 
 
-def all_differ(*functions, few=COARSE):
+def all_differ(*functions, few=BASINS.few):
     return {claim.verdict for claim in claims_of_theory(*functions, few=few)} == {Verdict.DIFFERS}
 
 

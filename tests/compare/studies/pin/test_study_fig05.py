@@ -1,4 +1,4 @@
-"""The study of Fig. 5: what its claims see, and that its ways to the same numbers agree."""
+"""The study of Fig. 5: two ways to the same number agree."""
 
 import io
 import itertools
@@ -9,8 +9,8 @@ import numpy as np
 import PIL.Image
 import pytest
 from faults.reference import simulate
-from studies_under_test import GROSS, altered, fault
-from study_harness import BLIND, SEES, StudyTests, engine_named
+from studies_under_test import GROSS, engine_named
+from tested_studies import FIG05
 
 from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG5_STARTS
@@ -37,55 +37,29 @@ def never_released(system, initial_state, times, *, tolerance=1e-9):
     return replace(trajectory, states=states, phases=(*before, replace(first, end=float(times[-1]))))
 
 
-class TestFig05(StudyTests):
-    study = STUDY
-    # The way to the whirl is long, and its end far.
-    parts = {"intact": ("slides", "rests", "first_stick/equilibrium", "all_sticks/equilibrium", "critical")}
-    faults = GROSS | {
-        "friction 1 % off": altered(friction_force=1.01),
-        "stick never ends": Engine("stick never ends", never_released),
-        "one sample late": fault("one-sample-late"),
-    }
-    columns = ("slides", "rests", "whirls", "first_stick", "all_sticks", "critical", "sides")
-    table = {
-        "wrong sign": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-        "square": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-        "half the damping": (SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-        # Such a pin has both motions too, and its own velocity between them: both sides of that are right.
-        "friction 1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, BLIND),
-        "stick never ends": (BLIND, SEES, SEES, SEES, SEES, SEES, SEES),
-        # The phases are right, and a position of rest is the same a sample earlier.
-        "one sample late": (SEES, BLIND, SEES, BLIND, BLIND, BLIND, SEES),
-    }
+def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times():
+    found = {"reference": FIG05.found("reference").data, "exudyn": FIG05.found("reference").data}
+    broken = STUDY.measure(GROSS["a box for the cone"], only=("all_sticks",)).data
+    (figure,) = STUDY.draw(found | {"broken": broken}).values()
+    labels = [line.get_label() for line in figure.axes[3].lines]
+    assert labels.count("exudyn") == 1
+    assert "broken" not in labels
 
-    @pytest.mark.parametrize("claim", ["first_stick", "all_sticks"])
-    @pytest.mark.parametrize("fault", [name for name in table if name != "one sample late"])
-    def test_stick_phases_on_both_ways_see_the_fault(self, fault, claim):
-        found = self.claims_of_fault(fault, claim)
-        assert [one.verdict for one in found] == [Verdict.DIFFERS] * len(FIG5_STARTS)
 
-    def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(self):
-        found = {"reference": self.found("reference").data, "exudyn": self.found("reference").data}
-        broken = STUDY.measure(self.faults["square"], only=("all_sticks",)).data
-        (figure,) = STUDY.draw(found | {"broken": broken}).values()
-        labels = [line.get_label() for line in figure.axes[3].lines]
-        assert labels.count("exudyn") == 1
-        assert "broken" not in labels
-
-    def test_the_animation_is_a_gif_of_more_than_50_frames_that_move(self):
-        (content,) = animate({"reference": self.found("reference").data}, until=20.8).values()
-        with PIL.Image.open(io.BytesIO(content)) as picture:
-            assert picture.format == "GIF"
-            assert picture.n_frames > 50
-            assert picture.info["loop"] == 0
-            pixels = []
-            for frame in range(picture.n_frames):
-                picture.seek(frame)
-                pixels.append(np.asarray(picture.convert("RGB"), dtype=int))
-        steps = [np.abs(after - before).max() for before, after in itertools.pairwise(pixels)]
-        assert min(steps) > 50
-        shades = np.concatenate([frame.reshape(-1, 3) for frame in pixels[:: len(pixels) - 1]])
-        assert np.ptp(shades) > 200  # neither blank nor black
+def test_the_animation_is_a_gif_of_more_than_50_frames_that_move():
+    (content,) = animate({"reference": FIG05.found("reference").data}, until=20.8).values()
+    with PIL.Image.open(io.BytesIO(content)) as picture:
+        assert picture.format == "GIF"
+        assert picture.n_frames > 50
+        assert picture.info["loop"] == 0
+        pixels = []
+        for frame in range(picture.n_frames):
+            picture.seek(frame)
+            pixels.append(np.asarray(picture.convert("RGB"), dtype=int))
+    steps = [np.abs(after - before).max() for before, after in itertools.pairwise(pixels)]
+    assert min(steps) > 50
+    shades = np.concatenate([frame.reshape(-1, 3) for frame in pixels[:: len(pixels) - 1]])
+    assert np.ptp(shades) > 200  # neither blank nor black
 
 
 @pytest.mark.parametrize("count", [-1, 1])
@@ -104,8 +78,8 @@ def test_one_stick_phase_too_few_or_too_many_at_the_end_is_seen(count):
 
 
 def test_a_pin_that_sticks_too_seldom_has_no_critical_velocity_rather_than_an_error():
-    assert math.isnan(study.critical_velocity(TestFig05.faults["stick never ends"], 1e-8))
-    assert math.isnan(study.critical_velocity(TestFig05.faults["wrong sign"], 1e-6))
+    assert math.isnan(study.critical_velocity(Engine("stick never ends", never_released), 1e-8))
+    assert math.isnan(study.critical_velocity(GROSS["friction along the slip"], 1e-6))
 
 
 @pytest.mark.parametrize("name", FIG5_STARTS)

@@ -1,4 +1,4 @@
-"""The study of nonlinear supports: what its claims see, and that its motions pass the bends."""
+"""The study of nonlinear supports: its motions pass the bends."""
 
 from dataclasses import replace
 
@@ -6,53 +6,9 @@ import numpy as np
 import pytest
 from faults.reference import simulate
 from scipy.optimize import brentq
-from studies_under_test import altered
-from study_harness import BLIND, SEES, StudyTests
 
 from compare.claims.parameters import CENTRED
 from compare.studies.pin.nonlinear_support import theory
-from compare.studies.pin.nonlinear_support.study import STUDY
-
-NO_ORBIT = "no whirl near the guess"
-"""What the search says that finds none; the runner shows the engine as one that failed, with this sentence."""
-
-
-class TestNonlinearSupport(StudyTests):
-    study = STUDY
-    sound = ("reference", "exudyn", "exudyn-native", "intact")
-    not_claimed = {"exudyn-native": ("disc_whirl",)}
-    few = {"circle": {"loads": (0.08,)}}
-    faults = {
-        "a linear support": altered(hardening=0.0, stop_stiffness=0.0),
-        "hardening 0.1 % off": altered(hardening=1.001),
-        "stop 0.1 % off": altered(stop_stiffness=1.001),
-        "gap 0.1 % off": altered(stop_gap=1.001),
-        "friction 0.1 % off": altered(friction_force=1.001),
-        "damping 0.1 % off": altered(damping=1.001),
-    }
-    columns = (
-        "circle",
-        "orbit",
-        "harmonic_balance",
-        "slides",
-        "sticks",
-        "rests",
-        "growth_ends",
-        "disc_whirl",
-    )
-    table = {
-        "a linear support": (NO_ORBIT, NO_ORBIT, NO_ORBIT, SEES, SEES, SEES, SEES, SEES),
-        "hardening 0.1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, SEES, SEES),
-        "stop 0.1 % off": (SEES, SEES, BLIND, SEES, SEES, SEES, SEES, BLIND),
-        "gap 0.1 % off": (SEES, SEES, BLIND, SEES, SEES, SEES, SEES, BLIND),
-        # Where growth ends for small loads does not depend on them, nor on a damping that is not there.
-        "friction 0.1 % off": (SEES, SEES, SEES, SEES, SEES, SEES, BLIND, SEES),
-        # Nothing moves in an equilibrium.
-        "damping 0.1 % off": (SEES, SEES, SEES, SEES, SEES, BLIND, BLIND, SEES),
-    }
-
-    def test_what_an_engine_does_not_simulate_is_said(self, sound_engine):
-        assert bool(self.found(sound_engine).not_simulated) == (sound_engine in self.not_claimed)
 
 
 def test_the_motions_pass_the_bends_of_the_supports():

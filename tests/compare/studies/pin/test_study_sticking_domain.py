@@ -1,34 +1,15 @@
-"""The study of sticking: what its claims see, and where its starts are."""
+"""The study of sticking: where its starts are."""
 
 import numpy as np
 import pytest
-from studies_under_test import GROSS
-from study_harness import LEFT_OUT, SEES, StudyTests
 
 from compare.claims.error_estimates import Measurement
 from compare.engines import Engine
 from compare.studies.pin.sticking_domain import study, theory
-from compare.studies.pin.sticking_domain.study import STUDY
 from compare.studies.pin.sticking_domain.theory import vertex
 from compare.studies.toolkit.pins import safest_angle
 from reference_model import Phase, Trajectory
 from reference_model.formulas.pin import squared_holding_force
-
-SPEEDS, SEARCHED = {"speeds": (1.4,)}, {"searched": (0.9, 1.0, 1.1)}
-
-
-class TestStickingDomain(StudyTests):
-    study = STUDY
-    sound = ("reference", "exudyn", "intact")
-    few = {"stays": SPEEDS, "holds": SPEEDS, "lets_go": SPEEDS, "largest": SEARCHED, "resonance": SEARCHED}
-    faults = GROSS
-    columns = ("stays", "holds", "lets_go", "largest", "resonance")
-    table = {
-        "wrong sign": (SEES, SEES, SEES, SEES, SEES),
-        "square": (SEES, SEES, SEES, SEES, SEES),
-        # Less damping takes less force to carry the pin round, so inside of the radius (9) it sticks all the same.
-        "half the damping": (LEFT_OUT, LEFT_OUT, SEES, SEES, SEES),
-    }
 
 
 @pytest.mark.parametrize("speed", theory.SPEEDS)

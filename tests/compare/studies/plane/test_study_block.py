@@ -1,4 +1,4 @@
-"""The study of the block: what its claims see, and that its closed forms are those of the motion in time."""
+"""The study of the block: its closed forms are those of the motion in time."""
 
 import math
 from dataclasses import replace
@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from faults.reference import simulate
 from scipy.integrate import solve_ivp
-from studies_under_test import GROSS, altered, fault, made
-from study_harness import BLIND, LEFT_OUT, SEES, StudyTests, engine_named
+from studies_under_test import engine_named
 
 from compare.engines import Engine
 from compare.studies.plane.block import study
@@ -32,78 +31,22 @@ def not_quite_against_the_slip(system, initial_state, times, *, tolerance=1e-9):
     return Trajectory(system, np.array(times), run.y.T)
 
 
-class TestBlock(StudyTests):
-    study = STUDY
-    sound = ("reference", "intact", "exudyn", "exudyn-native", "compiled", "plain")
-    # slip to rest, stick, release, and none of that
-    parts = {
-        "exudyn-native": ("stops", "lets_go", "swings"),
-        "compiled": ("stops", "holds", "lets_go", "swings"),
-        "plain": ("slows", "pulled_along"),
-    }
-    # Without dampers half the damping is all of it.
-    faults = (
-        {name: GROSS[name] for name in ("wrong sign", "square")}
-        | {
-            name: fault(name)
-            for name in (
-                "pyramid-of-8-sides",
-                "creep-in-stick",
-                "no-release",
-                "friction-falls-with-slip",
-            )
-        }
-        | {
-            "regularised-100-times-too-wide": made(slip_width=1e-3),
-            "friction 0.1 % off": altered(friction_force=1.001),
-            "friction 1.5 % off": altered(friction_force=1.015),
-            "mass 0.1 % off": altered(mass=1.001),
-            "stiffness 0.1 % off": altered(stiffness=1.001),
-            "a degree beside": Engine("a degree beside", not_quite_against_the_slip),
-        }
-    )
-    few_of_faults = {
-        **{
-            name: {"headings": (22.5, 45.0)} for name in ("slows", "stops", "lets_go", "cone", "pulled_along")
-        },
-        "holds": {"loads": (0.99,)},
-    }
-    columns = ("slows", "stops", "holds", "lets_go", "cone", "swings", "pulled_along", "pulled_across")
-    table = {
-        "wrong sign": (*[SEES] * 8,),
-        "square": (*[SEES] * 8,),
-        "pyramid-of-8-sides": (SEES, SEES, LEFT_OUT, *[SEES] * 5),
-        # A law that is viscous at slow slip is wrong only where the block comes to rest.
-        "regularised-100-times-too-wide": (BLIND, SEES, SEES, SEES, LEFT_OUT, SEES, BLIND, BLIND),
-        "creep-in-stick": (LEFT_OUT, LEFT_OUT, SEES, SEES, LEFT_OUT, SEES, LEFT_OUT, LEFT_OUT),
-        "no-release": (*[LEFT_OUT] * 3, SEES, SEES, SEES, LEFT_OUT, LEFT_OUT),
-        "friction-falls-with-slip": (SEES, SEES, LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, SEES),
-        # What friction holds it holds with more of it too, and a yes and a no have no digits.
-        "friction 0.1 % off": (SEES, SEES, BLIND, SEES, BLIND, SEES, SEES, SEES),
-        "friction 1.5 % off": (LEFT_OUT, LEFT_OUT, BLIND, SEES, SEES, LEFT_OUT, LEFT_OUT, LEFT_OUT),
-        "mass 0.1 % off": (SEES, SEES, LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, SEES),
-        "stiffness 0.1 % off": (BLIND, BLIND, LEFT_OUT, SEES, LEFT_OUT, SEES, SEES, SEES),
-        "a degree beside": (SEES, *[LEFT_OUT] * 5, SEES, SEES),
-    }
+def test_who_simulates_nothing_that_turns_takes_part_in_all_of_it():
+    blocks_only = Engine("blocks", engine_named("reference").function, ("block",))
+    found = STUDY.measure(blocks_only)
+    assert found.not_simulated == ""
+    assert len(found.claims) == len(STUDY.declared)
 
-    def test_who_simulates_nothing_that_turns_takes_part_in_all_of_it(self):
-        blocks_only = Engine("blocks", engine_named("reference").function, ("block",))
-        found = STUDY.measure(blocks_only)
-        assert found.not_simulated == ""
-        assert len(found.claims) == len(STUDY.declared)
 
-    def test_who_only_slides_is_asked_for_what_slips_all_the_time(self):
-        sliding = Engine("sliding", engine_named("reference").function, ("block",), sticks=False)
-        found = STUDY.measure(sliding)
-        assert found.not_simulated == "sliding does not simulate stick"
-        assert [claim.identity for claim in found.claims] == [
-            "block/slows",
-            "block/pulled-along",
-            "block/pulled-across",
-        ]
-
-    def test_nothing_is_drawn_of_nothing(self):
-        assert STUDY.draw({}) == {}
+def test_who_only_slides_is_asked_for_what_slips_all_the_time():
+    sliding = Engine("sliding", engine_named("reference").function, ("block",), sticks=False)
+    found = STUDY.measure(sliding)
+    assert found.not_simulated == "sliding does not simulate stick"
+    assert [claim.identity for claim in found.claims] == [
+        "block/slows",
+        "block/pulled-along",
+        "block/pulled-across",
+    ]
 
 
 def test_the_block_on_a_spring_rests_after_four_half_swings_at_a_twentieth_of_a_millimetre():

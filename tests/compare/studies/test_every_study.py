@@ -1,0 +1,111 @@
+"""What holds for every study: sound engines agree, each claim fails for a gross and for a small fault."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies_under_test import AGREES, DIFFERS, INCONCLUSIVE, engine_named, verdicts
+from tested_studies import TESTED
+
+from compare.studies import STUDIES
+
+
+@pytest.fixture(scope="module", params=TESTED.values(), ids=TESTED)
+def tested(request):
+    """Each study in turn; the scope lets all tests of one study follow each other, which share its findings."""
+    return request.param
+
+
+def test_the_table_contains_every_study():
+    assert sorted(TESTED) == sorted(study.name for study in STUDIES)
+
+
+def test_every_claim_holds_in_every_sound_engine(tested):
+    for engine in tested.sound:
+        parts, not_claimed = tested.parts.get(engine, ()), tested.not_claimed.get(engine, ())
+        expected = {
+            sentence
+            for sentence, part in tested.study.sentences().items()
+            if (name := part.partition("/")[0]) not in not_claimed
+            and (not parts or name in parts or part in parts)
+        }
+        found = tested.found(engine)
+        assert (engine, verdicts(found)) == (engine, dict.fromkeys(expected, AGREES))
+        assert all(claim.source for claim in found.claims)
+
+
+def test_the_theory_holds(tested):
+    claims = {claim.identity: claim.verdict for claim in tested.found("theory").claims}
+    assert len(claims) == sum(not one.of_engine for one in tested.study.declared for _ in one.cases())
+    assert {name for name, verdict in claims.items() if verdict is INCONCLUSIVE} == set(tested.open_theory)
+    assert DIFFERS not in claims.values()
+
+
+@pytest.mark.filterwarnings("ignore:No artists with labels")  # of a panel about other systems
+def test_an_engine_of_single_points_is_measured_on_these_and_the_report_says_what_is_missing(tested):
+    if "reference" not in tested.sound or tested.study.only:
+        pytest.skip("the study is not about engines like this one")
+    points = replace(engine_named("reference"), name="points", kinds=("points",))
+    found, everything = tested.study.measure(points, tested.few), verdicts(tested.found("reference"))
+    assert verdicts(found).items() <= everything.items()
+    assert bool(found.not_simulated) == (len(found.claims) < len(everything))
+    data = {"points": found.data, "theory": tested.found("theory").data}
+    figures = tested.study.draw({name: values for name, values in data.items() if values})
+    assert set(figures) <= set(tested.study.figures)
+
+
+def unbroken(tested, faults):
+    """Return the claims that no fault breaks, by what chooses them, each with its last measurement."""
+    left = dict.fromkeys(tested.study.sentences().values())
+    for fault in faults.values():
+        only = getattr(fault, "only", ())
+        for part in [part for part in left if not only or part.partition("/")[0] in only]:
+            try:
+                claims = tested.claims_of_fault(fault, (part,))
+            except RuntimeError:  # no such motion in the engine, which the report shows as its failure
+                del left[part]
+                continue
+            if any(claim.verdict is DIFFERS for claim in claims):
+                del left[part]
+            elif claims:
+                (left[part],) = claims
+    return left
+
+
+def too_coarse_for_a_per_cent(claim):
+    """Whether the claim counts answers, or its budget exceeds a per cent of what it predicts."""
+    return claim.relative_error > 0.01 and bool(np.any(claim.predicted))
+
+
+def test_each_claim_fails_for_a_gross_fault(tested):
+    assert set(unbroken(tested, tested.gross)) == set()
+
+
+def test_each_claim_fails_for_a_fault_of_a_per_cent_if_it_can(tested):
+    orders = {
+        one.part(case) for one in tested.study.declared if one.kind == "order" for case, _ in one.cases()
+    }
+    left = unbroken(tested, tested.small)
+    fine = {part for part, claim in left.items() if claim is None or not too_coarse_for_a_per_cent(claim)}
+    fine -= orders  # by how much an order may be off is no matter of per cents
+    assert {part.partition("/")[0] for part in fine} == set(tested.blind)
+
+
+def test_figures_are_drawn_whatever_is_there(tested):
+    if not tested.drawn:
+        pytest.skip("too few numbers, see the study's own test")
+    study = tested.study
+    found = {name: tested.found(name).data for name in (*tested.sound[:1], "theory")}
+    alone = dict(list(found.items())[:1])
+    everything = found | {"exudyn": next(iter(found.values()))}
+    for case in ({"theory": found["theory"]}, found, alone, everything):
+        present = {name: values for name, values in case.items() if values}
+        if not present:
+            continue
+        figures = study.draw(present)
+        assert set(figures) <= set(study.figures)
+        if case is everything:
+            assert figures or not study.figures
+            for figure in figures.values():
+                figure.set_layout_engine("none")  # tests of reports and of saved figures lay out
+                figure.draw_without_rendering()  # all but the pixels, a quarter of the time
