@@ -1,23 +1,33 @@
-"""Friction of a rotor on a rotor or on the ground about one axis, without compiled code if constant.
+"""Friction about one axis: regularised between rotors, or with exact stick between any bodies.
 
 The whole contact slips in circumferential direction, and force and slip of the centre are zero. With the mean radius
-r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P < ε. Points share this equally.
+r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P < ε. Points share this equally. If load and
+coefficient are constant, no compiled code is needed.
+
+A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
+the slip, so the equations of motion are smooth even across zero slip. A constraint holds both spins together while
+the contact is locked, and its multiplier is the moment of friction. ``solver.switching`` finds the times of changes.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
-from typing import Any
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property, partial
+from operator import mul
+from typing import Any, cast
 
+import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_jacobian
 from reference_model.systems import FloatArray
 
 
@@ -106,3 +116,170 @@ def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:
     by_share = radius / epsilon if speed < epsilon else 0.0
     change = by_speed * math.copysign(radius, spin) + by_spin
     return -radius * float(change * share + factors.friction_force(t, *motion) * by_share)
+
+
+class Mode(IntEnum):
+    """Mode of a contact, numbered as in Modelica's clutches."""
+
+    BACKWARD = -1
+    """Slides with the disc slower than the master."""
+    LOCKED = 0
+    FORWARD = 1
+    """Slides with the disc faster than the master."""
+    OPEN = 2
+    """Transmits nothing because load or coefficient is zero."""
+
+
+@dataclass(eq=False)
+class AxialStick:
+    """Friction between two bodies that turn about one axis, in one mode at a time.
+
+    Parameters
+    ----------
+    kinds : Kinds
+        Kinds of the nodes of master and disc.
+    reference : array of shape (n,)
+        Their reference coordinates.
+    factors : LoadAndCoefficient
+        Load and sliding coefficient.
+    static_ratio : float
+        Static over sliding friction, >= 1.
+    lock : int
+        Object number of the constraint that locks the contact.
+    mode : Mode or None
+        Present mode, None before the first run.
+    running : bool
+        Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
+    idle : bool
+        Whether the contact rests although it is in a mode of sliding, because locked contacts and joints hold it. Its
+        share of the load is then not determined, and it takes all that it can hold.
+
+    """
+
+    kinds: Kinds
+    reference: FloatArray
+    factors: LoadAndCoefficient
+    static_ratio: float
+    lock: int = -1
+    mode: Mode | None = None
+    running: bool = False
+    idle: bool = False
+
+    @property
+    def visible_mode(self) -> Mode:
+        """Mode as a sensor shows it."""
+        return Mode.LOCKED if self.idle or self.mode is None else self.mode
+
+    @cached_property
+    def _rotors(self) -> Sequence[float] | None:
+        """Gradient of the slip between rotors, which does not depend on the coordinates; None for other bodies."""
+        if self.kinds[1] != ROTOR or self.kinds[0] not in (ROTOR, GROUND):
+            return None
+        return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
+
+    def gradient(self, q: Sequence[float]) -> Sequence[float]:
+        """Return the derivatives of S by the velocities of the nodes, at coordinates without reference values."""
+        if self._rotors is not None:
+            return self._rotors
+        return self._gradient_at(self.reference + q)
+
+    def _gradient_at(self, coordinates: FloatArray) -> list[float]:
+        return cast(list[float], slip_jacobian(self.kinds, coordinates)[0][2].tolist())
+
+    def slip(self, q: Sequence[float], q_t: Sequence[float]) -> float:
+        """Return S = φ̇ − ω in rad/s."""
+        return float(sum(map(mul, self.gradient(q), q_t)))
+
+    def held_by(self, others: FloatArray, places: NDArray[Any]) -> bool:
+        """Return whether constraints with the gradients ``others``, shape (m, n), hold both bodies on one axis.
+
+        The coordinates of the nodes have their reference values and the ``places`` among all n.
+        """
+        if self._rotors is not None:
+            return True
+        across = np.zeros((2, others.shape[1]))
+        across[:, places] = slip_jacobian(self.kinds, self.reference)[0][:2]
+        return spanned(across, others)
+
+    def sliding_moment(self, t: float, spin: float) -> float:
+        """Return the magnitude of the moment in N m at the time t (s) and the relative spin (rad/s)."""
+        radius = mean_radius(self.factors.geometry)
+        return radius * self.factors.friction_force(t, 0.0, radius * abs(spin), spin)
+
+    def holding_moment(self, t: float) -> float:
+        """Return the largest moment in N m that the locked contact transmits at the time t (s)."""
+        return self.static_ratio * self.sliding_moment(t, 0.0)
+
+    @property
+    def slides(self) -> bool:
+        """True if the contact slides under a load."""
+        return self.mode in (Mode.FORWARD, Mode.BACKWARD)
+
+    def moment(self, t: float, spin: float) -> float:
+        """Return the moment in N m on the disc, but for that of the constraint while the contact is locked."""
+        return -int(self.mode or 0) * self.sliding_moment(t, spin) if self.slides else 0.0
+
+    def held_moment(self, mbs: Any) -> float:
+        """Return the moment in N m that the constraint exerts on the disc in the current motion."""
+        return -float(mbs.GetObjectOutput(self.lock, exu.OutputVariableType.Force))
+
+    def transmitted_moment(self, mbs: Any, t: float, spin: float) -> float:
+        """Return the moment in N m on the disc in the current motion, whatever the mode."""
+        return self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, spin)
+
+    def capacity_share(self, mbs: Any, t: float) -> float:
+        """Return the moment over the largest one: 1 while the contact slides, 0 while it is open."""
+        if self.mode == Mode.LOCKED:
+            return abs(self.held_moment(mbs)) / self.holding_moment(t)
+        return 1.0 if self.slides else 0.0
+
+    def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        """Return the moments on the nodes, as the user function of the connector."""
+        if not self.running:
+            raise ValueError(
+                "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
+                "give add_ring_friction a regularisation for any other solver"
+            )
+        gradient = self.gradient(q)
+        moment = self.moment(t, sum(map(mul, gradient, q_t)))
+        return [moment * share for share in gradient]
+
+    def jacobian(
+        self,
+        mbs: Any,
+        t: float,
+        item: int,
+        q: Sequence[float],
+        q_t: Sequence[float],
+        position_factor: float,
+        velocity_factor: float,
+    ) -> FloatArray:
+        """Return the derivatives of minus the moments on the nodes, as the user function of the connector."""
+        gradient = np.array(self.gradient(q))
+        slope = 0.0
+        if self.factors.depends_on_motion and self.slides:
+            spin = float(gradient @ q_t)
+            radius = mean_radius(self.factors.geometry)
+            _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
+            slope = int(self.mode or 0) * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
+        return velocity_factor * slope * np.outer(gradient, gradient)
+
+    def constraint(
+        self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], velocity_level: bool
+    ) -> list[float]:
+        """Return the slip (rad/s) that the constraint keeps at zero, as its user function.
+
+        In contrast to a connector's, its coordinates ``q`` contain the reference values.
+        """
+        return [sum(map(mul, self._gradient_at(np.array(q)), q_t))]
+
+    def constraint_jacobian(
+        self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], velocity_level: bool
+    ) -> FloatArray:
+        """Return the derivatives of the slip by the velocities, shape (1, n), as the constraint's user function."""
+        return np.array([self._gradient_at(np.array(q))])
+
+
+def spanned(rows: FloatArray, by: FloatArray) -> bool:
+    """Return whether ``rows``, shape (k, n), are linear combinations of others, shape (m, n)."""
+    return bool(np.linalg.matrix_rank(np.vstack([by, rows])) == (np.linalg.matrix_rank(by) if len(by) else 0))

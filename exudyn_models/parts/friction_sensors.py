@@ -13,8 +13,7 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import on_one_axis
-from exudyn_models.forces.axial_stick import AxialStick
+from exudyn_models.forces.axial_pairs import AxialStick, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.axial_stick import AxialStick
+from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction

@@ -146,22 +146,27 @@ def _solve(
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
-        raise_interrupt(error)
-        if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
-            raise error.__cause__ from None
-        if isinstance(error, (exu.SolverError, exu.InternalError)):
-            if massless := _singular(mbs, reached == start):
-                raise SimulationError(
-                    f"Exudyn's {solver.name} failed 0 s after the start: {massless}; add mass or inertia"
-                ) from error
-            what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
-            raise SimulationError(advice(solver.name, reached - start, what)) from error
+        _raise_cause(error, mbs, solver.name, reached - start)
         raise
     if not finite or too_many:
         raise SimulationError(advice(solver.name, reached - start, too_many or NOT_FINITE))
     if jumps is not None:
         jumps.warn()
     return changes
+
+
+def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:
+    """Raise the cause of an error in a run at the ``time`` (s) after its start, if it is not Exudyn's own."""
+    raise_interrupt(error)
+    if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
+        raise error.__cause__ from None
+    if isinstance(error, (exu.SolverError, exu.InternalError)):
+        if massless := _singular(mbs, time == 0.0):
+            raise SimulationError(
+                f"Exudyn's {solver} failed 0 s after the start: {massless}; add mass or inertia"
+            ) from error
+        what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
+        raise SimulationError(advice(solver, time, what)) from error
 
 
 def _singular(mbs: Any, at_start: bool) -> str:

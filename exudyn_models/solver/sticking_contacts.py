@@ -9,7 +9,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_stick import AxialStick, Mode
+from exudyn_models.forces.axial_pairs import AxialStick, Mode
 
 CURRENT = exu.ConfigurationType.Current
 

@@ -15,7 +15,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_stick import Mode, spanned
+from exudyn_models.forces.axial_pairs import Mode, spanned
 from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.starting_rates import initialised_solver, starting_rates
 from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact

@@ -255,7 +255,7 @@ def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_
     ) in output
 
 
-FILE = str(ROOT / "compare" / "studies" / "pin" / "fig06" / "__init__.py")
+FILE = str(ROOT / "compare" / "studies" / "pin" / "fig05" / "__init__.py")
 USAGE, NOTHING = pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED
 BY_ITS_NAME = "a study is asked for by its name, with --pyargs compare --study"
 REFUSED = [

@@ -334,7 +334,7 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
     exact = slide(*STICKING["pin"], np.linspace(0.0, 4.0, 4001)).y
     crossing = np.argmax(exact[0] < 0.0) * 1e-3
     with pytest.raises(
-        SimulationError, match=r"failed (\d+\.?\d*) s after the start: .*; take a smaller"
+        SimulationError, match=r"failed (\d+\.?\d*) s after the start: .*; use a smaller"
     ) as told:
         simulate(*STICKING["pin"], [0.0, 10.0], solver=solver, friction=friction_with(broken))
     time = float(str(told.value).split("failed ")[1].split(" s")[0])
