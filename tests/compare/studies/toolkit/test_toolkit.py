@@ -70,6 +70,25 @@ def test_eigenvalues_of_a_disc_are_measured_within_their_error(name, figure):
     assert np.max(np.abs(matched(measured, expected) - expected)) < error < 1e-5
 
 
+def test_the_error_of_eigenvalues_covers_a_flow_that_is_curved():
+    """Differences of two steps remove the cubic part of this flow; the next part is in the error."""
+    (rest,) = self_centred_equilibria(FIG5)
+    rates, slip = np.array([-0.1, -0.2, -1.0, -2.0]), FIG5.disc_speed * np.hypot(rest.x, rest.y)
+
+    def simulate_many(tasks, *, tolerance):
+        shares = [(state - rest.state) / slip for _, state, _ in tasks]
+        return [
+            SimpleNamespace(at_end=rest.state + slip * np.exp(rates * times[-1]) * (share + 1e4 * share**5))
+            for share, (_, _, times) in zip(shares, tasks, strict=True)
+        ]
+
+    found, error = measured_eigenvalues(
+        SimpleNamespace(simulate_many=simulate_many), FIG5, rest.state, duration=1.5
+    )
+    off = np.max(np.abs(np.sort(found.real) - np.sort(rates)))
+    assert 1e-7 < off < error < 30.0 * off
+
+
 def test_eigenvalues_of_an_exact_linear_flow_are_uncertain_by_the_tolerance():
     """Errors below the tolerance need not show in any difference, so they count although this engine makes none."""
     (rest,) = self_centred_equilibria(FIG5)
