@@ -225,8 +225,8 @@ class _Runner:
 def measured(study: Study, engine: Engine | str | None, only: Collection[str] = ()) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects sections of the
-    study as in ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
+    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
+    ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
