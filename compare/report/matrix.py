@@ -43,7 +43,7 @@ _SYMBOLS = {
 }
 
 GRADE_SYMBOLS = {Grade.EXACT: "✔", Grade.FINE: "✓", Grade.COARSE: "≈"}
-"""Marks of agreement by grade."""
+"""Marks of agreement by grade; agreement only within the resolution of a claim, without a grade, has "✓" too."""
 
 VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
 
