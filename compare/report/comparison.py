@@ -1,4 +1,4 @@
-"""What parts two reports: numbers that moved by more than their error bars, verdicts, what is new, what is gone."""
+"""Differences between two reports: numbers moved beyond their error bars, verdicts, new and missing claims."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Key: TypeAlias = "tuple[str, str]"
 
 
 class Kind(Enum):
-    """Of a change; those of ``BAD`` make the comparison fail."""
+    """Kind of a change; unknown changes in ``BAD`` make the comparison fail."""
 
     WORSE = "worse"
     MOVED = "moved"
@@ -38,7 +38,7 @@ BAD = (Kind.WORSE, Kind.MOVED, Kind.GONE)
 
 @dataclass(frozen=True)
 class Change:
-    """What happened to one claim of one engine, or to all of a study, in words."""
+    """A change of one claim, or of a whole study, of one engine."""
 
     kind: Kind
     claim: str
@@ -48,7 +48,7 @@ class Change:
 
     @property
     def counts(self) -> bool:
-        """Whether somebody has to look at it."""
+        """True if the change is bad and not known."""
         return self.kind in BAD and not self.known
 
     def __str__(self) -> str:
@@ -57,9 +57,9 @@ class Change:
 
 
 def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Change, ...]:
-    """Return what parts ``new`` from ``old``, the bad before the good; both are of ``read_results``.
+    """Return the changes from ``old`` to ``new``, bad ones first; both are results of ``read_results``.
 
-    What happens to claims in ``known`` is told, and does not count.
+    Changes of claims in ``known`` are included but do not count.
     """
     found = [*_of_runs(old, new), *_of_claims(old, new)]
     order = list(Kind)
@@ -85,7 +85,7 @@ def failures(results: Results) -> dict[Key, str]:
 
 
 def without_verdict(results: Results) -> tuple[str, ...]:
-    """Return the engines that were measured and of which nothing is known."""
+    """Return the measured engines without any claim."""
     known = {claim["engine"] for claim in _claims(results)}
     return tuple(dict.fromkeys(engine for _, engine in _units(results) if engine not in known))
 
@@ -95,7 +95,7 @@ def _claims(results: Results) -> Iterator[dict[str, Any]]:
 
 
 def _of_runs(old: Results, new: Results) -> Iterator[Change]:
-    """Yield what happened to whole studies of an engine."""
+    """Yield the changes of whole studies of an engine."""
     before, after = _units(old), _units(new)
     for (study, engine), unit in after.items():
         state = unit["state"]
@@ -135,12 +135,12 @@ def _of_claims(old: Results, new: Results) -> Iterator[Change]:
     whole = _units(new)
     for key, claim in before.items():
         unit = whole.get((key[0], claim["engine"]))
-        if key not in after and unit is not None and unit["state"] != State.FAILED.value:  # told of the study
+        if key not in after and unit is not None and unit["state"] != State.FAILED.value:  # see _of_runs
             yield Change(Kind.GONE, claim["id"], claim["engine"], claim["sentence"])
 
 
 def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int], dict[str, Any]]:
-    """Return claims by study, identity, engine and which of several it is."""
+    """Return claims by study, identity, engine and number of the measurement."""
     return {
         (claim["id"].partition("/")[0], claim["id"], claim["engine"], claim["measurement"]): claim
         for claim in claims
@@ -148,7 +148,7 @@ def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int],
 
 
 def _moved(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    """Return in words which number moved farthest beyond both error bars; "" where none did."""
+    """Describe the number that moved farthest beyond the sum of both error bars; "" if none did."""
     if old["shape"] != new["shape"] or old["places"] != new["places"]:
         return "its numbers are others: they can't be compared one by one"
     allowed = _errors(old) + _errors(new)
@@ -178,7 +178,7 @@ def _numbers(claim: Mapping[str, Any], name: str) -> FloatArray:
     return np.array(claim[name], dtype=float).ravel()
 
 
-# --- A baseline: which claims are known to fail, so that a server tells only of what is new.
+# --- A baseline: claims that are known to fail, so a server reports only new failures.
 #
 # A file for people to read and edit::
 #
@@ -191,7 +191,7 @@ FORMAT, VERSION = "friction-discs baseline", 1
 def read_baseline(path: Path) -> frozenset[Key]:
     """Return the claims, or studies, and engines that are known to fail.
 
-    Raises ``ValueError`` for a file that is not there or is none.
+    Raises ``ValueError`` for a file that cannot be read or is not a baseline.
     """
     try:
         content = all_printable(json.loads(path.read_text(encoding="utf-8")))

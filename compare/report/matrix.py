@@ -1,4 +1,4 @@
-"""The matrix of claims and engines: what the first screen, the totals and the exit status are made of."""
+"""The matrix of claims and engines, the source of the first screen, the totals and the exit status."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from compare.run.workers import Failure
 
 
 class State(Enum):
-    """What a cell says; the first three are verdicts."""
+    """State of a cell; the first three are verdicts."""
 
     AGREES = "agrees"
     DIFFERS = "differs"
@@ -43,7 +43,7 @@ _SYMBOLS = {
 }
 
 GRADE_SYMBOLS = {Grade.EXACT: "✔", Grade.FINE: "✓", Grade.COARSE: "≈"}
-"""Marks of what agrees; "✓" too where only the claim's resolution says what is small."""
+"""Marks of agreement by grade; agreement only within the resolution of a claim, without a grade, has "✓" too."""
 
 VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
 
@@ -55,7 +55,7 @@ WORST_FIRST = (
     State.NOT_SIMULATED,
     State.AGREES,
 )
-"""A cell with several claims says the first that applies to any."""
+"""States by priority: a cell takes the first one that applies to any of its claims."""
 
 
 @dataclass(frozen=True)
@@ -65,15 +65,15 @@ class Cell:
     Parameters
     ----------
     state : State
-        The worst of all.
+        Worst state of the claims.
     claims : tuple of Claim
-        Usually one; several where a study makes the same claim for several parameters.
+        Usually one; several if the study makes the same claim for several parameters.
     reason : str
-        Why there is no verdict.
+        Reason for a missing verdict.
     evidence : str
-        Its kind, see ``compare.claims.claim.EVIDENCE``; "" where there is no verdict.
+        Kind of evidence, see ``compare.claims.claim.EVIDENCE``; "" without a verdict.
     implied_by : str
-        From which claim, or from which engine's verdict on the same claim, it follows.
+        Claim that implies this verdict, or engine whose verdict on the same claim implies it.
 
     """
 
@@ -85,12 +85,12 @@ class Cell:
 
     @property
     def number(self) -> str:
-        """What stands beside the verdict, see ``compare.report.numbers.in_short``; "" where there is none."""
+        """Number next to the verdict, see ``compare.report.numbers.in_short``; "" without claims."""
         return in_short(deciding(self._decisive)) if self.claims else ""
 
     @property
     def grade(self) -> Grade | None:
-        """How finely it agrees, the coarsest of several claims; None where none has a size or it does not agree."""
+        """Coarsest grade of agreement of the claims; None if they do not agree or have no grade."""
         if self.state is not State.AGREES:
             return None
         found = {claim.grade for claim in self.claims}
@@ -108,7 +108,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """One claim of a study, with a cell for each column that has something to say about it.
+    """One claim of a study, with a cell for each column that has a verdict or a reason for its absence.
 
     ``identity`` is the permanent name of the claim and its anchor in the page: "fig06/rests".
     """
@@ -126,13 +126,13 @@ class Row:
 
     @property
     def kind(self) -> str:
-        """What the prediction is taken from, "" where nobody made the claim."""
+        """Source of the prediction; "" if no column made the claim."""
         return self.claims[0].kind if self.claims else ""
 
 
 @dataclass(frozen=True)
 class RecordedMatrix:
-    """What recorded engines make of one study's claims, a row for each of ``settings``."""
+    """Recorded verdicts of engines on the claims of one study, a row for each of ``settings``."""
 
     study: Study
     settings: tuple[Recorded, ...]
@@ -163,9 +163,9 @@ class RecordedMatrix:
 
 @dataclass(frozen=True)
 class Matrix:
-    """The rows of some studies; ``columns`` are "theory", where any study has claims of it, and the engines.
+    """The rows of some studies; ``columns`` are the engines, after "theory" if a study has claims of it.
 
-    ``recorded`` stands apart: it was found about the engines of others and is not a verdict on this run.
+    ``recorded`` is separate because it contains earlier results of foreign engines, not verdicts on this run.
     """
 
     columns: tuple[str, ...]
@@ -192,7 +192,7 @@ class Matrix:
         return tuple(row.cells[column] for row in self.rows if column in row.cells)
 
     def count(self, column: str) -> Counter[State]:
-        """Return how many cells of the column are in each state."""
+        """Return the number of cells of the column in each state."""
         return Counter(cell.state for cell in self.column(column))
 
     @property
@@ -201,7 +201,7 @@ class Matrix:
         return Counter(cell.state for cell in self.cells)
 
     def grades(self, column: str) -> Counter[Grade]:
-        """Return how many cells of the column agree to each grade, from the finest on."""
+        """Return the number of cells of the column that agree to each grade, finest first."""
         found = Counter(cell.grade for cell in self.column(column))
         return Counter({grade: found[grade] for grade in GRADES if found[grade]})
 
@@ -220,13 +220,13 @@ class Matrix:
 
     @property
     def worst(self) -> tuple[State, ...]:
-        """The worst state of all cells, () where they agree or were not asked for."""
+        """Worst state of all cells; () if all of them agree or are not simulated."""
         found = next((state for state in WORST_FIRST if self.totals[state]), State.AGREES)
         return () if found in (State.AGREES, State.NOT_SIMULATED) else (found,)
 
     @property
     def agrees(self) -> bool:
-        """Whether there are claims, and all that could be simulated agree."""
+        """True if at least one cell agrees and all simulated ones do."""
         return self.totals[State.AGREES] > 0 and not self.worst
 
 
@@ -243,7 +243,7 @@ def matrix(run: Run) -> Matrix:
 
 def _rows(run: Run, study: Study) -> list[Row]:
     columns = run.columns(study)
-    claims: dict[tuple[str, str], dict[str, list[Claim]]] = {}  # in the order in which they are first met
+    claims: dict[tuple[str, str], dict[str, list[Claim]]] = {}  # in order of first occurrence
     for column in columns:
         outcome = run.outcomes.get((study.name, column))
         if isinstance(outcome, Findings):
@@ -262,7 +262,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
         identity = _identity(study, next(iter(found.values()))[0], rows)
         rows.append(Row(study, identity, sentence, equation, cells))
     rows = [_weighed(row, rows, study) for row in rows]
-    # a gap that no row shows, because nobody made a claim there, still has to be seen
+    # keep gaps that no row shows because no column made a claim
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
     }
@@ -272,7 +272,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
 
 
 def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
-    """Return what a claim is called; one made by hand by its sentence, and unlike all of ``rows``."""
+    """Return the identity of a claim, else a name made of its sentence that differs from all of ``rows``."""
     if claim.identity:
         return claim.identity
     name = f"{study.name}/{slug(claim.sentence)}"
@@ -298,7 +298,7 @@ def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
         if sentence
         else None
     )
-    # A self-check implies nothing that is more than one.
+    # A self-check cannot imply independent evidence.
     if (
         by is not None
         and _agrees(by)
@@ -309,10 +309,10 @@ def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
 
 
 def evidence_of(claim: Claim) -> Evidence:
-    """Return what agreement is evidence of if the claim does not follow from another verdict."""
+    """Return the kind of evidence of an agreement that no other verdict implies."""
     if claim.basis != "reference":
         return claim.basis
-    # The reference simulates what is predicted in the name of the theory.
+    # The theory takes its predictions from the reference.
     same = claim.engine == THEORY or shares_code(claim.engine, "reference")
     return "self-check" if same else "independent"
 
@@ -322,7 +322,7 @@ def _agrees(cell: Cell | None) -> bool:
 
 
 def _gap(run: Run, study: Study, column: str) -> Cell | None:
-    """Return what stands in place of the claims that ``column`` has not, None where none is missing."""
+    """Return the cell in place of claims that ``column`` lacks, None if none are missing."""
     outcome = run.outcomes.get((study.name, column))
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
@@ -337,6 +337,6 @@ def _cell(claims: list[Claim]) -> Cell:
 
 
 def state_of(claim: Claim) -> State:
-    """Return the state that a claim's verdict is."""
+    """Return the state for the verdict of a claim."""
     verdict: Verdict = claim.verdict
     return State(verdict.value)

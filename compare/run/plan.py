@@ -1,7 +1,7 @@
-"""Which motions a study asks for, as far as that does not depend on the answers.
+"""The motions that a study requests, if they do not depend on the answers.
 
-Each claim is measured with an engine that answers as the reference does and writes down what it is asked, and once
-more with answers that are a little off: where the same is asked, it would be asked of any engine.
+Each claim is measured twice with an engine that records its questions: once with answers of the reference, and once
+with slightly wrong answers. If the questions are equal, every engine would receive them.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
-"""Of the largest size of each component of a state: more than an engine's error, so that what hangs on it shows."""
+"""Error of the wrong answers relative to each component's largest size; larger than the errors of engines."""
 
 
 @dataclass(frozen=True)
 class Planned:
-    """What a study asks for.
+    """The motions that a study requests.
 
     Parameters
     ----------
     motions : tuple of bytes
         The questions, as lines for a program.
     claims : int
-        How many claims they are enough for.
+        Number of claims that need no other motions.
     adaptive : int
-        How many claims ask for motions that depend on the answers, and were left out.
+        Number of omitted claims, whose motions depend on the answers.
 
     """
 
@@ -50,9 +50,9 @@ class Planned:
 
 @dataclass(eq=False)
 class _Recorder:
-    """The ``simulate`` of an engine that writes down what it is asked.
+    """The ``simulate`` of an engine that records its questions.
 
-    No two are equal, so that nothing that a study keeps of one engine is taken for another.
+    No two instances are equal, so a study never reuses cached results of another instance.
     """
 
     answer: Callable[..., Trajectory]
@@ -67,36 +67,36 @@ class _Recorder:
 
 
 def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
-    """Return what ``study`` asks of an engine of ``kinds`` that tells no stick."""
+    """Return the motions that ``study`` requests from an engine of ``kinds`` that reports no phases."""
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
     for only in _pieces(study):
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
         found = _measured(study, exact, kinds, only)
-        with suppress(Exception):  # whatever a study does with answers that are off
+        with suppress(Exception):  # a study may raise anything for wrong answers
             _measured(study, off, kinds, only)
         if list(exact.asked) != list(off.asked):
             adaptive += found
-        elif found > 0:  # not of another kind of system
+        elif found > 0:  # no claims if the system is of another kind
             claims += found
             motions |= exact.asked
     return Planned(tuple(motions), claims, adaptive)
 
 
 def _pieces(study: Study) -> Iterator[tuple[str, ...]]:
-    """Yield what can be measured by itself: each claim."""
+    """Yield the selection of each claim, since claims can be measured separately."""
     for part in study.sentences().values():
         yield (part,)
 
 
 def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], only: tuple[str, ...]) -> int:
-    """Return how many claims are made of what the recorder answers."""
+    """Return the number of claims measured with the answers of ``recorder``."""
     return len(study.measure(Engine("plan", recorder, kinds, phases=False), only=only).claims)
 
 
 class _Truth:
-    """Answers of the reference, each computed once, without phases: files tell none."""
+    """Cached answers of the reference, without phases because files contain none."""
 
     def __init__(self) -> None:
         self._known: dict[bytes, Trajectory] = {}
@@ -113,7 +113,7 @@ class _Truth:
     def off(
         self, line: bytes, system: System, state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the motion with errors, which are the same each time."""
+        """Return the motion with reproducible random errors."""
         found = self.exact(line, system, state, times, tolerance)
         draw = np.random.default_rng(int(hashlib.sha256(line).hexdigest()[:16], 16))
         size = OFF_BY * np.max(np.abs(found.states), axis=0)
@@ -123,7 +123,7 @@ class _Truth:
 
 
 def write_plan(folder: Path, kinds: Sequence[str], motions: Iterable[bytes]) -> None:
-    """Write the index, and a file for each of the questions ``motions``; answers that are there stay."""
+    """Write the index and a file for each question in ``motions``; existing answers are kept."""
     names = []
     for line in motions:
         names.append(name_of(line))

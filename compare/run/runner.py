@@ -27,30 +27,30 @@ from compare.run.workers import Done, Failure, Workers
 
 @dataclass
 class Run:
-    """What was asked for, and what of it is there.
+    """The requested measurements and their results so far.
 
     Parameters
     ----------
     studies, engines : tuple
-        What was asked for; ``engines`` are names, without "theory".
+        Requested studies, and names of the requested engines without "theory".
     contact_only : tuple of str
         Names of the engines that take part only in studies in which the contact decides.
     about : tuple of str
-        What there is to know of the engines.
+        Descriptions of the engines.
     errata : tuple of Erratum
-        Whose evidence was asked for.
+        Errata whose evidence was requested.
     outcomes : dict
-        Findings or failure for each (study, engine or "theory") that came to an end.
+        Findings or failure for each finished (study, engine or "theory").
     seconds : dict
-        How long each took.
+        Duration of each measurement in s.
     drawings : dict
         Drawing or failure for each study.
     evidence : dict
-        Evidence or failure for each erratum, by its place in ``errata``.
+        Evidence or failure for each erratum, by its index in ``errata``.
     versions : dict
-        Of the engines, by name; "" where none is known.
+        Versions of the engines by name; "" if unknown.
     interrupted : bool
-        Whether Ctrl-C came before all was done.
+        True if Ctrl-C ended the run early.
 
     """
 
@@ -67,7 +67,7 @@ class Run:
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
-        """Return who takes part in ``study``: "theory" if it has any, and the engines that it is about."""
+        """Return the columns of ``study``: "theory" if it has one, and the engines that take part."""
         theory = (THEORY,) if study.has_theory else ()
         return theory + tuple(name for name in self.engines if self._takes_part(name, study))
 
@@ -76,7 +76,7 @@ class Run:
 
     @property
     def missing(self) -> tuple[tuple[str, str], ...]:
-        """(study, engine) of all that did not come to an end."""
+        """Pairs (study, engine) without an outcome."""
         return tuple(
             (study.name, column)
             for study in self.studies
@@ -86,11 +86,11 @@ class Run:
 
     @property
     def done(self) -> int:
-        """How many pieces of work came to an end."""
+        """Number of finished pieces of work."""
         return len(self.outcomes) + len(self.drawings) + len(self.evidence)
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of all that found any, by engine."""
+        """Return the arrays of the findings by engine, without empty ones."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
         return {
             column: outcome.data
@@ -115,22 +115,22 @@ def run(
     Parameters
     ----------
     studies, engines, errata
-        What to do.
+        Studies to measure, engines to measure them with, and errata to check.
     folder : Path
-        Findings and drawings are written there as they come in; what was drawn of equal data is taken from there.
+        Folder for findings and drawings, written as they arrive. Drawings of equal data are reused from it.
     jobs : int
         Number of processes.
     limit : float, optional
-        Seconds after which a measurement is given up, as its engine's failure.
+        Longest duration of a piece of work in s; exceeding it is a failure.
     resume : bool
-        Take from ``folder`` what has the same digest of code and libraries, see ``compare.run.provenance``.
+        Reuse findings in ``folder`` with the same digest of code and libraries, see ``compare.run.provenance``.
     progress : callable
-        Called with the number of finished and of all pieces of work, and the name of the last one.
+        Called with the number of finished pieces of work, their total and the name of the last one.
 
     Returns
     -------
     Run
-        With ``interrupted`` set, and without what was not finished, after Ctrl-C.
+        The results; after Ctrl-C incomplete, with ``interrupted`` set.
 
     """
     result = Run(
@@ -150,7 +150,7 @@ def run(
 
 
 class _Runner:
-    """Submits the measurements, and each study's drawing once its last is there, unless equal data were drawn."""
+    """Scheduler of the measurements, and of each study's drawing after its last one unless a stored drawing fits."""
 
     def __init__(
         self, result: Run, workers: Workers, folder: Path, progress: Callable[[int, int, str], None]
@@ -190,7 +190,7 @@ class _Runner:
             self._progress(result.done, total, name)
 
     def _take(self, done: Done) -> str:
-        """File what is finished where it belongs and return its name."""
+        """Store a finished piece of work and return its name."""
         kind: Any
         name: Any
         kind, name = done.key  # type: ignore[misc]
@@ -223,10 +223,10 @@ class _Runner:
 
 
 def measured(study: Study, engine: Engine | str | None, only: Collection[str] = ()) -> Findings:
-    """Run the study's ``measure``, or its ``theory`` without an engine; refuse what is no ``Findings``.
+    """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    The engine of a name is imported here, in a process that may hang or crash. ``only`` are the parts of the study
-    that are asked for, as ``Study.measure`` has them; empty for all.
+    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
+    ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
@@ -252,7 +252,7 @@ def _identities(study: Study) -> set[str]:
 
 
 def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
-    """Return the engines of the given names, as ``compare.engines.engines`` does, by one of the ``workers``.
+    """Return the engines of the given names, as ``compare.engines.engines`` does, using one of the ``workers``.
 
     Raises ``ValueError`` for a name that is unknown or that the process could not load.
     """
@@ -273,7 +273,7 @@ def _loaded(name: str, workers: Workers) -> Engine:
 
 
 def _described(name: str) -> Engine | str:
-    """Return the engine, which holds nothing of the module that it is from, or why there is none."""
+    """Return the engine, without references to its module, or the message of its ``ValueError``."""
     try:
         return engines([name])[0]
     except ValueError as error:

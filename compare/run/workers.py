@@ -1,6 +1,6 @@
-"""Processes that stay alive for one piece of work after the other, and may crash alone.
+"""Reusable worker processes; a crash of one does not affect the others.
 
-``concurrent.futures`` gives up its whole pool when one process dies, as an engine of compiled code may.
+``concurrent.futures`` gives up its whole pool when one process dies, and compiled engines may crash.
 """
 
 from __future__ import annotations
@@ -29,41 +29,41 @@ from compare.output.outside_text import cause_of_end, printable
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
-"""The cores are busy with one process each: threads of the linear algebra would only get in their way."""
+"""Environment that disables threads of linear algebra, because each core already runs a process."""
 
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
-"""Until it has been told this process's path, a new one would look into the current folder first."""
+"""Environment that keeps a new process from importing from the current folder before it receives this one's path."""
 
 STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
-"""Their file descriptors."""
+"""File descriptors of the standard streams."""
 
 MOST_ERRORS = 100_000
-"""Characters of a process's standard error that are handed on after a piece of work."""
+"""Largest number of characters of a process's standard error that are forwarded at once."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
-"""How the loader of shared libraries says it."""
+"""Messages of the loader of shared libraries when memory is short."""
 
 FAREWELL = 1.0
-"""Time in s until a process whose connection has closed must have an exit status."""
+"""Longest wait, in s, for the exit code of a process whose connection has closed."""
 
 TICK = 0.005
-"""Interval in s at which its exit status is checked."""
+"""Interval, in s, between checks of the exit code."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a piece of work has no result: a sentence, and where it went wrong ("pin.py:12 in simulate")."""
+    """A failed piece of work: the reason and the locations in the code ("pin.py:12 in simulate"), innermost last."""
 
     reason: str
     where: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Make its text printable: most of it is an engine's."""
+        """Make the texts printable, because most of them come from an engine."""
         object.__setattr__(self, "reason", printable(self.reason))
         object.__setattr__(self, "where", tuple(map(printable, self.where)))
 
     def __str__(self) -> str:
-        """Return the sentence with the innermost place in brackets."""
+        """Return the reason, followed by the innermost location in brackets."""
         return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
 
 
@@ -85,10 +85,9 @@ class _Work:
 
 
 class Workers:
-    """Up to ``jobs`` processes; use as a context manager.
+    """A pool of at most ``jobs`` processes, used as a context manager.
 
-    With a ``limit`` in s a piece of work that takes longer has failed. Leaving the context ends the processes,
-    whatever they do.
+    A piece of work that takes longer than ``limit`` (in s) fails. Leaving the context kills all processes.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -106,7 +105,7 @@ class Workers:
     ) -> None:
         for worker in self._processes:
             worker.end()
-        self._temporary.cleanup()  # a process that was killed has left its files there
+        self._temporary.cleanup()  # killed processes leave files behind
 
     def submit(
         self,
@@ -116,10 +115,10 @@ class Workers:
         first: bool = False,
         owner: str = "",
     ) -> None:
-        """Put ``function(*arguments)`` into the queue, at its end unless ``first``.
+        """Append ``function(*arguments)`` to the queue, or prepend it if ``first``.
 
-        A process that has worked for an ``owner``, a foreign engine for example, works for no other one: foreign code
-        may have changed the modules in it.
+        A process that has worked for an ``owner``, for example a foreign engine, never works for another owner,
+        because foreign code may have changed its modules.
         """
         work = _Work(key, function, arguments, owner)
         if first:
@@ -128,19 +127,19 @@ class Workers:
             self._queue.append(work)
 
     def finished(self) -> Iterator[Done]:
-        """Yield what is finished as it finishes, until nothing is left; more may be submitted meanwhile."""
+        """Yield each result as soon as it is available, until no work is left; you may submit more meanwhile."""
         while self._queue or any(worker.key is not None for worker in self._processes):
             yield from self._start()
             yield from self._collect()
 
     def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:
-        """Return the result of ``function(*arguments)`` or its ``Failure``, when no other work is submitted."""
+        """Return the result of ``function(*arguments)`` or its ``Failure``; no other work may be pending."""
         self.submit("", function, *arguments, owner=owner)
         (done,) = self.finished()
         return done.value
 
     def _start(self) -> Iterator[Done]:
-        """Give work to all that are idle; what can't be sent to another process has failed."""
+        """Give work to idle processes, and yield a failure for work that cannot be pickled."""
         while self._queue:
             worker = next((worker for worker in self._processes if worker.key is None), None)
             if worker is None and len(self._processes) == self._jobs:
@@ -163,7 +162,7 @@ class Workers:
             worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
-        """Wait for the first result, or for the first limit to be reached, and yield what is there by then."""
+        """Wait for the first result or time limit, and yield all results and timeouts up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
         left = None
         if self._limit is not None and busy:
@@ -184,10 +183,10 @@ class Workers:
 
 
 class _Worker:
-    """One process and the connection to it; ``key`` is that of its present work, None while it is idle.
+    """A process and the connection to it; ``key`` identifies its current work and is None while it is idle.
 
-    ``started`` is when that work was given to it, in s of the monotonic clock. The process writes its temporary files
-    into the folder ``temporary``.
+    ``started`` is the time, in s of the monotonic clock, at which it received the work. The process writes its
+    temporary files to the folder ``temporary``.
     """
 
     def __init__(self, temporary: str) -> None:
@@ -199,7 +198,7 @@ class _Worker:
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
         self._errors = _Errors()
-        # Ctrl-C is this process's to handle
+        # only this process handles Ctrl-C
         environment = ONE_THREAD | SAFE_PATH | {"TMPDIR": temporary}
         with interrupts_ignored(), _environment(environment), self._errors.written():
             self._process.start()
@@ -207,7 +206,7 @@ class _Worker:
 
     def start(self, key: Hashable, message: bytes, owner: str) -> None:
         self.key, self.owner, self.started = key, owner, time.monotonic()
-        with suppress(BrokenPipeError):  # its end shows in result()
+        with suppress(BrokenPipeError):  # result() reports that the process has ended
             self.connection.send_bytes(message)
 
     def result(self) -> Done:
@@ -228,8 +227,8 @@ class _Worker:
         self.dead = True
         if self._process.pid is not None and hasattr(os, "killpg"):
             with suppress(ProcessLookupError, PermissionError):  # it leads no group yet, or no longer
-                os.killpg(self._process.pid, signal.SIGKILL)  # with the processes that an engine has started
-        self._process.kill()  # compiled code may not listen to less
+                os.killpg(self._process.pid, signal.SIGKILL)  # includes processes started by an engine
+        self._process.kill()  # compiled code may ignore weaker signals
         self._process.join()
         self._errors.close()
         self.connection.close()
@@ -237,7 +236,7 @@ class _Worker:
     def _exit_code(self) -> int | None:
         """Return the exit code of the process, None if it has none after ``FAREWELL``.
 
-        ``join`` would wait for ever: a process that closes all its descriptors looks as if it had ended.
+        ``join`` could block forever, because a process that closes all its descriptors appears to have ended.
         """
         deadline = time.monotonic() + FAREWELL
         while self._process.exitcode is None and time.monotonic() < deadline:
@@ -246,7 +245,7 @@ class _Worker:
 
 
 class _Errors:
-    """What a process writes to its standard error: it may be all that tells why it ended, before it even began."""
+    """The standard error of a process, which may hold the only reason why it ended, even during start-up."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115
@@ -254,7 +253,7 @@ class _Errors:
 
     @contextmanager
     def written(self) -> Iterator[None]:
-        """Let a process that starts inside write its errors here; on Windows it writes where this one does."""
+        """Capture the standard error of processes started in this context; on Windows they share this one's."""
         try:
             own = os.dup(STANDARD_ERROR)
         except OSError:  # closed by the caller
@@ -270,16 +269,16 @@ class _Errors:
             os.close(own)
 
     def close(self) -> None:
-        """Hand on what is left, and let go of the file."""
+        """Forward the remaining text and close the file."""
         self.hand_on()
         self._file.close()
 
     def hand_on(self) -> str:
-        """Write what is new to the standard error of this process, and return it."""
+        """Write new text to the standard error of this process, and return it."""
         size = os.fstat(self._file.fileno()).st_size
         if size == self._handed_on:
             return ""
-        # Both processes share one place in the file, where the other one writes.
+        # Both processes share the file position, so reading must not move it.
         new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
         self._handed_on += len(new)
         text = printable(new.decode(errors="replace"), MOST_ERRORS)
@@ -290,13 +289,13 @@ class _Errors:
 
 
 def _serve(connection: Connection) -> None:
-    """Work until the other end of the connection is closed."""
+    """Process work until the other end of the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
     here = os.getpid()
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    sys.stdout = sys.stderr  # what an engine prints is handed on as its errors are
+    sys.stdout = sys.stderr  # forwards the output of engines like their errors
     with suppress(OSError):  # closed by the caller
         os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
     try:
@@ -317,7 +316,7 @@ def _serve(connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process in the middle of its work when the one that started it is no more, killed perhaps."""
+    """End this process, even while it works, when its parent process has ended."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         wait([parent.sentinel])
@@ -330,29 +329,29 @@ def _unpickled_call(message: bytes) -> Any:
 
 
 def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return the result of the call, or its failure."""
+    """Return the result of the call, or a ``Failure`` if it raises."""
     try:
         return function(*arguments)
-    except BaseException as error:  # whatever an engine raises, SystemExit too: the others go on
+    except BaseException as error:  # including SystemExit, so the process survives
         return failure(error)
 
 
 def failure(error: BaseException) -> Failure:
-    """Return what an exception says as a sentence, and the lines of code on its way, innermost last."""
+    """Return the message of an exception and its traceback, innermost location last."""
     lines = printable(error).strip().splitlines()
-    # ValueError and RuntimeError carry sentences; what a KeyError says is understood only with its name
+    # ValueError and RuntimeError carry sentences; the message of a KeyError, for example, needs its name
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
     if lacks_memory(error):
         reason = f"there is not enough memory ({reason})"
     frames = traceback.extract_tb(error.__traceback__)
-    # file names only: a report says nothing about the machine that it was made on
+    # file names only, because a report must not reveal the folders of its machine
     where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)
     return Failure(reason, tuple(line for line in where if not line.startswith("workers.py:")))
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Return whether an exception, or one behind it, says so: a library that can't be loaded for that reason too."""
+    """Return whether an exception or one of its causes reports a lack of memory, also while loading a library."""
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
@@ -364,7 +363,7 @@ def lacks_memory(error: BaseException | None) -> bool:
 
 @contextmanager
 def interrupts_ignored() -> Iterator[None]:
-    """Ignore Ctrl-C inside; what starts there inherits it. Without effect outside of the main thread."""
+    """Ignore Ctrl-C in this context and in processes started in it; has no effect outside the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
