@@ -21,7 +21,6 @@ from typing import Any, cast
 
 import exudyn as exu
 import numpy as np
-from numpy.typing import NDArray
 
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
@@ -144,8 +143,8 @@ class AxialStick:
         Load and sliding coefficient.
     static_ratio : float
         Static over sliding friction, >= 1.
-    lock : int
-        Object number of the constraint that locks the contact.
+    locks : tuple of int
+        Object numbers of the constraints that lock the contact, one for each direction of slip.
     mode : Mode or None
         Present mode, None before the first run.
     running : bool
@@ -160,7 +159,7 @@ class AxialStick:
     reference: FloatArray
     factors: LoadAndCoefficient
     static_ratio: float
-    lock: int = -1
+    locks: tuple[int, ...] = ()
     mode: Mode | None = None
     running: bool = False
     idle: bool = False
@@ -186,20 +185,13 @@ class AxialStick:
     def _gradient_at(self, coordinates: FloatArray) -> list[float]:
         return cast(list[float], slip_jacobian(self.kinds, coordinates)[0][2].tolist())
 
+    def rows(self, coordinates: FloatArray) -> FloatArray:
+        """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
+        return np.array([self._rotors or self._gradient_at(coordinates)])
+
     def slip(self, q: Sequence[float], q_t: Sequence[float]) -> float:
         """Return S = φ̇ − ω in rad/s."""
         return float(sum(map(mul, self.gradient(q), q_t)))
-
-    def held_by(self, others: FloatArray, places: NDArray[Any]) -> bool:
-        """Return whether constraints with the gradients ``others``, shape (m, n), hold both bodies on one axis.
-
-        The coordinates of the nodes have their reference values and the ``places`` among all n.
-        """
-        if self._rotors is not None:
-            return True
-        across = np.zeros((2, others.shape[1]))
-        across[:, places] = slip_jacobian(self.kinds, self.reference)[0][:2]
-        return spanned(across, others)
 
     def sliding_moment(self, t: float, spin: float) -> float:
         """Return the magnitude of the moment in N m at the time t (s) and the relative spin (rad/s)."""
@@ -221,11 +213,12 @@ class AxialStick:
 
     def held_moment(self, mbs: Any) -> float:
         """Return the moment in N m that the constraint exerts on the disc in the current motion."""
-        return -float(mbs.GetObjectOutput(self.lock, exu.OutputVariableType.Force))
+        return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
-    def transmitted_moment(self, mbs: Any, t: float, spin: float) -> float:
-        """Return the moment in N m on the disc in the current motion, whatever the mode."""
-        return self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, spin)
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
+        """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
+        moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
+        return np.array([0.0, 0.0, moment])
 
     def capacity_share(self, mbs: Any, t: float) -> float:
         """Return the moment over the largest one: 1 while the contact slides, 0 while it is open."""
@@ -263,21 +256,6 @@ class AxialStick:
             _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
             slope = int(self.mode or 0) * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
         return velocity_factor * slope * np.outer(gradient, gradient)
-
-    def constraint(
-        self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], velocity_level: bool
-    ) -> list[float]:
-        """Return the slip (rad/s) that the constraint keeps at zero, as its user function.
-
-        In contrast to a connector's, its coordinates ``q`` contain the reference values.
-        """
-        return [sum(map(mul, self._gradient_at(np.array(q)), q_t))]
-
-    def constraint_jacobian(
-        self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], velocity_level: bool
-    ) -> FloatArray:
-        """Return the derivatives of the slip by the velocities, shape (1, n), as the constraint's user function."""
-        return np.array([self._gradient_at(np.array(q))])
 
 
 def spanned(rows: FloatArray, by: FloatArray) -> bool:

@@ -25,6 +25,9 @@ Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArr
 DIFFERENCE = 1e-5
 """Relative step of the central differences for the derivatives of μN by the motion."""
 
+SLOWEST = 1e-9
+"""Slip speed in m/s below which this step stays constant."""
+
 
 class LoadAndCoefficient:
     """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
@@ -103,7 +106,7 @@ class LoadAndCoefficient:
         self, t: float, radius: float, slip_speed: float, relative_spin: float
     ) -> FloatArray:
         """Return the derivatives of μN by radius (N/m), slip speed (N s/m) and relative spin (N s), shape (3,)."""
-        rim, epsilon = self.contact_radius, self.geometry[3]
+        rim, epsilon = self.contact_radius, max(self.geometry[3], SLOWEST)
         motion = {"radius": radius, "slip_speed": slip_speed, "relative_spin": relative_spin}
         scales = (
             max(radius, rim),

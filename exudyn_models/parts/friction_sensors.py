@@ -16,6 +16,7 @@ import numpy as np
 from exudyn_models.forces.axial_pairs import AxialStick, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.planar_stick import PlanarStick
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
@@ -111,7 +112,9 @@ class RingFriction:
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
         )
-        if self._stick is not None:  # asks its factors each time
+        if isinstance(self._stick, PlanarStick):
+            self._stick.sliding = force_and_jacobian(self._kinds, self._reference, factors)
+        if self._stick is not None:  # its own functions ask the factors each time
             return
         force, jacobian = force_and_jacobian(self._kinds, self._reference, factors)
         self._functions.update(force=force, jacobian=jacobian)
@@ -167,14 +170,21 @@ class RingFriction:
                 )
             asked = True
             try:
-                if self._stick is not None:
-                    return self._value_of_stick(mbs, t, quantity, float(slip[2]))
+                if self._stick is not None and quantity == "mode":
+                    return [float(self._stick.visible_mode)]
+                if self._stick is not None and quantity == "capacity_share":
+                    return [self._stick.capacity_share(mbs, t)]
                 if quantity in ("capacity_share", "mode"):
                     creep = self._creep(t, slip, angle, radius)
                     return [
                         mode.at(t, creep, float(slip[2])) if quantity == "mode" else min(1.0, creep or 0.0)
                     ]
-                friction = self._friction(t, slip, angle, radius)
+                stick = self._stick
+                friction = (
+                    self._friction(t, slip, angle, radius)
+                    if stick is None
+                    else stick.wrench(mbs, t, slip, radius)
+                )
             finally:
                 asked = False
             if quantity == "transmitted_moment":
@@ -184,20 +194,6 @@ class RingFriction:
             return cast(list[float], (np.array(axes[:2]).T @ friction[:2]).tolist())
 
         return values
-
-    def _value_of_stick(self, mbs: Any, t: float, quantity: Quantity, spin: float) -> list[float]:
-        """Return a quantity of a contact that sticks exactly, at the time t (s) and the relative spin (rad/s)."""
-        stick = cast(AxialStick, self._stick)
-        if quantity == "radial_force":
-            return [0.0, 0.0, 0.0]
-        if quantity == "mode":
-            return [float(stick.visible_mode)]
-        moment = stick.transmitted_moment(mbs, t, spin)
-        if quantity == "transmitted_moment":
-            return [moment]
-        if quantity == "power":
-            return [-moment * spin]
-        return [stick.capacity_share(mbs, t)]
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of friction in W, in the form that ``add_energy_balance`` expects."""

@@ -7,6 +7,7 @@ It applies the full reaction to the master, see ``connector``. The law is in ``f
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, Protocol
 
 import exudyn.itemInterface
@@ -16,19 +17,20 @@ from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.planar_stick import PlanarStick
 from exudyn_models.forces.slip_kinematics import GROUND, KINDS, ROTOR, SPATIAL, TRANSLATIONS, Kinds, frame
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.thermal_node import ThermalNode
-from reference_model.systems import finite_number
+from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 ALL = tuple(KINDS.values())
 
-EXACT = 1e-6
-"""Speed in m/s in place of ε where a contact sticks exactly. It only scales differences for derivatives of μN."""
+UNREGULARISED = 1e-200
+"""Speed in m/s in place of ε where a contact sticks exactly, far below any slip at which it slides."""
 
 
 class AddFriction(Protocol):
@@ -162,14 +164,14 @@ def add_ring_friction(
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     stick = None
     if regularisation is None:
-        sliding = LoadAndCoefficient(contact, coefficient, normal_load, plates=plates)
-        factors, stick = sliding, AxialStick(kinds, reference, sliding, static_ratio)
+        factors = LoadAndCoefficient(contact, coefficient, normal_load, plates=plates)
+        stick = _exact_stick(kinds, reference, factors, static_ratio)
     force, jacobian = (
         (stick.force, stick.jacobian) if stick else force_and_jacobian(kinds, reference, factors)
     )
     item = add_connector(mbs, nodes, force, jacobian)
     if stick is not None:
-        stick.lock = int(_add_lock(mbs, nodes, stick))
+        stick.locks = _add_locks(mbs, nodes, stick)
     functions = {"force": force, "jacobian": jacobian}
     friction = RingFriction(mbs, item, nodes, kinds, reference, factors, functions, thermal_node, stick)
     if thermal_node is not None:
@@ -177,26 +179,43 @@ def add_ring_friction(
     return friction
 
 
-def _add_lock(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> Any:
-    """Add the inactive constraint on the slip of both nodes; return its ``ObjectIndex``."""
+def _exact_stick(
+    kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient, static_ratio: float
+) -> AxialStick:
+    if kinds[1] == ROTOR and kinds[0] in (ROTOR, GROUND):
+        return AxialStick(kinds, reference, factors, static_ratio)
+    if factors.geometry[1] > 1:
+        raise ValueError(
+            f"contact_points = {factors.geometry[1]}: each point may stick alone, so points on bodies that can slide "
+            "sideways need a regularisation; leave contact_points out for a circle"
+        )
+    sliding = force_and_jacobian(kinds, reference, factors)
+    return PlanarStick(kinds, reference, factors, static_ratio, sliding=sliding)
+
+
+def _add_locks(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> tuple[int, ...]:
+    """Add the inactive constraints on the slip of both nodes, one for each direction; return their object numbers."""
     if len(nodes) == 1:
         nodes = [mbs.AddNode(items.NodePointGround()), *nodes]
-    if stick.kinds[1] == ROTOR and stick.kinds[0] in (ROTOR, GROUND):
+    if not isinstance(stick, PlanarStick):
         markers = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]
-        return mbs.AddObject(
-            items.ObjectConnectorCoordinate(markerNumbers=markers, velocityLevel=True, activeConnector=False)
+        lock = items.ObjectConnectorCoordinate(
+            markerNumbers=markers, velocityLevel=True, activeConnector=False
         )
+        return (int(mbs.AddObject(lock)),)
     markers = [mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
-    return mbs.AddObject(
+    locks = (
         items.ObjectConnectorCoordinateVector(
             markerNumbers=markers,
             scalingMarker0=np.zeros((1, 1)),  # one equation
             velocityLevel=True,
-            constraintUserFunction=stick.constraint,
-            jacobianUserFunction=stick.constraint_jacobian,
+            constraintUserFunction=partial(stick.constraint, i),
+            jacobianUserFunction=partial(stick.constraint_jacobian, i),
             activeConnector=False,
         )
+        for i in range(3)
     )
+    return tuple(int(mbs.AddObject(lock)) for lock in locks)
 
 
 def checked_pair(
@@ -247,7 +266,7 @@ def _checked_geometry(
     pressure: Pressure,
 ) -> Contact:
     """Return the contact, with 1 N in place of μN; raise ``ValueError`` if it is invalid."""
-    regularisation = EXACT if regularisation is None else regularisation
+    regularisation = UNREGULARISED if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         inner = radius

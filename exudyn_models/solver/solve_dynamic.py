@@ -17,8 +17,13 @@ from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import INTERVALS, StepCheck
-from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact, sticking_contacts
-from exudyn_models.solver.switching import first_modes, run_switching
+from exudyn_models.solver.sticking_contacts import (
+    ModeChange,
+    StickingContact,
+    first_modes,
+    sticking_contacts,
+)
+from exudyn_models.solver.switching import run_switching
 from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -133,7 +138,7 @@ def _solve(
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
-            repairs.enter_context(first_modes(mbs, contacts, start))
+            contacts = repairs.enter_context(first_modes(mbs, contacts, start))
             if jumps is not None:
                 repairs.enter_context(starting_rates(mbs, start))
                 repairs.enter_context(newton_without_restart(mbs, options.newton))

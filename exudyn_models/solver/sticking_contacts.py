@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, cast
 
 import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
+from exudyn_models.forces.planar_stick import SPIN, PlanarStick, SlipMotion
+from exudyn_models.solver.starting_rates import initialised_solver
+from reference_model.systems import FloatArray
 
 CURRENT = exu.ConfigurationType.Current
 
@@ -37,12 +42,12 @@ class ModeChange:
 
 @dataclass(frozen=True, eq=False)
 class StickingContact:
-    """Contact of an assembled model that sticks exactly.
+    """Contact on one axis that sticks exactly, in an assembled model.
 
     Parameters
     ----------
-    item, lock : int
-        Object numbers of the connector and of the constraint that locks it.
+    item : int
+        Object number of the connector.
     stick : AxialStick
         Law of friction and present mode.
     places : array of int
@@ -51,9 +56,11 @@ class StickingContact:
     """
 
     item: int
-    lock: int
     stick: AxialStick
     places: NDArray[Any]
+
+    rest_share: ClassVar[float] = 1e-9
+    """Share of a step within which friction stops a contact that counts as resting."""
 
     @property
     def mode(self) -> Mode:
@@ -64,27 +71,36 @@ class StickingContact:
     def enter(self, mbs: Any, mode: Mode) -> None:
         """Switch to a mode."""
         self.stick.mode = mode
-        mbs.SetObjectParameter(self.lock, "activeConnector", mode == Mode.LOCKED)
+        mbs.SetObjectParameter(self.stick.locks[0], "activeConnector", mode == Mode.LOCKED)
 
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
         slip = self.slip(mbs, configuration=exu.ConfigurationType.Initial)
         self.enter(mbs, Mode.OPEN if self.stick.holding_moment(t) == 0.0 else Mode(int(np.sign(slip))))
 
-    def leave(self, mbs: Any, t: float) -> None:
-        """Leave a mode that has ended for the one that follows if no other contact changes."""
+    def following(self, mbs: Any, t: float) -> Mode:
+        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
         if self.stick.holding_moment(t) == 0.0:
-            self.enter(mbs, Mode.OPEN)
-        elif self.mode == Mode.OPEN:
-            self.enter(mbs, Mode(int(np.sign(self.slip(mbs)))))
-        elif self.mode == Mode.LOCKED:
-            self.enter(mbs, self.driven(mbs))
-        else:
-            self.enter(mbs, Mode.LOCKED)
+            return Mode.OPEN
+        if self.mode == Mode.OPEN:
+            return Mode(int(np.sign(self.slip(mbs))))
+        return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
 
     def driven(self, mbs: Any) -> Mode:
         """Return the direction in which its load drives a locked contact."""
         return Mode.BACKWARD if self.stick.held_moment(mbs) > 0.0 else Mode.FORWARD
+
+    def rows(self, mbs: Any) -> FloatArray:
+        """Return the gradients of the locked slips by all velocities of the model, at its initial values."""
+        return self._widened(mbs, self.stick.rows)
+
+    def _widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        data = mbs.systemData
+        coordinates = data.GetODE2Coordinates(exu.ConfigurationType.Initial)[self.places]
+        gradients = gradients_at(self.stick.reference + coordinates)
+        rows = np.zeros((len(gradients), data.ODE2Size()))
+        rows[:, self.places] = gradients
+        return rows
 
     def slip(self, mbs: Any, ahead: float = 0.0, configuration: Any = CURRENT) -> float:
         """Return S in rad/s, or what it will be a short time ``ahead`` (s)."""
@@ -114,7 +130,7 @@ class StickingContact:
         return int(self.mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the moment on a locked contact over the largest one it can hold, 0 for any other."""
+        """Return the load of a locked contact over the largest one it can hold, 0 for any other."""
         return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
 
     def reverses(self, mbs: Any, time: float) -> bool:
@@ -122,6 +138,92 @@ class StickingContact:
         if not self.stick.slides:
             return False
         return int(self.mode) * self.slip(mbs, time) < 0.0
+
+
+class PlanarContact(StickingContact):
+    """Contact that sticks exactly between bodies that may slide sideways, in an assembled model."""
+
+    rest_share: ClassVar[float] = 1e-6
+
+    @property
+    def planar(self) -> PlanarStick:
+        """Law of friction."""
+        return cast(PlanarStick, self.stick)
+
+    def allow(self, mbs: Any, velocities: FloatArray) -> None:
+        """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model."""
+        self.planar.allow(self.slip_rows(mbs) @ velocities)
+
+    def slip_rows(self, mbs: Any) -> FloatArray:
+        """Return the map from all velocities of the model to the slip at its initial values, shape (3, n)."""
+        return self._widened(mbs, self.planar.slip_map)
+
+    def scaled(self, gradient: FloatArray) -> FloatArray:
+        """Return a gradient of P as pure numbers."""
+        return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
+
+    def enter(self, mbs: Any, mode: Mode) -> None:
+        """Switch to a mode."""
+        self.stick.mode = mode
+        count = self.planar.basis.shape[1] if mode == Mode.LOCKED else 0
+        for i, lock in enumerate(self.stick.locks):
+            mbs.SetObjectParameter(lock, "activeConnector", i < count)
+
+    def enter_first(self, mbs: Any, t: float) -> None:
+        """Switch to the mode that load and initial slip suggest."""
+        self.enter(mbs, self._free_mode(mbs, t, exu.ConfigurationType.Initial))
+
+    def following(self, mbs: Any, t: float) -> Mode:
+        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
+        if self.mode == Mode.LOCKED and self.planar.holding_force(t) > 0.0:
+            return self.driven(mbs)
+        return self._free_mode(mbs, t, CURRENT)
+
+    def driven(self, mbs: Any) -> Mode:
+        """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
+        _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
+        return _sliding_mode(self.planar.direction)
+
+    def motion(self, mbs: Any, ahead: float, configuration: Any = CURRENT) -> SlipMotion:
+        """Return the present motion, with its rate as a difference over the time ``ahead`` (s)."""
+        data, places = mbs.systemData, self.places
+        return self.planar.motion(
+            data.GetODE2Coordinates(configuration)[places],
+            data.GetODE2Coordinates_t(configuration)[places],
+            data.GetODE2Coordinates_tt(configuration)[places],
+            ahead,
+        )
+
+    def slid(self, mbs: Any, step: float) -> SlipMotion:
+        """Return the motion after a step of sliding, and note its direction for the mode."""
+        motion = self.motion(mbs, step)
+        self.stick.mode = _sliding_mode(motion.slip)
+        return motion
+
+    def margin(self, mbs: Any, t: float) -> float:
+        """Return a number that falls below zero when the present mode ends.
+
+        That is 1 minus the share of the load that a locked contact holds, and ±1 where load or coefficient is zero.
+        A sliding contact does not end here but at a step of its own.
+        """
+        if (self.planar.holding_force(t) == 0.0) != (self.mode == Mode.OPEN):
+            return -1.0
+        return 1.0 if self.mode != Mode.LOCKED else 1.0 - self.stick.capacity_share(mbs, t)
+
+    def reverses(self, mbs: Any, time: float) -> bool:
+        """Return whether a sliding contact stops within a ``time`` (s) so short that it rests."""
+        return self.stick.slides and not self.stick.idle and self.motion(mbs, time).remaining < time
+
+    def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
+        """Return the mode of a contact that has not been locked."""
+        if self.planar.holding_force(t) == 0.0:
+            return Mode.OPEN
+        motion = self.motion(mbs, 1.0, configuration)
+        return _sliding_mode(motion.slip) if motion.potential > 0.0 else Mode.LOCKED
+
+
+def _sliding_mode(slip: FloatArray) -> Mode:
+    return Mode.BACKWARD if slip[2] < 0.0 else Mode.FORWARD
 
 
 def sticking_contacts(mbs: Any) -> list[StickingContact]:
@@ -132,5 +234,52 @@ def sticking_contacts(mbs: Any) -> list[StickingContact]:
         stick = getattr(force["function"], "__self__", None) if isinstance(force, dict) else None
         if isinstance(stick, AxialStick):
             places = np.array(mbs.systemData.GetObjectLTGODE2(item))
-            found.append(StickingContact(item, stick.lock, stick, places))
+            found.append(StickingContact(item, stick, places))
     return found
+
+
+@contextmanager
+def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[list[StickingContact]]:
+    """Let contacts have modes, at first those of load and slip at the start t (s) of a run.
+
+    Yields the contacts as those on one axis or in the plane, which the joints of the model decide.
+    """
+    try:
+        for contact in contacts:
+            contact.stick.running = True
+        joints = joint_rows(mbs, t, contacts)
+        found = [_located(mbs, contact, joints) for contact in contacts]
+        for contact in found:
+            contact.enter_first(mbs, t)
+        yield found
+    finally:
+        for contact in contacts:
+            contact.stick.running = False
+
+
+def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
+    """Return the contact on its axis, or in the plane if ``joints`` allow it to slip sideways."""
+    stick = contact.stick
+    if not isinstance(stick, PlanarStick):
+        return contact
+    planar = PlanarContact(contact.item, stick, contact.places)
+    stick.on_axis = stick.mean_radius > 0.0 and spanned(planar.slip_rows(mbs)[:2], joints)
+    stick.set_basis(SPIN)
+    return contact if stick.on_axis else planar
+
+
+def joint_rows(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> FloatArray:
+    """Return the gradients of all constraints except the locks of ``contacts``, shape (m, n).
+
+    They are derivatives by the n velocities of an assembled model at its initial values and the time t (s), up to
+    factors.
+    """
+    if not contacts:
+        return np.zeros((0, mbs.systemData.ODE2Size()))
+    data = mbs.systemData
+    with initialised_solver(mbs, t) as solver:
+        solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
+        solver.ComputeJacobianAE(mbs, 1.0, 1.0, 1.0)
+        gradients = np.array(solver.GetSystemJacobian())[-data.AEsize() :, : data.ODE2Size()]
+    locks = [int(data.GetObjectLTGAE(lock)[0]) for contact in contacts for lock in contact.stick.locks]
+    return np.delete(gradients, locks, axis=0)

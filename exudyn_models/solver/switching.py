@@ -3,6 +3,10 @@
 Between two changes the equations of motion are smooth. A step that passes a change is taken back and repeated with
 the length at which the change happens. There the modes are chosen so that all contacts obey Coulomb's law at once: a
 locked contact transmits no more than it can hold, and a sliding one does not reverse.
+
+The friction of a contact in the plane turns with its slip, ever faster as the slip vanishes. The steps therefore
+shrink in proportion to the slip, until the contact counts as resting. A contact that the load releases starts with a slip
+normal to the limit surface, as large as its load reaches within a millionth of a step, and the steps grow again.
 """
 
 from __future__ import annotations
@@ -14,19 +18,31 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
+import scipy.linalg
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
 from exudyn_models.solver.repeated_steps import user_function
-from exudyn_models.solver.starting_rates import initialised_solver, starting_rates
-from exudyn_models.solver.sticking_contacts import ModeChange, StickingContact
+from exudyn_models.solver.starting_rates import starting_rates
+from exudyn_models.solver.sticking_contacts import (
+    ModeChange,
+    PlanarContact,
+    StickingContact,
+    joint_rows,
+)
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 LOCATED = 1e-12
 """Share of a step within which the time of a change is found."""
 
-AT_REST = 1e-9
-"""Share of a step within which friction stops a contact that counts as resting."""
+APPROACH = 0.9
+"""Largest share of a contact's slip in the plane that its acceleration could remove within one step."""
+
+TURN = 0.05
+"""Largest change of the direction of friction in the plane within one step that a small slip has shortened."""
+
+FULL_TURN = 0.3
+"""Largest change of this direction within a step of full length."""
 
 ON_GRID = 1e-9
 """Share of a step by which the end of a step may miss a multiple of the step."""
@@ -36,19 +52,6 @@ ROUNDING = 1e-12
 
 MOST_CHANGES = 100
 """Largest number of changes at one time."""
-
-
-@contextmanager
-def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[None]:
-    """Let contacts have modes, at first those of load and slip at the start t (s) of a run."""
-    try:
-        for contact in contacts:
-            contact.stick.running = True
-            contact.enter_first(mbs, t)
-        yield
-    finally:
-        for contact in contacts:
-            contact.stick.running = False
 
 
 def run_switching(
@@ -67,27 +70,6 @@ def run_switching(
         if not update_initial_values:
             data.SetSystemState(before, initial)
     return run.changes
-
-
-def _constraint_rows(mbs: Any, t: float, locks: Sequence[int]) -> tuple[dict[int, FloatArray], FloatArray]:
-    """Return the gradient of each of the ``locks``, shape (n,), and those of all other constraints, shape (m, n).
-
-    They are derivatives by the n velocities of an assembled model at its initial values and the time t (s), up to
-    factors.
-    """
-    data = mbs.systemData
-    active = [mbs.GetObjectParameter(lock, "activeConnector") for lock in locks]
-    for lock in locks:
-        mbs.SetObjectParameter(lock, "activeConnector", True)
-    with initialised_solver(mbs, t) as solver:
-        solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
-        solver.ComputeJacobianAE(mbs, 1.0, 1.0, 1.0)
-        gradients = np.array(solver.GetSystemJacobian())[-data.AEsize() :, : data.ODE2Size()]
-    for lock, was_active in zip(locks, active, strict=True):
-        mbs.SetObjectParameter(lock, "activeConnector", was_active)
-    places = {lock: int(data.GetObjectLTGAE(lock)[0]) for lock in locks}
-    rows = {lock: gradients[place] for lock, place in places.items()}
-    return rows, np.delete(gradients, list(places.values()), axis=0)
 
 
 class _SensorRows:
@@ -129,13 +111,12 @@ class _Run:
         self._sensors = _SensorRows(settings.solution.sensors, self._start, self._step)
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
-        self._rows, self._others = _constraint_rows(mbs, self._start, [contact.lock for contact in contacts])
-        for contact in contacts:
-            if not contact.stick.held_by(self._others, contact.places):
-                raise ValueError(
-                    f"object {contact.item}: this contact has no regularisation, but no joints hold its bodies on "
-                    "one axis; give add_ring_friction a regularisation"
-                )
+        self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
+        self._joints = joint_rows(mbs, self._start, contacts)
+        # Longest next step (s) for contacts that slide in the plane, by their slip and after a release.
+        self._longest = self._growing = math.inf
+        self._slopes: dict[int, FloatArray] = {}
+        self._pauses = self._rests = False
         self._look: Callable[[float], bool] = lambda t: True
         #: All changes of modes so far.
         self.changes: list[ModeChange] = []
@@ -146,9 +127,10 @@ class _Run:
             self._settle()
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:
                 passed = self._go_on()
-                if passed is not None:
+                if passed is not None or self._rests:
                     before = [contact.stick.visible_mode for contact in self._contacts]
-                    self._land(*passed)
+                    if passed is not None:
+                        self._land(*passed)
                     self._settle()
                     self._note(before)
 
@@ -172,7 +154,7 @@ class _Run:
                 return True
             self._reached, self._begun = t, True
             self._stopped = not own(mbs, t)
-            return not self._stopped
+            return not self._stopped and not self._pauses
 
         return look
 
@@ -193,17 +175,20 @@ class _Run:
     def _go_on(self) -> tuple[float, Sequence[FloatArray]] | None:
         """Run to the end, or to the next multiple of the step if the last part has ended between two.
 
-        Return None, or the end of a step that has passed a change and was taken back, with the margins at both of
-        its ends.
+        Contacts in the plane may need shorter steps. Return None, or the end of a step that has passed a change and
+        was taken back, with the margins at both of its ends.
         """
-        data, start = self._mbs.systemData, self._reached
+        start = self._reached
         whole = (start - self._start) / self._step
         on_grid = abs(whole - round(whole)) < ON_GRID
         done = round(whole) if on_grid else math.floor(whole)
         end = self._end if on_grid or done + 1 == self._steps else self._start + (done + 1) * self._step
         steps = self._steps - done if on_grid else 1
+        if (longest := min(self._longest, self._growing)) < self._step:
+            end, steps = min(end, start + longest), 1
         self._sensors.is_due(start)  # the part begins with a row
         margins, passed = self._margins_at(start), None
+        self._pauses = self._rests = False
 
         def look(t: float) -> bool:
             nonlocal margins, passed
@@ -212,10 +197,8 @@ class _Run:
             now = self._margins_at(t)
             if (now < 0.0).any():
                 passed = t, (margins, now)
-                state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
-                data.SetSystemState(state, exu.ConfigurationType.Current)
-                data.SetTime(self._reached)
-                self._sensors.switch(False)
+            if passed is not None or not self._resolves(t - self._reached):
+                self._take_back()
                 return False
             margins = now
             self._sensors.switch(self._sensors.is_due(t) or t >= self._end - ON_GRID * self._step)
@@ -224,6 +207,43 @@ class _Run:
         self._part(end, steps, look, write=True, keep=True)
         self._settings.solution.file.writeInitialValues = passed is not None  # sensors follow it too
         return passed
+
+    def _take_back(self) -> None:
+        """Return to the start of the step."""
+        data = self._mbs.systemData
+        state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
+        data.SetSystemState(state, exu.ConfigurationType.Current)
+        data.SetTime(self._reached)
+        self._sensors.switch(False)
+
+    def _resolves(self, step: float) -> bool:
+        """Return whether a ``step`` (s) resolves how contacts slide in the plane; choose the next one."""
+        if not self._planar:
+            return True
+        shortened = step < (1.0 - ON_GRID) * self._step
+        before = self._slopes
+        self._survey()
+        turned = max(
+            (_change(before[key], now) for key, now in self._slopes.items() if key in before), default=0.0
+        )
+        if turned > (TURN if shortened else FULL_TURN):
+            self._slopes, self._growing = before, step / 2.0
+            return False
+        self._growing = 2.0 * max(step, self._growing) if self._growing < self._step else math.inf
+        self._pauses = self._rests or min(self._longest, self._growing) < self._step
+        return True
+
+    def _survey(self) -> None:
+        """Find the directions of friction in the plane, the longest next step, and whether a contact rests."""
+        self._slopes, self._longest, self._rests = {}, math.inf, False
+        for contact in self._planar:
+            if contact.stick.slides and not contact.stick.idle:
+                motion = contact.slid(self._mbs, ON_GRID * self._step)
+                self._slopes[contact.item] = contact.scaled(motion.gradient)
+                self._rests |= motion.remaining < contact.rest_share * self._step
+                if motion.rate_potential > 0.0:
+                    longest = APPROACH * motion.potential / motion.rate_potential
+                    self._longest = min(self._longest, max(longest, contact.rest_share * self._step))
 
     def _margins_at(self, t: float) -> FloatArray:
         return np.array([contact.margin(self._mbs, t) for contact in self._contacts])
@@ -265,33 +285,88 @@ class _Run:
         self._part(high, 1, lambda t: True, write=False, keep=True)
         for contact, margin in zip(self._contacts, below, strict=True):
             if margin < 0.0:
-                contact.leave(self._mbs, high)
+                self._leave(contact, high)
+
+    def _leave(self, contact: StickingContact, t: float) -> None:
+        """Switch a contact to the mode that follows if no other contact changes at the time t (s)."""
+        self._enter(contact, contact.following(self._mbs, t))
 
     def _settle(self) -> None:
         """Choose the modes with which all contacts obey Coulomb's law from the time reached on."""
+        if self._planar:
+            self._joints = joint_rows(self._mbs, self._reached, self._contacts)
         for contact in self._contacts:
             contact.stick.idle = False
             if contact.mode == Mode.LOCKED and self._is_held(contact):
                 contact.enter(self._mbs, Mode.FORWARD)
         for _ in range(MOST_CHANGES):
+            self._share_directions()
             chosen = self._contradiction()
             if chosen is None:
                 for contact in self._contacts:
                     contact.stick.idle = contact.stick.slides and self._is_held(contact)
                 return
             contact, mode = chosen
-            contact.enter(self._mbs, mode)
+            self._enter(contact, mode)
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {self._reached:.9g} s"
         )
 
     def _is_held(self, contact: StickingContact) -> bool:
-        """Return whether the other constraints of the model and the other locks fix the slip of a contact."""
-        locked = [
-            other.lock for other in self._contacts if other.mode == Mode.LOCKED and other is not contact
-        ]
-        given = np.vstack([self._others, *(self._rows[lock] for lock in locked)])
-        return spanned(self._rows[contact.lock][None], given)
+        """Return whether the joints of the model and the other locks fix the slip of a contact."""
+        others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
+        return spanned(contact.rows(self._mbs), self._held_rows(others))
+
+    def _held_rows(self, locked: Sequence[StickingContact]) -> FloatArray:
+        return np.vstack([self._joints, *(contact.rows(self._mbs) for contact in locked)])
+
+    def _share_directions(self) -> None:
+        """Let each contact in the plane slip only in directions that joints and contacts locked before it allow."""
+        locked: list[StickingContact] = []
+        for contact in self._contacts:
+            if isinstance(contact, PlanarContact):
+                free = scipy.linalg.null_space(self._held_rows(locked))
+                contact.allow(self._mbs, free)
+                contact.enter(self._mbs, contact.mode)
+            if contact.mode == Mode.LOCKED:
+                locked.append(contact)
+
+    def _enter(self, contact: StickingContact, mode: Mode) -> None:
+        """Switch the mode of a contact; in the plane, set the slip at which it starts."""
+        if not isinstance(contact, PlanarContact):
+            contact.enter(self._mbs, mode)
+            return
+        slip = np.zeros(3)
+        if mode != Mode.LOCKED:
+            contact.enter(self._mbs, Mode.OPEN)
+            shortest = contact.rest_share * self._step
+            slip = 2.0 * shortest * self._free_rate(contact) * contact.planar.direction
+            self._growing = shortest
+        contact.enter(self._mbs, Mode.OPEN)
+        self._set_slip(contact, slip)
+        contact.enter(self._mbs, mode)
+
+    def _free_rate(self, contact: PlanarContact) -> float:
+        """Return P of the rate of slip (m/s²) in the present modes."""
+        rate = 0.0
+
+        def look(t: float) -> bool:
+            nonlocal rate
+            rate = contact.motion(self._mbs, ON_GRID * self._step).rate_potential
+            return False
+
+        self._part(self._reached + self._step, 1, look, write=False, keep=False)
+        return rate
+
+    def _set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
+        """Change the initial velocities as little as possible so that a contact has the ``slip``."""
+        data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
+        others = [other for other in self._contacts if other.mode == Mode.LOCKED]
+        held, map_to_slip = self._held_rows(others), contact.slip_rows(self._mbs)
+        velocities = np.array(data.GetODE2Coordinates_t(initial))
+        missing = np.concatenate([np.zeros(len(held)), slip - map_to_slip @ velocities])
+        velocities += np.linalg.lstsq(np.vstack([held, map_to_slip]), missing, rcond=None)[0]
+        data.SetODE2Coordinates_t(velocities, initial)
 
     def _contradiction(self) -> tuple[StickingContact, Mode] | None:
         """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
@@ -307,9 +382,10 @@ class _Run:
             if most.overload(mbs, t) > 1.0 + ROUNDING:
                 found = most, most.driven(mbs)
             for contact in self._contacts:
-                reversing = found is None and contact.reverses(mbs, AT_REST * self._step)
+                reversing = found is None and contact.reverses(mbs, contact.rest_share * self._step)
                 if reversing and not self._is_held(contact):
                     found = contact, Mode.LOCKED
+            self._survey()
             return False
 
         self._part(self._reached + self._step, 1, look, write=False, keep=False)
@@ -327,3 +403,7 @@ class _Run:
                 f"friction contacts changed their modes {MOST_CHANGES} times at t = {self._reached:.9g} s; "
                 "contacts between the same bodies may hold each other"
             )
+
+
+def _change(before: FloatArray, after: FloatArray) -> float:
+    return float(np.linalg.norm(after - before))
