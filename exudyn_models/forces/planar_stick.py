@@ -1,8 +1,8 @@
 """Exact stick of a pin, circle or annulus between bodies that may also slide sideways.
 
 While the contact is locked, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are
-the force and moment of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law without
-regularisation, so no step may pass its rest. ``solver.switching`` limits the steps for that reason.
+the force and moment of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law
+without regularisation, so no step may pass its rest. ``solver.switching`` limits the steps for that reason.
 
 Joints may leave the contact only some directions of slip. With such a basis B, shape (3, k), the slip is B·v, and the
 k constraints are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share
@@ -20,9 +20,17 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
-from exudyn_models.forces.friction_laws import Contact, friction_of_slip, mean_radius
+from exudyn_models.forces.friction_laws import Contact, derivatives_by_slip, friction_of_slip, mean_radius
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jacobian
+from exudyn_models.forces.slip_kinematics import (
+    IMAGINARY_STEP,
+    ROTATION_VECTOR,
+    SIZES,
+    TRANSLATIONS,
+    Kinds,
+    radius_of_disc,
+    slip_jacobian,
+)
 from reference_model.systems import FloatArray
 
 ITERATIONS = 100
@@ -39,6 +47,10 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 """Basis of the slip on one axis."""
 
 
+RESOLVED = 1e-7
+"""Smallest ratio of slip to the speeds whose difference it is at which friction has a direction."""
+
+
 class SlipMotion(NamedTuple):
     """Motion of a contact that sticks exactly.
 
@@ -46,31 +58,39 @@ class SlipMotion(NamedTuple):
     ----------
     slip, rate : array of shape (3,)
         (u, S) in m/s and rad/s, and its rate of change in m/s² and rad/s².
+    bias : array of shape (3,)
+        Rate of change without accelerations, J̇·q̇.
     gradient : array of shape (3,)
         Derivatives of P by the slip, zero at rest.
     radius : float
         Distance of the disc's centre from the axis of the master, in m.
     rate_potential : float
         P of the rate, in m/s².
+    largest_term : float
+        Largest speed in m/s whose differences are the slip, which determines its rounding error.
 
     """
 
     slip: FloatArray
     rate: FloatArray
+    bias: FloatArray
     gradient: FloatArray
     radius: float
     rate_potential: float
+    largest_term: float
 
     @property
     def potential(self) -> float:
         """Slip potential P in m/s."""
         return float(self.gradient @ self.slip)
 
-    @property
-    def remaining(self) -> float:
-        """Time in s after which the contact would rest at the present rate of P, infinite if P grows."""
+    def rests_within(self, time: float) -> bool:
+        """Return whether the slip decreases and vanishes within a ``time`` (s), or is as small as its rounding error.
+
+        The direction of friction must be accurate enough for Newton's method.
+        """
         falling = -float(self.gradient @ self.rate)
-        return self.potential / falling if falling > 0.0 else math.inf
+        return falling > 0.0 and self.potential < max(falling * time, RESOLVED * self.largest_term)
 
 
 @dataclass(eq=False)
@@ -94,6 +114,11 @@ class PlanarStick(AxialStick):
     on_axis: bool = True
     basis: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
+    predicts: bool = False
+    """Whether friction is linear about the start of the step, until Newton's method has made its first iteration.
+
+    Exudyn's first iterate has no acceleration at the end of the step, so it may slip in any direction.
+    """
 
     def __post_init__(self) -> None:
         self.set_basis(self.basis)
@@ -112,7 +137,8 @@ class PlanarStick(AxialStick):
 
     def set_basis(self, basis: FloatArray) -> None:
         """Lock the slip in the directions of ``basis``, shape (3, k), from now on."""
-        self.basis, self._to_basis, self._evaluated = basis, np.linalg.pinv(basis), ([], np.empty(0))
+        self.basis, self._to_basis = basis, np.linalg.pinv(basis)
+        self._evaluated: tuple[list[float], FloatArray] = [], np.empty((3, 0))
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradients of the locked slips, shape (k, n), at ``coordinates`` with reference values."""
@@ -122,13 +148,13 @@ class PlanarStick(AxialStick):
         """Return J, the map of the nodes' velocities to the slip, shape (3, n)."""
         return slip_jacobian(self.kinds, coordinates)[0]
 
-    def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, ahead: float) -> SlipMotion:
-        """Return the motion for coordinates without reference values, and their derivatives.
+    def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray) -> SlipMotion:
+        """Return the motion for coordinates without reference values, and their derivatives."""
+        return SlipMotion(*_slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
 
-        The rate of the slip is a difference quotient over the time ``ahead`` (s).
-        """
-        contact = self.factors.geometry
-        return SlipMotion(*_slip_motion(self.kinds, contact, self.reference + q, q_t, q_tt, ahead))
+    def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
+        """Return the rates of the locked slips in such a ``state`` without accelerations, shape (k,)."""
+        return np.asarray(self._to_basis @ self.motion(*state).bias)
 
     def held_wrench(self, mbs: Any) -> FloatArray:
         """Return force (N) and moment (N m) of the constraints on the disc, in the master's axes, shape (3,)."""
@@ -182,7 +208,22 @@ class PlanarStick(AxialStick):
             return (slip_jacobian(self.kinds, self.reference + q)[0].T @ wrench).tolist()
         if not self.slides:
             return [0.0] * len(q)
-        return self.sliding[0](mbs, t, item, q, q_t)
+        if not self.predicts:
+            return self.sliding[0](mbs, t, item, q, q_t)
+        return self._linear(t, q, q_t)[0].tolist()
+
+    def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
+        """Prepare the first iteration of a step that starts at these coordinates and velocities."""
+        self.predicts = self.slides and not self.idle
+        if self.predicts:
+            self._start = self.motion(q, q_t, np.zeros(len(q)))
+
+    def _linear(self, t: float, q: Sequence[float], q_t: Sequence[float]) -> Any:
+        """Return friction that is linear in the slip since the start of the step, and its derivatives."""
+        start, contact = self._start, self.factors.geometry
+        friction = self.factors.friction_force(t, start.radius, start.potential, float(start.slip[2]))
+        coordinates = self.reference + q
+        return _linear_friction(self.kinds, contact, coordinates, np.array(q_t), start.slip, friction)
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
         """Return the force and moment on the disc that slides at the time t (s), in the master's axes, shape (3,)."""
@@ -204,6 +245,10 @@ class PlanarStick(AxialStick):
             return super().jacobian(mbs, t, item, q, q_t, position_factor, velocity_factor)
         if self.idle or not self.slides:
             return np.zeros((len(q), len(q)))
+        if self.predicts:
+            self.predicts = False
+            _, by_position, by_velocity = self._linear(t, q, q_t)
+            return np.asarray(-position_factor * by_position - velocity_factor * by_velocity)
         found: FloatArray = self.sliding[1](mbs, t, item, q, q_t, position_factor, velocity_factor)
         return found
 
@@ -227,25 +272,95 @@ class PlanarStick(AxialStick):
             rows = np.zeros((3, len(q)))
             rows[: self.basis.shape[1]] = self.rows(np.array(q))
             self._evaluated = list(q), rows
-        return self._evaluated[1][lock]
+        return np.asarray(self._evaluated[1][lock])
 
 
 @compiled
 def _slip_motion(
-    kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, ahead: float
-) -> tuple[FloatArray, FloatArray, FloatArray, float, float]:
-    """Return slip, rate of slip, ∇P, radius and P of the rate."""
+    kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float]:
+    """Return the components of a ``SlipMotion``."""
     to_slip, axes, _ = slip_jacobian(kinds, q)
-    later = slip_jacobian(kinds, q + ahead * q_t)[0]
-    slip, rate, gradient = np.zeros(3), np.zeros(3), np.zeros(3)
+    stepped = q.astype(np.complex128)
+    rates = _coordinate_rates(kinds, q, q_t)
+    for k in range(len(q)):
+        stepped[k] += 1j * IMAGINARY_STEP * rates[k]
+    stepped_map = slip_jacobian(kinds, stepped)[0]
+    slip, rate, bias, gradient = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
+    largest = 0.0
     for i in range(3):
+        length = 1.0 if i < 2 else contact[0]
         for k in range(len(q)):
             slip[i] += to_slip[i, k] * q_t[k]
-            rate[i] += later[i, k] * q_tt[k] + (later[i, k] - to_slip[i, k]) / ahead * q_t[k]
+            largest = max(largest, length * abs(to_slip[i, k] * q_t[k]))
+            bias[i] += stepped_map[i, k].imag / IMAGINARY_STEP * q_t[k]
+            rate[i] += to_slip[i, k] * q_tt[k]
+        rate[i] += bias[i]
     friction = _unit_friction(slip, contact)
     for i in range(3):
         gradient[i] = -friction[i]
-    return slip, rate, gradient, radius_of_disc(kinds, q, axes), _potential(rate, contact)
+    return slip, rate, bias, gradient, radius_of_disc(kinds, q, axes), _potential(rate, contact), largest
+
+
+@compiled
+def _linear_friction(
+    kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, start: FloatArray, friction: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives by q and q_t."""
+    size = len(q)
+    to_slip = slip_jacobian(kinds, q)[0]
+    by_slip = friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
+    unit = _unit_friction(start, contact)
+    wrench, slip_by_q = np.zeros(3), np.zeros((3, size))
+    for i in range(3):
+        wrench[i] = friction * unit[i]
+        for j in range(3):
+            slip = -start[j]
+            for k in range(size):
+                slip += to_slip[j, k] * q_t[k]
+            wrench[i] += by_slip[i, j] * slip
+    by_q, by_q_t = np.zeros((size, size)), np.zeros((size, size))
+    forces = np.zeros(size)
+    for n in range(size):
+        stepped = q.astype(np.complex128)
+        stepped[n] += 1j * IMAGINARY_STEP
+        change = slip_jacobian(kinds, stepped)[0]
+        for i in range(3):
+            forces[n] += to_slip[i, n] * wrench[i]
+            for k in range(size):
+                slip_by_q[i, n] += change[i, k].imag / IMAGINARY_STEP * q_t[k]
+                by_q[k, n] += change[i, k].imag / IMAGINARY_STEP * wrench[i]
+    for k in range(size):
+        for n in range(size):
+            for i in range(3):
+                for j in range(3):
+                    by_q[k, n] += to_slip[i, k] * by_slip[i, j] * slip_by_q[j, n]
+                    by_q_t[k, n] += to_slip[i, k] * by_slip[i, j] * to_slip[j, n]
+    return forces, by_q, by_q_t
+
+
+@compiled
+def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
+    """Return the derivatives of coordinates, which for a rotation vector v are not ω in the body's axes.
+
+    With θ = |v|, v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω).
+    """
+    rates = q_t.copy()
+    start = 0
+    for kind in kinds:
+        if kind == ROTATION_VECTOR:
+            at = start + TRANSLATIONS[kind]
+            vector, spin = q[at : at + 3].copy(), q_t[at : at + 3].copy()
+            once = np.cross(vector, spin)
+            angle = math.sqrt(vector @ vector)
+            factor = 1.0 / 12.0
+            if angle > 1e-3:
+                factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2
+            twice = np.cross(vector, once)
+            for i in range(3):
+                rates[at + i] = spin[i] + 0.5 * once[i] + factor * twice[i]
+        start += SIZES[kind]
+    return rates
 
 
 @compiled

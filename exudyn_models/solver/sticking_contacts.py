@@ -102,15 +102,29 @@ class StickingContact:
         rows[:, self.places] = gradients
         return rows
 
+    def active_locks(self) -> Sequence[int]:
+        """Return the object numbers of the constraints that hold a locked contact."""
+        return self.stick.locks[:1]
+
+    def bias(self, mbs: Any) -> FloatArray:
+        """Return the rates of change of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
+        if not isinstance(self.stick, PlanarStick):
+            return np.zeros(1)
+        return self.stick.bias(self._state(mbs))
+
+    def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return coordinates without reference values and their derivatives."""
+        data, places = mbs.systemData, self.places
+        return (
+            data.GetODE2Coordinates(configuration)[places],
+            data.GetODE2Coordinates_t(configuration)[places],
+            data.GetODE2Coordinates_tt(configuration)[places],
+        )
+
     def slip(self, mbs: Any, ahead: float = 0.0, configuration: Any = CURRENT) -> float:
         """Return S in rad/s, or what it will be a short time ``ahead`` (s)."""
-        data = mbs.systemData
-        q = data.GetODE2Coordinates(configuration)[self.places]
-        q_t = data.GetODE2Coordinates_t(configuration)[self.places]
-        if ahead > 0.0:
-            q += ahead * q_t
-            q_t += ahead * data.GetODE2Coordinates_tt(configuration)[self.places]
-        return self.stick.slip(q, q_t)
+        q, q_t, q_tt = self._state(mbs, configuration)
+        return self.stick.slip(q + ahead * q_t, q_t + ahead * q_tt)
 
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
@@ -165,9 +179,9 @@ class PlanarContact(StickingContact):
     def enter(self, mbs: Any, mode: Mode) -> None:
         """Switch to a mode."""
         self.stick.mode = mode
-        count = self.planar.basis.shape[1] if mode == Mode.LOCKED else 0
-        for i, lock in enumerate(self.stick.locks):
-            mbs.SetObjectParameter(lock, "activeConnector", i < count)
+        active = self.active_locks() if mode == Mode.LOCKED else ()
+        for lock in self.stick.locks:
+            mbs.SetObjectParameter(lock, "activeConnector", lock in active)
 
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
@@ -184,19 +198,22 @@ class PlanarContact(StickingContact):
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
         return _sliding_mode(self.planar.direction)
 
-    def motion(self, mbs: Any, ahead: float, configuration: Any = CURRENT) -> SlipMotion:
-        """Return the present motion, with its rate as a difference over the time ``ahead`` (s)."""
-        data, places = mbs.systemData, self.places
-        return self.planar.motion(
-            data.GetODE2Coordinates(configuration)[places],
-            data.GetODE2Coordinates_t(configuration)[places],
-            data.GetODE2Coordinates_tt(configuration)[places],
-            ahead,
-        )
+    def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
+        """Return the present motion."""
+        return self.planar.motion(*self._state(mbs, configuration))
 
-    def slid(self, mbs: Any, step: float) -> SlipMotion:
-        """Return the motion after a step of sliding, and note its direction for the mode."""
-        motion = self.motion(mbs, step)
+    def active_locks(self) -> Sequence[int]:
+        """Return the object numbers of the constraints that hold a locked contact."""
+        return self.stick.locks[: self.planar.basis.shape[1]]
+
+    def start_step(self, mbs: Any) -> None:
+        """Prepare the friction for a step from the present motion."""
+        q, q_t, _ = self._state(mbs)
+        self.planar.start_step(q, q_t)
+
+    def slid(self, mbs: Any) -> SlipMotion:
+        """Return the present motion of a sliding contact, and note its direction as the mode."""
+        motion = self.motion(mbs)
         self.stick.mode = _sliding_mode(motion.slip)
         return motion
 
@@ -212,13 +229,13 @@ class PlanarContact(StickingContact):
 
     def reverses(self, mbs: Any, time: float) -> bool:
         """Return whether a sliding contact stops within a ``time`` (s) so short that it rests."""
-        return self.stick.slides and not self.stick.idle and self.motion(mbs, time).remaining < time
+        return self.stick.slides and not self.stick.idle and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
         """Return the mode of a contact that has not been locked."""
         if self.planar.holding_force(t) == 0.0:
             return Mode.OPEN
-        motion = self.motion(mbs, 1.0, configuration)
+        motion = self.motion(mbs, configuration)
         return _sliding_mode(motion.slip) if motion.potential > 0.0 else Mode.LOCKED
 
 
@@ -247,8 +264,10 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
     try:
         for contact in contacts:
             contact.stick.running = True
-        joints = joint_rows(mbs, t, contacts)
-        found = [_located(mbs, contact, joints) for contact in contacts]
+        found = list(contacts)
+        if any(isinstance(contact.stick, PlanarStick) for contact in contacts):
+            joints, _ = joints_and_mass(mbs, t, contacts)
+            found = [_located(mbs, contact, joints) for contact in contacts]
         for contact in found:
             contact.enter_first(mbs, t)
         yield found
@@ -268,18 +287,18 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
     return contact if stick.on_axis else planar
 
 
-def joint_rows(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> FloatArray:
-    """Return the gradients of all constraints except the locks of ``contacts``, shape (m, n).
+def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
+    """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
 
-    They are derivatives by the n velocities of an assembled model at its initial values and the time t (s), up to
-    factors.
+    The gradients, shape (m, n), are derivatives by the n velocities of an assembled model at its initial values and
+    the time t (s), up to factors.
     """
-    if not contacts:
-        return np.zeros((0, mbs.systemData.ODE2Size()))
     data = mbs.systemData
     with initialised_solver(mbs, t) as solver:
         solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
         solver.ComputeJacobianAE(mbs, 1.0, 1.0, 1.0)
         gradients = np.array(solver.GetSystemJacobian())[-data.AEsize() :, : data.ODE2Size()]
+        solver.ComputeMassMatrix(mbs)
+        mass = np.array(solver.GetSystemMassMatrix())[: data.ODE2Size(), : data.ODE2Size()]
     locks = [int(data.GetObjectLTGAE(lock)[0]) for contact in contacts for lock in contact.stick.locks]
-    return np.delete(gradients, locks, axis=0)
+    return np.delete(gradients, locks, axis=0), mass

@@ -5,8 +5,8 @@ the length at which the change happens. There the modes are chosen so that all c
 locked contact transmits no more than it can hold, and a sliding one does not reverse.
 
 The friction of a contact in the plane turns with its slip, ever faster as the slip vanishes. The steps therefore
-shrink in proportion to the slip, until the contact counts as resting. A contact that the load releases starts with a slip
-normal to the limit surface, as large as its load reaches within a millionth of a step, and the steps grow again.
+shrink in proportion to the slip, until the contact counts as resting. A contact that the load releases starts with a
+slip normal to the limit surface, as large as its load reaches within a millionth of a step, and the steps grow again.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ import numpy as np
 import scipy.linalg
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
+from exudyn_models.forces.planar_stick import RESOLVED, SlipMotion
 from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.sticking_contacts import (
     ModeChange,
     PlanarContact,
     StickingContact,
-    joint_rows,
+    joints_and_mass,
 )
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -112,7 +113,10 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._joints = joint_rows(mbs, self._start, contacts)
+        self._joints, self._mass = joints_and_mass(mbs, self._start, contacts)
+        locks = [lock for contact in contacts for lock in contact.stick.locks]
+        self._lock_places = [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]
+        self._starting: tuple[FloatArray, FloatArray] | None = None
         # Longest next step (s) for contacts that slide in the plane, by their slip and after a release.
         self._longest = self._growing = math.inf
         self._slopes: dict[int, FloatArray] = {}
@@ -123,7 +127,12 @@ class _Run:
 
     def run(self) -> None:
         """Run from the start to the end of the settings; leave the end as the initial values."""
-        with self._kept_settings(), user_function(self._mbs, "PostStep", self._after_step):
+        mbs = self._mbs
+        with (
+            self._kept_settings(),
+            user_function(mbs, "PreStep", self._before_step),
+            user_function(mbs, "PostStep", self._after_step),
+        ):
             self._settle()
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:
                 passed = self._go_on()
@@ -137,14 +146,27 @@ class _Run:
     @contextmanager
     def _kept_settings(self) -> Iterator[None]:
         options, file, sensors = self._options, self._settings.solution.file, self._settings.solution.sensors
+        alpha, newton = options.generalizedAlpha, options.newton
         kept = file.append, sensors.append, file.writeInitialValues
+        computes, modified = alpha.computeInitialAccelerations, newton.useModifiedNewton
+        if self._planar:  # the direction of friction turns too fast for an old Jacobian
+            newton.useModifiedNewton = False
         try:
             yield
         finally:
             options.startTime, options.endTime, options.numberOfSteps = self._start, self._end, self._steps
             file.append, sensors.append, file.writeInitialValues = kept
+            alpha.computeInitialAccelerations, newton.useModifiedNewton = computes, modified
             file.write = self._writes_file
             self._sensors.restore()
+
+    def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
+        def prepare(mbs: Any, t: float) -> bool:
+            for contact in self._planar:
+                contact.start_step(mbs)
+            return own(mbs, t)
+
+        return prepare if self._planar else own
 
     def _after_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
         def look(mbs: Any, t: float) -> bool:
@@ -159,13 +181,24 @@ class _Run:
         return look
 
     def _part(
-        self, end: float, steps: int, look: Callable[[float], bool], *, write: bool, keep: bool
+        self,
+        end: float,
+        steps: int,
+        look: Callable[[float], bool],
+        *,
+        write: bool,
+        keep: bool,
+        settles: bool = False,
     ) -> None:
-        """Run from the last time reached to ``end`` (s); ``write`` sensors and files, ``keep`` the end."""
+        """Run from the last time reached to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
+
+        Exudyn computes the initial accelerations if contacts ``settles`` or none is in the plane.
+        """
         options, solution = self._options, self._settings.solution
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
         self._sensors.switch(write)
         solution.file.write = write and self._writes_file
+        options.generalizedAlpha.computeInitialAccelerations = settles or not self._planar
         self._look = look
         with starting_rates(self._mbs, self._reached):
             self._mbs.SolveDynamic(self._settings, self._solver, keep)
@@ -178,7 +211,7 @@ class _Run:
         Contacts in the plane may need shorter steps. Return None, or the end of a step that has passed a change and
         was taken back, with the margins at both of its ends.
         """
-        start = self._reached
+        data, start = self._mbs.systemData, self._reached
         whole = (start - self._start) / self._step
         on_grid = abs(whole - round(whole)) < ON_GRID
         done = round(whole) if on_grid else math.floor(whole)
@@ -193,6 +226,7 @@ class _Run:
         def look(t: float) -> bool:
             nonlocal margins, passed
             if t == start:
+                self._accelerations = data.GetODE2Coordinates_tt()
                 return True
             now = self._margins_at(t)
             if (now < 0.0).any():
@@ -200,7 +234,7 @@ class _Run:
             if passed is not None or not self._resolves(t - self._reached):
                 self._take_back()
                 return False
-            margins = now
+            margins, self._accelerations = now, data.GetODE2Coordinates_tt()
             self._sensors.switch(self._sensors.is_due(t) or t >= self._end - ON_GRID * self._step)
             return True
 
@@ -213,6 +247,8 @@ class _Run:
         data = self._mbs.systemData
         state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
         data.SetSystemState(state, exu.ConfigurationType.Current)
+        if self._planar:  # Exudyn would compute the accelerations again
+            data.SetODE2Coordinates_tt(self._accelerations)
         data.SetTime(self._reached)
         self._sensors.switch(False)
 
@@ -238,9 +274,9 @@ class _Run:
         self._slopes, self._longest, self._rests = {}, math.inf, False
         for contact in self._planar:
             if contact.stick.slides and not contact.stick.idle:
-                motion = contact.slid(self._mbs, ON_GRID * self._step)
+                motion = contact.slid(self._mbs)
                 self._slopes[contact.item] = contact.scaled(motion.gradient)
-                self._rests |= motion.remaining < contact.rest_share * self._step
+                self._rests |= motion.rests_within(contact.rest_share * self._step)
                 if motion.rate_potential > 0.0:
                     longest = APPROACH * motion.potential / motion.rate_potential
                     self._longest = min(self._longest, max(longest, contact.rest_share * self._step))
@@ -294,7 +330,7 @@ class _Run:
     def _settle(self) -> None:
         """Choose the modes with which all contacts obey Coulomb's law from the time reached on."""
         if self._planar:
-            self._joints = joint_rows(self._mbs, self._reached, self._contacts)
+            self._joints, self._mass = joints_and_mass(self._mbs, self._reached, self._contacts)
         for contact in self._contacts:
             contact.stick.idle = False
             if contact.mode == Mode.LOCKED and self._is_held(contact):
@@ -305,6 +341,11 @@ class _Run:
             if chosen is None:
                 for contact in self._contacts:
                     contact.stick.idle = contact.stick.slides and self._is_held(contact)
+                if self._planar and self._starting is not None:
+                    accelerations, forces = self._starting
+                    data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
+                    data.SetODE2Coordinates_tt(accelerations, initial)
+                    data.SetAECoordinates(forces, initial)
                 return
             contact, mode = chosen
             self._enter(contact, mode)
@@ -339,34 +380,71 @@ class _Run:
         slip = np.zeros(3)
         if mode != Mode.LOCKED:
             contact.enter(self._mbs, Mode.OPEN)
+            free = self._free_motion(contact)
             shortest = contact.rest_share * self._step
-            slip = 2.0 * shortest * self._free_rate(contact) * contact.planar.direction
-            self._growing = shortest
+            speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
+            slip = speed * contact.planar.direction
+            self._growing = max(shortest, speed / free.rate_potential)
         contact.enter(self._mbs, Mode.OPEN)
         self._set_slip(contact, slip)
         contact.enter(self._mbs, mode)
 
-    def _free_rate(self, contact: PlanarContact) -> float:
-        """Return P of the rate of slip (m/s²) in the present modes."""
-        rate = 0.0
+    def _free_motion(self, contact: PlanarContact) -> SlipMotion:
+        """Return the motion of a contact at its start in the present modes."""
+        found: SlipMotion | None = None
 
         def look(t: float) -> bool:
-            nonlocal rate
-            rate = contact.motion(self._mbs, ON_GRID * self._step).rate_potential
+            nonlocal found
+            self._correct()
+            found = contact.motion(self._mbs)
             return False
 
-        self._part(self._reached + self._step, 1, look, write=False, keep=False)
-        return rate
+        self._part(self._reached + self._step, 1, look, write=False, keep=False, settles=True)
+        assert found is not None
+        return found
 
     def _set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
-        """Change the initial velocities as little as possible so that a contact has the ``slip``."""
+        """Change the initial velocities so that a contact has the ``slip``, those of heavy bodies least."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         others = [other for other in self._contacts if other.mode == Mode.LOCKED]
         held, map_to_slip = self._held_rows(others), contact.slip_rows(self._mbs)
         velocities = np.array(data.GetODE2Coordinates_t(initial))
         missing = np.concatenate([np.zeros(len(held)), slip - map_to_slip @ velocities])
-        velocities += np.linalg.lstsq(np.vstack([held, map_to_slip]), missing, rcond=None)[0]
+        weights = self._mobilities()
+        rows = np.vstack([held, map_to_slip]) * weights
+        velocities += weights * np.linalg.lstsq(rows, missing, rcond=None)[0]
         data.SetODE2Coordinates_t(velocities, initial)
+
+    def _mobilities(self) -> FloatArray:
+        """Return the inverse square roots of the diagonal of the mass matrix, or the largest one without mass."""
+        masses = np.diag(self._mass)
+        light = np.min(masses, where=masses > 0.0, initial=np.inf)
+        return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
+
+    def _correct(self) -> None:
+        """Correct the accelerations and constraint forces at the start of a run for locks in the plane.
+
+        Exudyn computes them as if the gradients of user-defined constraints were constant.
+        """
+        locked = [contact for contact in self._contacts if contact.mode == Mode.LOCKED]
+        bias = np.concatenate([contact.bias(self._mbs) for contact in locked] or [np.zeros(1)])
+        if not bias.any():
+            return
+        data, scale = self._mbs.systemData, self._mobilities()
+        rows = self._held_rows(locked) * scale
+        size, count = len(scale), len(rows)
+        system = np.zeros((size + count, size + count))
+        system[:size, :size] = scale[:, None] * self._mass * scale
+        system[:size, size:], system[size:, :size] = rows.T, rows
+        missing = np.concatenate([np.zeros(size + len(self._joints)), -bias])
+        change = np.linalg.lstsq(system, missing, rcond=None)[0]
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + scale * change[:size])
+        forces = np.array(data.GetAECoordinates())
+        joints = np.setdiff1d(np.arange(len(forces)), self._lock_places)
+        forces[joints] += change[size : size + len(self._joints)]
+        places = [data.GetObjectLTGAE(lock)[0] for contact in locked for lock in contact.active_locks()]
+        forces[places] += change[size + len(self._joints) :]
+        data.SetAECoordinates(forces)
 
     def _contradiction(self) -> tuple[StickingContact, Mode] | None:
         """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
@@ -378,6 +456,7 @@ class _Run:
         def look(t: float) -> bool:
             nonlocal found
             mbs, found = self._mbs, None
+            self._correct()
             most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
             if most.overload(mbs, t) > 1.0 + ROUNDING:
                 found = most, most.driven(mbs)
@@ -386,9 +465,11 @@ class _Run:
                 if reversing and not self._is_held(contact):
                     found = contact, Mode.LOCKED
             self._survey()
+            data = mbs.systemData
+            self._starting = np.array(data.GetODE2Coordinates_tt()), np.array(data.GetAECoordinates())
             return False
 
-        self._part(self._reached + self._step, 1, look, write=False, keep=False)
+        self._part(self._reached + self._step, 1, look, write=False, keep=False, settles=True)
         return found
 
     def _note(self, before: Sequence[Mode]) -> None:
