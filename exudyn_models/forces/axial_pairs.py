@@ -176,7 +176,7 @@ class AxialStick:
             return None
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
-    def gradient(self, q: Sequence[float]) -> Sequence[float]:
+    def gradient(self, q: Floats | FloatArray) -> Floats:
         """Return the derivatives of S by the velocities of the nodes, at coordinates without reference values."""
         if self._rotors is not None:
             return self._rotors
@@ -189,7 +189,7 @@ class AxialStick:
         """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
         return np.array([self._rotors or self._gradient_at(coordinates)])
 
-    def slip(self, q: Sequence[float], q_t: Sequence[float]) -> float:
+    def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
         """Return S = φ̇ − ω in rad/s."""
         return float(sum(map(mul, self.gradient(q), q_t)))
 

@@ -62,3 +62,17 @@ def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any
     )
     dispatcher = compiled_for(signature, cast(Any, function).py_func, SOURCES)
     return cast(Callable[..., Any], dispatcher.get_overload(signature))
+
+
+class KeptOnDisk:
+    """A ``compiled`` function for calls from Python, compiled once per machine for its first arguments' types."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = cast(Any, function).py_func
+        self._compiled: Any = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return the result; raise ``TypeError`` if the arguments have other types than those of the first call."""
+        if self._compiled is None:
+            self._compiled = compiled_for(tuple(map(numba.typeof, arguments)), self._function, SOURCES)
+        return self._compiled(*arguments)

@@ -21,7 +21,7 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.friction_laws import Contact, derivatives_by_slip, friction_of_slip, mean_radius
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import KeptOnDisk, compiled
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
     ROTATION_VECTOR,
@@ -47,7 +47,7 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 """Basis of the slip on one axis."""
 
 
-RESOLVED = 1e-7
+RESOLVED = 1e-6
 """Smallest ratio of slip to the speeds whose difference it is at which friction has a direction."""
 
 
@@ -84,13 +84,20 @@ class SlipMotion(NamedTuple):
         """Slip potential P in m/s."""
         return float(self.gradient @ self.slip)
 
+    @property
+    def remaining(self) -> float:
+        """Time in s after which the contact would rest at the present rate of P, infinite if P grows."""
+        falling = -float(self.gradient @ self.rate)
+        return self.potential / falling if falling > 0.0 else math.inf
+
     def rests_within(self, time: float) -> bool:
         """Return whether the slip decreases and vanishes within a ``time`` (s), or is as small as its rounding error.
 
         The direction of friction must be accurate enough for Newton's method.
         """
-        falling = -float(self.gradient @ self.rate)
-        return falling > 0.0 and self.potential < max(falling * time, RESOLVED * self.largest_term)
+        return self.remaining < time or (
+            self.remaining < math.inf and self.potential < RESOLVED * self.largest_term
+        )
 
 
 @dataclass(eq=False)
@@ -114,6 +121,8 @@ class PlanarStick(AxialStick):
     on_axis: bool = True
     basis: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
+    frozen: bool = False
+    """Whether friction stays that at the start of the step, within which the slip vanishes."""
     predicts: bool = False
     """Whether friction is linear about the start of the step, until Newton's method has made its first iteration.
 
@@ -146,11 +155,11 @@ class PlanarStick(AxialStick):
 
     def slip_map(self, coordinates: FloatArray) -> FloatArray:
         """Return J, the map of the nodes' velocities to the slip, shape (3, n)."""
-        return slip_jacobian(self.kinds, coordinates)[0]
+        return np.asarray(jacobian_of_slip(self.kinds, coordinates)[0])
 
     def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray) -> SlipMotion:
         """Return the motion for coordinates without reference values, and their derivatives."""
-        return SlipMotion(*_slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
+        return SlipMotion(*slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return the rates of the locked slips in such a ``state`` without accelerations, shape (k,)."""
@@ -175,8 +184,8 @@ class PlanarStick(AxialStick):
         if columns.shape[1] == 1:
             slip = columns[:, 0] * math.copysign(1.0, load @ columns[:, 0])
         else:
-            slip = _resisted_slip(load, np.ascontiguousarray(columns), contact)
-        slip = slip / _potential(slip, contact)
+            slip = resisted_slip(load, np.ascontiguousarray(columns), contact)
+        slip = slip / potential(slip, contact)
         return float(load @ slip) / friction, slip
 
     def holding_force(self, t: float) -> float:
@@ -205,10 +214,10 @@ class PlanarStick(AxialStick):
             return super().force(mbs, t, item, q, q_t)
         if self.idle:
             wrench = self.sliding_wrench(t, self.direction, 0.0)
-            return (slip_jacobian(self.kinds, self.reference + q)[0].T @ wrench).tolist()
+            return (self.slip_map(self.reference + q).T @ wrench).tolist()
         if not self.slides:
             return [0.0] * len(q)
-        if not self.predicts:
+        if not self.predicts and not self.frozen:
             return self.sliding[0](mbs, t, item, q, q_t)
         return self._linear(t, q, q_t)[0].tolist()
 
@@ -223,11 +232,12 @@ class PlanarStick(AxialStick):
         start, contact = self._start, self.factors.geometry
         friction = self.factors.friction_force(t, start.radius, start.potential, float(start.slip[2]))
         coordinates = self.reference + q
-        return _linear_friction(self.kinds, contact, coordinates, np.array(q_t), start.slip, friction)
+        slope = 0.0 if self.frozen else 1.0
+        return linear_friction(self.kinds, contact, coordinates, np.array(q_t), start.slip, friction, slope)
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
         """Return the force and moment on the disc that slides at the time t (s), in the master's axes, shape (3,)."""
-        unit = np.array(_unit_friction(slip, self.factors.geometry))
+        unit = np.array(unit_friction(slip, self.factors.geometry))
         return unit * self.factors.friction_force(t, radius, float(-unit @ slip), float(slip[2]))
 
     def jacobian(
@@ -245,7 +255,7 @@ class PlanarStick(AxialStick):
             return super().jacobian(mbs, t, item, q, q_t, position_factor, velocity_factor)
         if self.idle or not self.slides:
             return np.zeros((len(q), len(q)))
-        if self.predicts:
+        if self.predicts or self.frozen:
             self.predicts = False
             _, by_position, by_velocity = self._linear(t, q, q_t)
             return np.asarray(-position_factor * by_position - velocity_factor * by_velocity)
@@ -304,12 +314,21 @@ def _slip_motion(
 
 @compiled
 def _linear_friction(
-    kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, start: FloatArray, friction: float
+    kinds: Kinds,
+    contact: Contact,
+    q: FloatArray,
+    q_t: FloatArray,
+    start: FloatArray,
+    friction: float,
+    slope: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives by q and q_t."""
+    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives by q and q_t.
+
+    With a ``slope`` of 0 instead of 1 they do not depend on the slip.
+    """
     size = len(q)
     to_slip = slip_jacobian(kinds, q)[0]
-    by_slip = friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
+    by_slip = slope * friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
     unit = _unit_friction(start, contact)
     wrench, slip_by_q = np.zeros(3), np.zeros((3, size))
     for i in range(3):
@@ -404,3 +423,8 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
         share = 0.5 if i % 4 == 3 or i == 0 else below / (below - above)
         angle = min(max(low + share * (high - low), low + ACCURACY / 2.0), high - ACCURACY / 2.0)
     return slip
+
+
+slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
+unit_friction, potential = KeptOnDisk(_unit_friction), KeptOnDisk(_potential)
+resisted_slip, jacobian_of_slip = KeptOnDisk(_resisted_slip), KeptOnDisk(slip_jacobian)

@@ -164,6 +164,11 @@ class PlanarContact(StickingContact):
         """Law of friction."""
         return cast(PlanarStick, self.stick)
 
+    @property
+    def free_to_slide(self) -> bool:
+        """Whether it slides and other constraints do not hold it."""
+        return self.stick.slides and not self.stick.idle
+
     def allow(self, mbs: Any, velocities: FloatArray) -> None:
         """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model."""
         self.planar.allow(self.slip_rows(mbs) @ velocities)
@@ -229,7 +234,7 @@ class PlanarContact(StickingContact):
 
     def reverses(self, mbs: Any, time: float) -> bool:
         """Return whether a sliding contact stops within a ``time`` (s) so short that it rests."""
-        return self.stick.slides and not self.stick.idle and self.motion(mbs).rests_within(time)
+        return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
         """Return the mode of a contact that has not been locked."""

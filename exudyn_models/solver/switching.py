@@ -51,6 +51,12 @@ ON_GRID = 1e-9
 ROUNDING = 1e-12
 """Share by which rounding may put the load of a locked contact above what it can hold."""
 
+FORCES = 1e-12
+"""Relative residual of Newton's method for contacts in the plane.
+
+Errors of velocities enter constraint forces divided by the step, and these decide when a contact is released.
+"""
+
 MOST_CHANGES = 100
 """Largest number of changes at one time."""
 
@@ -140,6 +146,8 @@ class _Run:
                     before = [contact.stick.visible_mode for contact in self._contacts]
                     if passed is not None:
                         self._land(*passed)
+                    else:
+                        self._stop()
                     self._settle()
                     self._note(before)
 
@@ -148,15 +156,18 @@ class _Run:
         options, file, sensors = self._options, self._settings.solution.file, self._settings.solution.sensors
         alpha, newton = options.generalizedAlpha, options.newton
         kept = file.append, sensors.append, file.writeInitialValues
-        computes, modified = alpha.computeInitialAccelerations, newton.useModifiedNewton
-        if self._planar:  # the direction of friction turns too fast for an old Jacobian
-            newton.useModifiedNewton = False
+        computes = alpha.computeInitialAccelerations
+        modified, tolerance = newton.useModifiedNewton, newton.relativeTolerance
+        if self._planar:
+            newton.useModifiedNewton = False  # the direction of friction turns too fast for an old Jacobian
+            self._tolerances = tolerance, min(tolerance, FORCES)
         try:
             yield
         finally:
             options.startTime, options.endTime, options.numberOfSteps = self._start, self._end, self._steps
             file.append, sensors.append, file.writeInitialValues = kept
-            alpha.computeInitialAccelerations, newton.useModifiedNewton = computes, modified
+            alpha.computeInitialAccelerations = computes
+            newton.useModifiedNewton, newton.relativeTolerance = modified, tolerance
             file.write = self._writes_file
             self._sensors.restore()
 
@@ -192,13 +203,16 @@ class _Run:
     ) -> None:
         """Run from the last time reached to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
 
-        Exudyn computes the initial accelerations if contacts ``settles`` or none is in the plane.
+        With contacts in the plane, Exudyn computes the initial accelerations only if they ``settles``.
         """
         options, solution = self._options, self._settings.solution
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
         self._sensors.switch(write)
         solution.file.write = write and self._writes_file
-        options.generalizedAlpha.computeInitialAccelerations = settles or not self._planar
+        if self._planar:
+            options.generalizedAlpha.computeInitialAccelerations = settles
+            small = any(contact.free_to_slide for contact in self._planar) and self._longest < self._step
+            options.newton.relativeTolerance = self._tolerances[not small]
         self._look = look
         with starting_rates(self._mbs, self._reached):
             self._mbs.SolveDynamic(self._settings, self._solver, keep)
@@ -273,7 +287,7 @@ class _Run:
         """Find the directions of friction in the plane, the longest next step, and whether a contact rests."""
         self._slopes, self._longest, self._rests = {}, math.inf, False
         for contact in self._planar:
-            if contact.stick.slides and not contact.stick.idle:
+            if contact.free_to_slide:
                 motion = contact.slid(self._mbs)
                 self._slopes[contact.item] = contact.scaled(motion.gradient)
                 self._rests |= motion.rests_within(contact.rest_share * self._step)
@@ -322,6 +336,23 @@ class _Run:
         for contact, margin in zip(self._contacts, below, strict=True):
             if margin < 0.0:
                 self._leave(contact, high)
+
+    def _stop(self) -> None:
+        """Step to the time at which contacts in the plane rest, under constant friction, and lock them."""
+        motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
+        resting = [
+            (contact, motion.remaining)
+            for contact, motion in motions
+            if motion.rests_within(contact.rest_share * self._step)
+        ]
+        time = min(remaining for _, remaining in resting)
+        for contact, _ in resting:
+            contact.planar.frozen = True
+        if self._reached + time > self._reached:
+            self._part(self._reached + time, 1, lambda t: True, write=False, keep=True)
+        for contact, _ in resting:
+            contact.planar.frozen = False
+            self._enter(contact, Mode.LOCKED)
 
     def _leave(self, contact: StickingContact, t: float) -> None:
         """Switch a contact to the mode that follows if no other contact changes at the time t (s)."""
