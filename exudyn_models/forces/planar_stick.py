@@ -40,7 +40,7 @@ ACCURACY = 1e-9
 """Angle in rad to which this direction is found; the error of the load share is of its square."""
 
 NEGLIGIBLE = 1e-9
-"""Largest singular value of the possible slips that counts as zero."""
+"""Largest singular value of possible slips, or change of a direction, that counts as zero."""
 
 
 SPIN = np.array([[0.0], [0.0], [1.0]])
@@ -164,6 +164,10 @@ class PlanarStick(AxialStick):
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return the rates of the locked slips in such a ``state`` without accelerations, shape (k,)."""
         return np.asarray(self._to_basis @ self.motion(*state).bias)
+
+    def potential_of(self, slip: FloatArray) -> float:
+        """Return P in m/s of a ``slip``, shape (3,)."""
+        return float(potential(slip, self.factors.geometry))
 
     def held_wrench(self, mbs: Any) -> FloatArray:
         """Return force (N) and moment (N m) of the constraints on the disc, in the master's axes, shape (3,)."""

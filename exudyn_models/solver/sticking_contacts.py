@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
-from exudyn_models.forces.planar_stick import SPIN, PlanarStick, SlipMotion
+from exudyn_models.forces.planar_stick import NEGLIGIBLE, SPIN, PlanarStick, SlipMotion
 from exudyn_models.solver.starting_rates import initialised_solver
 from reference_model.systems import FloatArray
 
@@ -202,6 +202,12 @@ class PlanarContact(StickingContact):
         """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
         return _sliding_mode(self.planar.direction)
+
+    def resist(self, slip: FloatArray) -> bool:
+        """Let an idle contact take all that it can hold against a ``slip``; return whether the direction is new."""
+        size, before = self.planar.potential_of(slip), self.planar.direction
+        self.planar.direction = slip / size if size > 0.0 else np.zeros(3)
+        return bool(np.abs(self.scaled(self.planar.direction - before)).max() > NEGLIGIBLE)
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion."""

@@ -271,13 +271,14 @@ class _Run:
         if not self._planar:
             return True
         shortened = step < (1.0 - ON_GRID) * self._step
-        before = self._slopes
+        before, longest = self._slopes, self._longest
         self._survey()
         turned = max(
             (_change(before[key], now) for key, now in self._slopes.items() if key in before), default=0.0
         )
         if turned > (TURN if shortened else FULL_TURN):
-            self._slopes, self._growing = before, step / 2.0
+            self._slopes, self._longest, self._rests = before, longest, False
+            self._growing = step / 2.0
             return False
         self._growing = 2.0 * max(step, self._growing) if self._growing < self._step else math.inf
         self._pauses = self._rests or min(self._longest, self._growing) < self._step
@@ -356,7 +357,9 @@ class _Run:
 
     def _leave(self, contact: StickingContact, t: float) -> None:
         """Switch a contact to the mode that follows if no other contact changes at the time t (s)."""
-        self._enter(contact, contact.following(self._mbs, t))
+        was_locked, mode = contact.mode == Mode.LOCKED, contact.following(self._mbs, t)
+        if not (was_locked and mode != Mode.OPEN and self._support(contact)):
+            self._enter(contact, mode)
 
     def _settle(self) -> None:
         """Choose the modes with which all contacts obey Coulomb's law from the time reached on."""
@@ -368,6 +371,8 @@ class _Run:
                 contact.enter(self._mbs, Mode.FORWARD)
         for _ in range(MOST_CHANGES):
             self._share_directions()
+            for planar in self._planar:
+                planar.stick.idle = planar.stick.slides and self._is_held(planar)
             chosen = self._contradiction()
             if chosen is None:
                 for contact in self._contacts:
@@ -379,7 +384,8 @@ class _Run:
                     data.SetAECoordinates(forces, initial)
                 return
             contact, mode = chosen
-            self._enter(contact, mode)
+            if mode == Mode.LOCKED or not self._support(contact):
+                self._enter(contact, mode)
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {self._reached:.9g} s"
         )
@@ -435,16 +441,28 @@ class _Run:
         return found
 
     def _set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
-        """Change the initial velocities so that a contact has the ``slip``, those of heavy bodies least."""
+        """Change the initial velocities so that a contact has the ``slip``."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
-        others = [other for other in self._contacts if other.mode == Mode.LOCKED]
-        held, map_to_slip = self._held_rows(others), contact.slip_rows(self._mbs)
         velocities = np.array(data.GetODE2Coordinates_t(initial))
-        missing = np.concatenate([np.zeros(len(held)), slip - map_to_slip @ velocities])
-        weights = self._mobilities()
-        rows = np.vstack([held, map_to_slip]) * weights
-        velocities += weights * np.linalg.lstsq(rows, missing, rcond=None)[0]
+        velocities += self._velocities_of(contact, slip - contact.slip_rows(self._mbs) @ velocities)
         data.SetODE2Coordinates_t(velocities, initial)
+
+    def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
+        """Return velocities of the model at which only this contact slips, those of heavy bodies the smallest."""
+        others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
+        held, weights = self._held_rows(others), self._mobilities()
+        rows = np.vstack([held, contact.slip_rows(self._mbs)]) * weights
+        wanted = np.concatenate([np.zeros(len(held)), slip])
+        return np.asarray(weights * np.linalg.lstsq(rows, wanted, rcond=None)[0])
+
+    def _support(self, overloaded: StickingContact) -> bool:
+        """Let idle contacts in the plane resist the motion that would follow; return whether that is new."""
+        idle = [contact for contact in self._planar if contact.stick.idle]
+        if not idle or not isinstance(overloaded, PlanarContact):
+            return False
+        velocities = self._velocities_of(overloaded, overloaded.planar.direction)
+        slips = [contact.slip_rows(self._mbs) @ velocities for contact in idle]
+        return sum(contact.resist(slip) for contact, slip in zip(idle, slips, strict=True)) > 0
 
     def _mobilities(self) -> FloatArray:
         """Return the inverse square roots of the diagonal of the mass matrix, or the largest one without mass."""
