@@ -1,0 +1,333 @@
+"""Contacts that stick exactly between bodies that can slide sideways."""
+
+import math
+
+import exudyn as exu
+import exudyn.utilities
+import numpy as np
+import pytest
+from free_bodies import coordinate, items, new_model, planar_body, settings_of
+from scipy.integrate import solve_ivp
+from scipy.special import ellipe, ellipk
+
+from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models.forces.planar_stick import PlanarStick
+from reference_model import simulate
+from reference_model.systems import DiscOnDisc, PinOnDisc
+
+SOLVERS = exu.DynamicSolverType
+TRAPEZOIDAL = SOLVERS.TrapezoidalIndex2
+MASS, INERTIA, RADIUS, COEFFICIENT, LOAD = 2.0, 0.02, 0.1, 0.3, 50.0
+RING = {"contact_radius": RADIUS, "friction_coefficient": COEFFICIENT}
+LOCKED, FORWARD = 0, 1
+
+
+def run(mbs, end, step, solver=TRAPEZOIDAL):
+    """Return the changes of mode as (time, contact, before, after)."""
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
+    changes = solve_dynamic(mbs, settings_of(end, round(end / step)), solver)
+    return [(change.time, change.contact, int(change.before), int(change.after)) for change in changes]
+
+
+def velocities(mbs):
+    return np.array(mbs.systemData.GetODE2Coordinates_t())
+
+
+def push(mbs, node, place, load):
+    marker = coordinate(mbs, node, place)
+    mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, loadUserFunction=lambda mbs, t, _: load(t)))
+
+
+def stop_of_ring(speed, spin):
+    """Time at which a ring on the ground stops, by elliptic integrals and its motion at constant ratio in the end."""
+
+    def decelerations(_, motion):
+        u, w = abs(motion[0]), RADIUS * abs(motion[1])
+        larger, smaller = max(u, w), min(u, w)
+        m = (smaller / larger) ** 2
+        by_larger = 2.0 / math.pi * ellipe(m)
+        by_smaller = 2.0 / math.pi * (ellipe(m) - (1.0 - m) * ellipk(m)) * larger / smaller
+        by_u, by_w = (by_larger, by_smaller) if u >= w else (by_smaller, by_larger)
+        force = COEFFICIENT * LOAD
+        return [-force * by_u / MASS, -force * RADIUS * by_w / INERTIA]
+
+    def slow(_, motion):
+        return motion[0] - 1e-8
+
+    slow.terminal = True
+    motion = solve_ivp(
+        decelerations, (0.0, 1.0), [speed, spin], method="DOP853", rtol=1e-11, atol=1e-14, events=slow
+    )
+    ending = motion.y[:, -1]
+    return motion.t[-1] - ending[0] / decelerations(0.0, ending)[0]
+
+
+def sliding_ring(speed, spin, loads=(LOAD,), body=planar_body):
+    mbs = new_model()
+    node = body(mbs, MASS, INERTIA, [0.0, 0.0, 0.0], [speed, 0.0, spin])
+    contacts = [add_ring_friction(mbs, None, node, normal_load=load, **RING) for load in loads]
+    return mbs, node, contacts
+
+
+@pytest.mark.parametrize("solver", [TRAPEZOIDAL, SOLVERS.GeneralizedAlpha])
+def test_a_ring_stops_sliding_and_spinning_at_once_with_the_second_order(solver):
+    exact = stop_of_ring(1.0, 5.0)
+    errors = []
+    for step in (4e-3, 2e-3, 1e-3):
+        mbs, _, (contact,) = sliding_ring(1.0, 5.0)
+        ((time, item, before, after),) = run(mbs, 0.3, step, solver)
+        assert (item, before, after) == (int(contact.item), FORWARD, LOCKED)
+        assert np.abs(velocities(mbs)).max() < 1e-12
+        errors.append(abs(time - exact))
+    assert errors[-1] < 1e-6
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.1)
+
+
+@pytest.mark.parametrize("loads", [(30.0, 20.0), (10.0, 15.0, 25.0)])
+def test_contacts_between_the_same_bodies_share_a_load(loads):
+    """They stop, hold and break loose as one contact with the sum of their loads."""
+    mbs, node, _ = sliding_ring(1.0, 5.0, loads)
+    push(mbs, node, 1, lambda t: 30.0 * max(0.0, t - 0.3))
+    changes = run(mbs, 1.0, 1e-3)
+    times = [stop_of_ring(1.0, 5.0)] * len(loads) + [0.3 + COEFFICIENT * LOAD / 30.0] * len(loads)
+    assert [time for time, *_ in changes] == pytest.approx(times, abs=1e-6)
+    assert [after for *_, after in changes] == [LOCKED] * len(loads) + [FORWARD] * len(loads)
+    assert velocities(mbs) == pytest.approx([0.0, 0.3, 0.0], abs=1e-6)  # 15 (t − 0.8)²/2 m/s at the end
+
+
+@pytest.mark.parametrize("annulus", [False, True])
+def test_a_load_on_the_limit_surface_releases_the_contact(annulus):
+    """The friction that resists a slip lies on the limit surface; a load against it grows until it is reached."""
+    geometry = {"inner_radius": 0.05, "outer_radius": RADIUS} if annulus else {"contact_radius": RADIUS}
+    for slip in ([0.3, -0.4, 2.0], [0.01, 0.02, -3.0], [1.0, 0.0, 0.1]):
+        mbs = new_model()
+        node = planar_body(mbs, MASS, INERTIA, [0.0, 0.0, 0.0], slip)
+        contact = add_ring_friction(
+            mbs,
+            None,
+            node,
+            friction_coefficient=COEFFICIENT,
+            normal_load=LOAD,
+            regularisation=1e-9,
+            **geometry,
+        )
+        mbs.Assemble()
+        force = np.array(contact._functions["force"](mbs, 0.0, 0, [0.0] * 3, slip))
+
+        mbs = new_model()
+        node = planar_body(mbs, MASS, INERTIA, [0.0, 0.0, 0.0], [0.0] * 3)
+        add_ring_friction(
+            mbs, None, node, friction_coefficient=COEFFICIENT, normal_load=LOAD, static_ratio=1.25, **geometry
+        )
+        for place in range(3):
+            push(mbs, node, place, lambda t, size=force[place]: -size * t / 0.4)
+        ((time, _, before, after),) = run(mbs, 0.6, 1e-2)
+        assert time == pytest.approx(0.5, abs=1e-9)
+        assert (before, after) == (LOCKED, -1 if slip[2] < 0.0 else 1)
+
+
+def test_a_held_disc_does_not_creep_within_an_hour():
+    mbs, node, (contact,) = sliding_ring(0.2, 1.0)
+    share = contact.add_sensor("capacity_share", writeToFile=False)
+    push(mbs, node, 0, lambda t: 0.8 * COEFFICIENT * LOAD)
+    push(mbs, node, 2, lambda t: 0.3 * COEFFICIENT * LOAD * RADIUS)
+    mbs.Assemble()
+    solve_dynamic(mbs, settings_of(1.0, 1000), TRAPEZOIDAL, updateInitialValues=True)
+    before = np.array(mbs.systemData.GetODE2Coordinates())
+    assert run(mbs, 3600.0, 1.0) == []
+    assert np.abs(mbs.systemData.GetODE2Coordinates() - before).max() <= 1e-12
+    assert 0.8 < mbs.GetSensorValues(share) < 1.0
+
+
+@pytest.mark.parametrize("solver", [TRAPEZOIDAL, SOLVERS.GeneralizedAlpha])
+def test_a_block_on_a_belt_sticks_and_slips_with_static_friction(solver):
+    """The spring's force reaches the static friction, and the block then swings about that of sliding friction."""
+    mass, stiffness, speed, friction, ratio = 1.0, 100.0, 0.1, 3.0, 1.5
+    mbs = new_model()
+    belt = planar_body(mbs, 1e20, 1.0, [0.0] * 3, [speed, 0.0, 0.0])
+    block = planar_body(mbs, mass, 1.0, [0.0] * 3, [speed, 0.0, 0.0])
+    ground = mbs.AddMarker(
+        items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0)
+    )
+    markers = [ground, coordinate(mbs, block)]
+    mbs.AddObject(items.ObjectConnectorCoordinateSpringDamper(markerNumbers=markers, stiffness=stiffness))
+    add_ring_friction(
+        mbs,
+        belt,
+        block,
+        contact_radius=0.0,
+        friction_coefficient=1.0,
+        normal_load=friction,
+        static_ratio=ratio,
+    )
+    release = ratio * friction / (stiffness * speed)
+    rate = math.sqrt(stiffness / mass)
+    angle = math.atan2(-speed / rate, (ratio - 1.0) * friction / stiffness)
+    stick = (
+        release + (math.pi - 2.0 * angle) / rate
+    )  # from the angle to π minus it, where the speeds are equal
+    (released, *_), (stuck, *_) = run(mbs, 1.0, 1e-3, solver)
+    assert released == pytest.approx(release, abs=1e-9)
+    assert stuck == pytest.approx(stick, abs=5e-6)
+
+
+def spatial_body(kind):
+    def body(mbs, mass, inertia, position, velocity):
+        inertia = exudyn.utilities.RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3))
+        return mbs.CreateRigidBody(
+            inertia=inertia,
+            nodeType=getattr(exu.NodeType, kind),
+            referencePosition=[*position[:2], 0.0],
+            initialVelocity=[*velocity[:2], 0.0],
+            initialAngularVelocity=[0.0, 0.0, velocity[2]],
+            returnDict=True,
+        )["nodeNumber"]
+
+    return body
+
+
+def free_pair(body, step):
+    """Two free bodies, of which one slides and spins on the other; the time at which it sticks."""
+    mbs = new_model()
+    first = body(mbs, 3.0, 0.05, [0.0, 0.0, 0.0], [0.1, 0.2, 3.0])
+    second = body(mbs, 1.0, 0.01, [0.02, 0.0, 0.0], [1.0, 0.5, 20.0])
+    add_ring_friction(mbs, first, second, normal_load=30.0, **RING)
+    ((time, _, _, after),) = run(mbs, 0.4, step)
+    assert after == LOCKED
+    return time
+
+
+@pytest.mark.parametrize("kind", ["RotationRxyz", "RotationRotationVector"])
+def test_free_bodies_in_space_stick_as_planar_ones(kind):
+    assert free_pair(spatial_body(kind), 1e-3) == pytest.approx(free_pair(planar_body, 1e-3), abs=1e-9)
+
+
+def test_free_bodies_with_euler_parameters_stick_with_the_second_order():
+    exact = free_pair(planar_body, 2.5e-4)
+    coarse, fine = (free_pair(spatial_body("RotationEulerParameters"), step) - exact for step in (2e-3, 1e-3))
+    assert abs(fine) < 1e-5
+    assert coarse / fine == pytest.approx(4.0, rel=0.1)
+
+
+def supported(system, start, step, until, solver=TRAPEZOIDAL):
+    """Changes of mode and last state of the paper's pin or disc."""
+    disc = isinstance(system, DiscOnDisc)
+    turn = [start[2], start[5]] if disc else [0.0, 0.0]
+    rates = start[3:5] if disc else start[2:4]
+    mbs = new_model()
+    master = mbs.AddNode(items.Node1D(initialVelocities=[system.disc_speed], referenceCoordinates=[0.0]))
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=master, inertia=1e20))
+    inertia = system.polar_inertia if disc else 1.0
+    body = planar_body(mbs, system.mass, inertia, [*start[:2], turn[0]], [*rates, turn[1]])
+    offset = (system.offset, 0.0)
+    support = {"stiffness": system.stiffness, "damping": system.damping}
+    add_radial_support(mbs, None, body, offset=offset, **support)
+    if disc:
+        markers = [coordinate(mbs, mbs.AddNode(items.NodePointGround())), coordinate(mbs, body, 2)]
+        mbs.AddObject(
+            items.ObjectConnectorCoordinateSpringDamperExt(
+                markerNumbers=markers, damping=system.shaft_damping, velocityOffset=system.shaft_speed
+            )
+        )
+    radius = system.contact_radius if disc else 0.0
+    add_ring_friction(
+        mbs, master, body, contact_radius=radius, friction_coefficient=1.0, normal_load=system.friction_force
+    )
+    times = [time for time, *_ in run(mbs, until, step, solver)]
+    kinds = exu.OutputVariableType
+    position = mbs.GetNodeOutput(body, kinds.Position)[:2]
+    return times, np.array([*position, *velocities(mbs)[1:]])
+
+
+def test_the_pin_of_fig_5_sticks_and_slips_as_in_the_reference():
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
+    start = (0.1, 0.0, 0.03, 0.0)
+    exact = simulate(pin, start, [0.0, 60.0], tolerance=1e-11).stick_times.ravel()
+    assert len(exact) >= 10
+    coarse, fine = (np.array(supported(pin, start, step, 60.0)[0]) for step in (1e-2, 5e-3))
+    assert len(coarse) == len(fine) == len(exact)
+    assert np.abs(fine - exact).max() < 2e-4
+    ratio = np.linalg.norm(coarse - exact) / np.linalg.norm(fine - exact)
+    assert ratio == pytest.approx(4.0, rel=0.2)
+
+
+def test_a_disc_sticks_permanently_as_in_the_reference():
+    disc = DiscOnDisc(
+        mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=0.1, friction_force=0.2, disc_speed=0.5,
+        shaft_speed=0.5, shaft_damping=0.05, offset=0.1, contact_radius=0.12,
+    )  # fmt: skip
+    start = [0.1, 0.02, 0.3, -0.02, 0.08, 0.7]
+    motion = simulate(disc, start, [0.0, 15.0], tolerance=1e-11)
+    ((time,), state) = supported(disc, start, 1e-2, 15.0)
+    assert time == pytest.approx(motion.stick_times.ravel()[0], abs=1e-4)
+    assert state == pytest.approx(motion.states[-1][[0, 1, 3, 4, 5]], abs=1e-4)
+    assert state[-1] == pytest.approx(disc.disc_speed, abs=1e-12)
+
+
+def test_joints_leave_a_guided_block_one_direction_of_slip():
+    """The guide takes the side load, so that the contact breaks loose under the load along the guide alone."""
+    mbs, node, _ = sliding_ring(1.0, 0.0)
+    ground = coordinate(mbs, mbs.AddNode(items.NodePointGround()))
+    for place in (1, 2):
+        mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=[ground, coordinate(mbs, node, place)]))
+    push(mbs, node, 0, lambda t: 30.0 * max(0.0, t - 0.3))
+    push(mbs, node, 1, lambda t: 30.0)
+    deceleration = COEFFICIENT * LOAD / MASS
+    (stop, *_), (release, *_) = run(mbs, 1.0, 1e-3)
+    assert [stop, release] == pytest.approx([1.0 / deceleration, 0.8], abs=1e-6)
+
+
+def test_a_disc_between_two_plates_that_rub_on_each_other_sticks_to_both():
+    """Its locks fix more than the three bodies can do, so the last one holds fewer directions."""
+    mbs = new_model()
+    plates = [planar_body(mbs, 1.0, 0.01, [0.0] * 3, [0.0, 0.0, spin]) for spin in (30.0, 10.0)]
+    disc = planar_body(mbs, 2.0, 0.02, [0.001, 0.0, 0.0], [0.0] * 3)
+    for pair, load in ((plates, 5.0), ((plates[0], disc), 50.0), ((plates[1], disc), 50.0)):
+        add_ring_friction(mbs, *pair, normal_load=load, **RING)
+    momenta = angular_momentum(mbs)
+    assert {after for *_, after in run(mbs, 1.0, 1e-3)} == {LOCKED}
+    spins = velocities(mbs)[[2, 5, 8]]
+    assert np.ptp(spins) < 1e-12
+    assert angular_momentum(mbs) == pytest.approx(momenta, abs=1e-6)
+
+
+def angular_momentum(mbs):
+    """Momentum about the origin of the two plates and the disc, in kg m²/s."""
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
+    total = 0.0
+    for item, mass, inertia in zip(range(3), (1.0, 1.0, 2.0), (0.01, 0.01, 0.02), strict=True):
+        x, y = mbs.GetNodeOutput(item, exu.OutputVariableType.Position)[:2]
+        vx, vy = mbs.GetNodeOutput(item, exu.OutputVariableType.Velocity)[:2]
+        spin = mbs.GetNodeOutput(item, exu.OutputVariableType.AngularVelocity)[2]
+        total += inertia * spin + mass * (x * vy - y * vx)
+    return total
+
+
+def test_the_load_share_is_one_on_the_limit_surface():
+    rng = np.random.default_rng(3)
+    for contact in (
+        (0.1, 0, 1.0, 1e-200, -1, 0.1),
+        (0.1, 0, 1.0, 1e-200, -1, 0.03),
+        (0.0, 1, 1.0, 1e-200, -1, 0.0),
+    ):
+        stick = PlanarStick((4, 1), np.zeros(3), Geometry(contact), 1.0)
+        stick.allow(np.eye(3))
+        for _ in range(100):
+            slip = rng.normal(size=3) * 10.0 ** rng.uniform(-3.0, 3.0, 3)
+            share, found = stick.load_share(0.7 * stick.sliding_wrench(0.0, slip, 0.0), 1.0)
+            assert share == pytest.approx(0.7, rel=1e-12)
+            if contact[0] > 0.0:
+                assert found == pytest.approx(slip / stick.potential_of(slip), rel=1e-5, abs=1e-5)
+
+
+class Geometry:
+    """Load and coefficient with 1 N of friction."""
+
+    def __init__(self, contact):
+        self.geometry = contact
+
+    def friction_force(self, *motion):
+        return 1.0
