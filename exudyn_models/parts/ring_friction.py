@@ -97,9 +97,9 @@ def add_ring_friction(
     all arguments except the time, and none through sensors.
 
     Without ``regularisation`` the contact sticks exactly: constraints hold the slip until the load exceeds the static
-    friction. This requires ``solve_dynamic`` with an implicit solver. The contact does not creep, and the steps can be
-    as large as the motion allows. Switching times have the accuracy of the solver's steps. On one axis a contact that
-    reverses twice within one step is not detected.
+    friction. This requires ``solve_dynamic`` with an implicit solver. The contact does not creep, and the steps can
+    be as large as the motion allows. Switching times have the accuracy of the solver's steps. On one axis a contact
+    that reverses twice within one step is not detected.
 
     A static solver keeps the initial velocities of the nodes, so it finds the equilibrium of a disc on a turning
     master.
@@ -144,8 +144,8 @@ def add_ring_friction(
     ------
     ValueError
         If a number is out of range, a function takes other arguments, a node is not in ``mbs`` or of an unsupported
-        kind, or points between bodies that can slide sideways have no regularisation. If a function returns an invalid number in a run, Exudyn raises an ``ExudynError`` with its
-        time and arguments.
+        kind, or points between bodies that can slide sideways have no regularisation. If a function returns an
+        invalid number in a run, Exudyn raises an ``ExudynError`` with its time and arguments.
 
     """
     contact = _checked_geometry(

@@ -448,7 +448,7 @@ class _Run:
         data.SetODE2Coordinates_t(velocities, initial)
 
     def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
-        """Return velocities of the model at which only this contact slips, those of heavy bodies the smallest."""
+        """Return velocities at which only this contact slips; heavy bodies move the least."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
         held, weights = self._held_rows(others), self._mobilities()
         rows = np.vstack([held, contact.slip_rows(self._mbs)]) * weights

@@ -40,7 +40,7 @@ def push(mbs, node, place, load):
 
 
 def stop_of_ring(speed, spin):
-    """Time at which a ring on the ground stops, by elliptic integrals and its motion at constant ratio in the end."""
+    """Return the time at which a ring on the ground stops; in the end slip and spin keep their ratio."""
 
     def decelerations(_, motion):
         u, w = abs(motion[0]), RADIUS * abs(motion[1])
@@ -189,7 +189,7 @@ def spatial_body(kind):
 
 
 def free_pair(body, step):
-    """Two free bodies, of which one slides and spins on the other; the time at which it sticks."""
+    """Return the time at which a body sticks that slides and spins on another free body."""
     mbs = new_model()
     first = body(mbs, 3.0, 0.05, [0.0, 0.0, 0.0], [0.1, 0.2, 3.0])
     second = body(mbs, 1.0, 0.01, [0.02, 0.0, 0.0], [1.0, 0.5, 20.0])
@@ -212,7 +212,7 @@ def test_free_bodies_with_euler_parameters_stick_with_the_second_order():
 
 
 def supported(system, start, step, until, solver=TRAPEZOIDAL):
-    """Changes of mode and last state of the paper's pin or disc."""
+    """Return the times of mode changes, and the last state, of the paper's pin or disc."""
     disc = isinstance(system, DiscOnDisc)
     turn = [start[2], start[5]] if disc else [0.0, 0.0]
     rates = start[3:5] if disc else start[2:4]
@@ -294,7 +294,7 @@ def test_a_disc_between_two_plates_that_rub_on_each_other_sticks_to_both():
 
 
 def angular_momentum(mbs):
-    """Momentum about the origin of the two plates and the disc, in kg m²/s."""
+    """Return the angular momentum of two plates and a disc about the origin in kg m²/s."""
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     total = 0.0

@@ -277,5 +277,5 @@ def test_explicit_solvers_and_points_on_bodies_that_can_slide_sideways_are_refus
         solve_dynamic(mbs, settings_of(1.0, 10), SOLVERS.RK44)
     mbs = new_model()
     law = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 10.0, "contact_points": 3}
-    with pytest.raises(ValueError, match="contact_points = 3: .* need a regularisation"):
+    with pytest.raises(ValueError, match=r"contact_points = 3: .* need a regularisation"):
         add_ring_friction(mbs, None, planar_body(mbs, 1.0, 1.0, [0.0] * 3, [1.0] * 3), **law)
