@@ -34,7 +34,7 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.step_limit import largest_stable_step
-from exudyn_models.solver.sticking_contacts import ModeChange
+from exudyn_models.solver.stick.sticking_contacts import ModeChange
 
 __all__ = [
     "PASSENGER_CAR",

@@ -6,7 +6,7 @@ coefficient are constant, no compiled code is needed.
 
 A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
 the slip, so the equations of motion are smooth even across zero slip. A constraint holds both spins together while
-the contact is locked, and its multiplier is the moment of friction. ``solver.switching`` finds the times of changes.
+the contact is locked, and its multiplier is the moment of friction. ``stick.switching`` finds the times of changes.
 """
 
 from __future__ import annotations

@@ -16,7 +16,6 @@ import numpy as np
 from exudyn_models.forces.axial_pairs import AxialStick, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.planar_stick import PlanarStick
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
@@ -28,6 +27,7 @@ from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
+from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls

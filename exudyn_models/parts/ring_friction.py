@@ -17,12 +17,12 @@ from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.planar_stick import PlanarStick
 from exudyn_models.forces.slip_kinematics import GROUND, KINDS, ROTOR, SPATIAL, TRANSLATIONS, Kinds, frame
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_connector, checked_kind, node_of
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.thermal_node import ThermalNode
+from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -30,7 +30,7 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 ALL = tuple(KINDS.values())
 
 UNREGULARISED = 1e-200
-"""Speed in m/s in place of ε where a contact sticks exactly, far below any slip at which it slides."""
+"""Value of ε in m/s for exact stick, far below any slip of a sliding contact."""
 
 
 class AddFriction(Protocol):

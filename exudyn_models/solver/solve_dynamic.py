@@ -17,13 +17,13 @@ from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import INTERVALS, StepCheck
-from exudyn_models.solver.sticking_contacts import (
+from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,
     first_modes,
     sticking_contacts,
 )
-from exudyn_models.solver.switching import run_switching
+from exudyn_models.solver.stick.switching import run_switching
 from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -56,7 +56,7 @@ def solve_dynamic(
       friction are repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see
       ``steep_laws``.
     - *Exact stick.* Friction contacts without a regularisation lock and release at the times of Coulomb's law, see
-      ``switching``. Sensors have an additional row at each of these times.
+      ``stick.switching``. Sensors have an additional row at each of these times.
 
     Parameters
     ----------

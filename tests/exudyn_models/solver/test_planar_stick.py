@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
 from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
-from exudyn_models.forces.planar_stick import PlanarStick
+from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc, PinOnDisc
 
@@ -40,7 +40,7 @@ def push(mbs, node, place, load):
 
 
 def stop_of_ring(speed, spin):
-    """Return the time at which a ring on the ground stops; in the end slip and spin keep their ratio."""
+    """Return the time at which a ring on the ground stops, from a motion that ends at a constant ratio u/S."""
 
     def decelerations(_, motion):
         u, w = abs(motion[0]), RADIUS * abs(motion[1])
@@ -189,7 +189,7 @@ def spatial_body(kind):
 
 
 def free_pair(body, step):
-    """Return the time at which a body sticks that slides and spins on another free body."""
+    """Return the time at which two free bodies stick, one of them sliding and spinning on the other."""
     mbs = new_model()
     first = body(mbs, 3.0, 0.05, [0.0, 0.0, 0.0], [0.1, 0.2, 3.0])
     second = body(mbs, 1.0, 0.01, [0.02, 0.0, 0.0], [1.0, 0.5, 20.0])

@@ -2,7 +2,7 @@
 
 While the contact is locked, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are
 the force and moment of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law
-without regularisation, so no step may pass its rest. ``solver.switching`` limits the steps for that reason.
+without regularisation, so no step may pass its rest. ``stick.switching`` limits the steps for that reason.
 
 Joints may leave the contact only some directions of slip. With such a basis B, shape (3, k), the slip is B·v, and the
 k constraints are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share
@@ -14,30 +14,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
-from exudyn_models.forces.friction_laws import Contact, derivatives_by_slip, friction_of_slip, mean_radius
-from exudyn_models.forces.jit import KeptOnDisk, compiled
-from exudyn_models.forces.slip_kinematics import (
-    IMAGINARY_STEP,
-    ROTATION_VECTOR,
-    SIZES,
-    TRANSLATIONS,
-    Kinds,
-    radius_of_disc,
-    slip_jacobian,
+from exudyn_models.forces.friction_laws import mean_radius
+from exudyn_models.solver.stick.slip_motion import (
+    SlipMotion,
+    jacobian_of_slip,
+    linear_friction,
+    potential,
+    resisted_slip,
+    slip_motion,
+    unit_friction,
 )
 from reference_model.systems import FloatArray
-
-ITERATIONS = 100
-"""Largest number of iterations for the direction of slip on the limit surface."""
-
-ACCURACY = 1e-9
-"""Angle in rad to which this direction is found; the error of the load share is of its square."""
 
 NEGLIGIBLE = 1e-9
 """Largest singular value of possible slips, or change of a direction, that counts as zero."""
@@ -45,59 +38,6 @@ NEGLIGIBLE = 1e-9
 
 SPIN = np.array([[0.0], [0.0], [1.0]])
 """Basis of the slip on one axis."""
-
-
-RESOLVED = 1e-6
-"""Smallest ratio of slip to the speeds whose difference it is at which friction has a direction."""
-
-
-class SlipMotion(NamedTuple):
-    """Motion of a contact that sticks exactly.
-
-    Parameters
-    ----------
-    slip, rate : array of shape (3,)
-        (u, S) in m/s and rad/s, and its rate of change in m/s² and rad/s².
-    bias : array of shape (3,)
-        Rate of change without accelerations, J̇·q̇.
-    gradient : array of shape (3,)
-        Derivatives of P by the slip, zero at rest.
-    radius : float
-        Distance of the disc's centre from the axis of the master, in m.
-    rate_potential : float
-        P of the rate, in m/s².
-    largest_term : float
-        Largest speed in m/s whose differences are the slip, which determines its rounding error.
-
-    """
-
-    slip: FloatArray
-    rate: FloatArray
-    bias: FloatArray
-    gradient: FloatArray
-    radius: float
-    rate_potential: float
-    largest_term: float
-
-    @property
-    def potential(self) -> float:
-        """Slip potential P in m/s."""
-        return float(self.gradient @ self.slip)
-
-    @property
-    def remaining(self) -> float:
-        """Time in s after which the contact would rest at the present rate of P, infinite if P grows."""
-        falling = -float(self.gradient @ self.rate)
-        return self.potential / falling if falling > 0.0 else math.inf
-
-    def rests_within(self, time: float) -> bool:
-        """Return whether the slip decreases and vanishes within a ``time`` (s), or is as small as its rounding error.
-
-        The direction of friction must be accurate enough for Newton's method.
-        """
-        return self.remaining < time or (
-            self.remaining < math.inf and self.potential < RESOLVED * self.largest_term
-        )
 
 
 @dataclass(eq=False)
@@ -113,7 +53,7 @@ class PlanarStick(AxialStick):
     basis : array of shape (3, k)
         Directions of slip (m/s, m/s, rad/s) that joints and other locked contacts allow.
     direction : array of shape (3,)
-        Slip with P = 1 m/s at which the load has released the contact, normal to the limit surface.
+        Slip into which the load has released the contact, scaled to P = 1 m/s and normal to the limit surface.
 
     """
 
@@ -122,9 +62,9 @@ class PlanarStick(AxialStick):
     basis: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
     frozen: bool = False
-    """Whether friction stays that at the start of the step, within which the slip vanishes."""
+    """True in the last step before the contact rests: friction keeps its value from the start of the step."""
     predicts: bool = False
-    """Whether friction is linear about the start of the step, until Newton's method has made its first iteration.
+    """True during the first iteration of Newton's method: friction is linear about the start of the step.
 
     Exudyn's first iterate has no acceleration at the end of the step, so it may slip in any direction.
     """
@@ -287,148 +227,3 @@ class PlanarStick(AxialStick):
             rows[: self.basis.shape[1]] = self.rows(np.array(q))
             self._evaluated = list(q), rows
         return np.asarray(self._evaluated[1][lock])
-
-
-@compiled
-def _slip_motion(
-    kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float]:
-    """Return the components of a ``SlipMotion``."""
-    to_slip, axes, _ = slip_jacobian(kinds, q)
-    stepped = q.astype(np.complex128)
-    rates = _coordinate_rates(kinds, q, q_t)
-    for k in range(len(q)):
-        stepped[k] += 1j * IMAGINARY_STEP * rates[k]
-    stepped_map = slip_jacobian(kinds, stepped)[0]
-    slip, rate, bias, gradient = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    largest = 0.0
-    for i in range(3):
-        length = 1.0 if i < 2 else contact[0]
-        for k in range(len(q)):
-            slip[i] += to_slip[i, k] * q_t[k]
-            largest = max(largest, length * abs(to_slip[i, k] * q_t[k]))
-            bias[i] += stepped_map[i, k].imag / IMAGINARY_STEP * q_t[k]
-            rate[i] += to_slip[i, k] * q_tt[k]
-        rate[i] += bias[i]
-    friction = _unit_friction(slip, contact)
-    for i in range(3):
-        gradient[i] = -friction[i]
-    return slip, rate, bias, gradient, radius_of_disc(kinds, q, axes), _potential(rate, contact), largest
-
-
-@compiled
-def _linear_friction(
-    kinds: Kinds,
-    contact: Contact,
-    q: FloatArray,
-    q_t: FloatArray,
-    start: FloatArray,
-    friction: float,
-    slope: float,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives by q and q_t.
-
-    With a ``slope`` of 0 instead of 1 they do not depend on the slip.
-    """
-    size = len(q)
-    to_slip = slip_jacobian(kinds, q)[0]
-    by_slip = slope * friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
-    unit = _unit_friction(start, contact)
-    wrench, slip_by_q = np.zeros(3), np.zeros((3, size))
-    for i in range(3):
-        wrench[i] = friction * unit[i]
-        for j in range(3):
-            slip = -start[j]
-            for k in range(size):
-                slip += to_slip[j, k] * q_t[k]
-            wrench[i] += by_slip[i, j] * slip
-    by_q, by_q_t = np.zeros((size, size)), np.zeros((size, size))
-    forces = np.zeros(size)
-    for n in range(size):
-        stepped = q.astype(np.complex128)
-        stepped[n] += 1j * IMAGINARY_STEP
-        change = slip_jacobian(kinds, stepped)[0]
-        for i in range(3):
-            forces[n] += to_slip[i, n] * wrench[i]
-            for k in range(size):
-                slip_by_q[i, n] += change[i, k].imag / IMAGINARY_STEP * q_t[k]
-                by_q[k, n] += change[i, k].imag / IMAGINARY_STEP * wrench[i]
-    for k in range(size):
-        for n in range(size):
-            for i in range(3):
-                for j in range(3):
-                    by_q[k, n] += to_slip[i, k] * by_slip[i, j] * slip_by_q[j, n]
-                    by_q_t[k, n] += to_slip[i, k] * by_slip[i, j] * to_slip[j, n]
-    return forces, by_q, by_q_t
-
-
-@compiled
-def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
-    """Return the derivatives of coordinates, which for a rotation vector v are not ω in the body's axes.
-
-    With θ = |v|, v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω).
-    """
-    rates = q_t.copy()
-    start = 0
-    for kind in kinds:
-        if kind == ROTATION_VECTOR:
-            at = start + TRANSLATIONS[kind]
-            vector, spin = q[at : at + 3].copy(), q_t[at : at + 3].copy()
-            once = np.cross(vector, spin)
-            angle = math.sqrt(vector @ vector)
-            factor = 1.0 / 12.0
-            if angle > 1e-3:
-                factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2
-            twice = np.cross(vector, once)
-            for i in range(3):
-                rates[at + i] = spin[i] + 0.5 * once[i] + factor * twice[i]
-        start += SIZES[kind]
-    return rates
-
-
-@compiled
-def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, float]:
-    """Return force and moment per newton of μN of a circle or an annulus."""
-    return friction_of_slip(slip[0], slip[1], slip[2], 0.0, contact)
-
-
-@compiled
-def _potential(slip: FloatArray, contact: Contact) -> float:
-    fx, fy, moment = _unit_friction(slip, contact)
-    power: float = -(fx * slip[0] + fy * slip[1] + moment * slip[2])
-    return power
-
-
-@compiled
-def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
-    """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
-
-    The quotient has one maximum between the directions without power, because P is convex. The Illinois method finds
-    the zero of its derivative (Dowell & Jarratt, BIT 11 (1971) 168).
-    """
-    first, second = columns[:, 0].copy(), columns[:, 1].copy()
-    middle = math.atan2(load @ second, load @ first)
-    low, high = middle - 0.5 * math.pi, middle + 0.5 * math.pi
-    below, above = -1.0, 1.0
-    side, angle = 0, middle
-    for i in range(ITERATIONS):
-        slip = math.cos(angle) * first + math.sin(angle) * second
-        turn = math.cos(angle) * second - math.sin(angle) * first
-        fx, fy, moment = _unit_friction(slip, contact)
-        potential = -(fx * slip[0] + fy * slip[1] + moment * slip[2])
-        change = -(fx * turn[0] + fy * turn[1] + moment * turn[2])
-        slope = change * (load @ slip) - potential * (load @ turn)
-        if slope == 0.0 or high - low < ACCURACY:
-            break
-        if slope < 0.0:
-            low, below, above, side = angle, slope, above if side >= 0 else above / 2.0, -1
-        else:
-            high, above, below, side = angle, slope, below if side <= 0 else below / 2.0, 1
-        share = 0.5 if i % 4 == 3 or i == 0 else below / (below - above)
-        angle = min(max(low + share * (high - low), low + ACCURACY / 2.0), high - ACCURACY / 2.0)
-    return slip
-
-
-slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
-unit_friction, potential = KeptOnDisk(_unit_friction), KeptOnDisk(_potential)
-resisted_slip, jacobian_of_slip = KeptOnDisk(_resisted_slip), KeptOnDisk(slip_jacobian)

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
-from exudyn_models.forces.planar_stick import NEGLIGIBLE, SPIN, PlanarStick, SlipMotion
 from exudyn_models.solver.starting_rates import initialised_solver
+from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
+from exudyn_models.solver.stick.slip_motion import SlipMotion
 from reference_model.systems import FloatArray
 
 CURRENT = exu.ConfigurationType.Current
@@ -87,7 +88,7 @@ class StickingContact:
         return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
 
     def driven(self, mbs: Any) -> Mode:
-        """Return the direction in which its load drives a locked contact."""
+        """Return the mode of sliding into which the load drives a locked contact."""
         return Mode.BACKWARD if self.stick.held_moment(mbs) > 0.0 else Mode.FORWARD
 
     def rows(self, mbs: Any) -> FloatArray:
@@ -122,15 +123,15 @@ class StickingContact:
         )
 
     def slip(self, mbs: Any, ahead: float = 0.0, configuration: Any = CURRENT) -> float:
-        """Return S in rad/s, or what it will be a short time ``ahead`` (s)."""
+        """Return S in rad/s, now or a short time ``ahead`` (s)."""
         q, q_t, q_tt = self._state(mbs, configuration)
         return self.stick.slip(q + ahead * q_t, q_t + ahead * q_tt)
 
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        That is the slip in the direction of sliding (rad/s) or what a locked contact could hold in addition (N m),
-        and ±1 where load or coefficient is zero.
+        It is the slip in the direction of sliding (rad/s), the unused moment of a locked contact (N m), or ±1 if load
+        or coefficient is zero.
         """
         holding = self.stick.holding_moment(t)
         if (holding == 0.0) != (self.mode == Mode.OPEN):
@@ -166,7 +167,7 @@ class PlanarContact(StickingContact):
 
     @property
     def free_to_slide(self) -> bool:
-        """Whether it slides and other constraints do not hold it."""
+        """True if the contact slides and no other constraints hold it."""
         return self.stick.slides and not self.stick.idle
 
     def allow(self, mbs: Any, velocities: FloatArray) -> None:
@@ -311,5 +312,10 @@ def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> 
         gradients = np.array(solver.GetSystemJacobian())[-data.AEsize() :, : data.ODE2Size()]
         solver.ComputeMassMatrix(mbs)
         mass = np.array(solver.GetSystemMassMatrix())[: data.ODE2Size(), : data.ODE2Size()]
-    locks = [int(data.GetObjectLTGAE(lock)[0]) for contact in contacts for lock in contact.stick.locks]
-    return np.delete(gradients, locks, axis=0), mass
+    return np.delete(gradients, lock_places(mbs, contacts), axis=0), mass
+
+
+def lock_places(mbs: Any, contacts: Sequence[StickingContact]) -> list[int]:
+    """Return the positions of the locks of ``contacts`` among the constraints of an assembled model."""
+    locks = [lock for contact in contacts for lock in contact.stick.locks]
+    return [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]

@@ -1,0 +1,37 @@
+"""Rows of sensors at multiples of their period, in a run of many parts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+ON_GRID = 1e-9
+"""Tolerance, as a share of a step, for the end of a step at a multiple of the step."""
+
+
+class SensorRows:
+    """Rows of sensors, switched on for the steps whose ends are due.
+
+    Exudyn itself would count their period from the start of each part of a run.
+    """
+
+    def __init__(self, settings: Any, start: float, step: float) -> None:
+        self._settings, self._next, self._step = settings, start, step
+        self._wanted, self._period = settings.active, settings.writePeriod
+        settings.writePeriod = 0.0
+
+    def switch(self, on: bool) -> None:
+        """Switch rows on or off from the next step on, if they are wanted at all."""
+        self._settings.active = self._wanted and on
+
+    def is_due(self, t: float) -> bool:
+        """Return whether a row is due at the time t (s), and if so go on to the time of the next one."""
+        if t < self._next - ON_GRID * self._step:
+            return False
+        period = max(self._period, self._step)
+        self._next += period * (1 + math.floor((t - self._next) / period + ON_GRID))
+        return True
+
+    def restore(self) -> None:
+        """Restore the settings."""
+        self._settings.active, self._settings.writePeriod = self._wanted, self._period

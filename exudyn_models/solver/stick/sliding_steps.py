@@ -1,0 +1,90 @@
+"""Steps that resolve how contacts slide in the plane.
+
+The friction of such a contact turns with its slip, ever faster as the slip vanishes. The steps therefore shrink in
+proportion to the slip until the contact counts as resting, and grow again after its release.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from exudyn_models.solver.stick.sensor_rows import ON_GRID
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact
+from reference_model.systems import FloatArray
+
+APPROACH = 0.9
+"""Largest share of a contact's slip in the plane that its acceleration could remove within one step."""
+
+TURN = 0.05
+"""Largest change of the direction of friction in the plane within one step that a small slip has shortened."""
+
+FULL_TURN = 0.3
+"""Largest change of this direction within a step of full length."""
+
+
+class SlidingSteps:
+    """Choice of the next step for the ``contacts`` in the plane of a model, at most the ``step`` (s) of the run.
+
+    Attributes
+    ----------
+    rests : bool
+        Whether a contact rests at the end of the last step.
+    pauses : bool
+        Whether the next step must have another size than the run's.
+
+    """
+
+    def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
+        self._mbs, self._contacts, self._step = mbs, contacts, step
+        self._by_slip = self._growing = math.inf
+        self._directions: dict[int, FloatArray] = {}
+        self.pauses = self.rests = False
+
+    @property
+    def longest(self) -> float:
+        """Longest next step in s."""
+        return min(self._by_slip, self._growing)
+
+    def begin(self, step: float) -> None:
+        """Begin to slide with a first ``step`` (s), after which the steps grow."""
+        self._growing = step
+
+    def resolves(self, step: float) -> bool:
+        """Return whether a ``step`` (s) was short enough, and choose the next one."""
+        if not self._contacts:
+            return True
+        shortened = step < (1.0 - ON_GRID) * self._step
+        before, by_slip = self._directions, self._by_slip
+        self.survey()
+        turned = max(
+            (
+                float(np.linalg.norm(now - before[key]))
+                for key, now in self._directions.items()
+                if key in before
+            ),
+            default=0.0,
+        )
+        if turned > (TURN if shortened else FULL_TURN):
+            self._directions, self._by_slip, self.rests = before, by_slip, False
+            self._growing = step / 2.0
+            return False
+        self._growing = 2.0 * max(step, self._growing) if self._growing < self._step else math.inf
+        self.pauses = self.rests or self.longest < self._step
+        return True
+
+    def survey(self) -> None:
+        """Note the directions of friction, the longest next step, and whether a contact rests."""
+        self._directions, self._by_slip, self.rests = {}, math.inf, False
+        for contact in self._contacts:
+            if contact.free_to_slide:
+                motion = contact.slid(self._mbs)
+                self._directions[contact.item] = contact.scaled(motion.gradient)
+                shortest = contact.rest_share * self._step
+                self.rests |= motion.rests_within(shortest)
+                if motion.rate_potential > 0.0:
+                    longest = APPROACH * motion.potential / motion.rate_potential
+                    self._by_slip = min(self._by_slip, max(longest, shortest))
