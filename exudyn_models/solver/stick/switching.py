@@ -1,10 +1,10 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
-Between two changes the equations of motion are smooth. The driver takes back a step that passes a change and repeats it
-with a length that ends at the change. There it chooses modes that let all contacts obey Coulomb's law at once: a locked
-contact transmits no more than it can hold, and a sliding one does not reverse. ``sliding_steps`` chooses the steps of
-contacts that slide in the plane. Such a contact begins to slide normal to the limit surface, with the slip that its
-load reaches within a millionth of a step.
+Between two changes the equations of motion are smooth. The driver takes back a step that passes a change and repeats
+it with a length that ends at the change. There it chooses modes that let all contacts obey Coulomb's law at once: a
+locked contact transmits no more than it can hold, and a sliding one does not reverse. ``sliding_steps`` chooses the
+steps of contacts that slide in the plane. Such a contact begins to slide normal to the limit surface, with the slip
+that its load reaches within a millionth of a step.
 """
 
 from __future__ import annotations
