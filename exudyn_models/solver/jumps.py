@@ -24,7 +24,7 @@ STEEPER = 5.0
 """Smallest ratio of a jump to the neighbouring changes, and of their slopes; a curve reaches about 2."""
 
 LEAST = 0.02
-"""Smallest jump that is reported, as a share of the largest power of the run."""
+"""Smallest jump that is reported, as a share of the largest of all powers of the run."""
 
 
 def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
@@ -50,7 +50,7 @@ class JumpCheck:
         self._names, self._units, self._places = _powers(mbs)
         self._times: list[float] = []
         self._rates: list[FloatArray] = []
-        self._largest = np.zeros(len(self._names))
+        self._largest = 0.0
         self._jumps: list[tuple[float, float, int, float]] = []
 
     def look(self, t: float, rates: FloatArray) -> None:
@@ -66,7 +66,7 @@ class JumpCheck:
         """Search the recorded steps for jumps, except the last ones, which start the next search."""
         times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
         del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
-        self._largest = np.maximum(self._largest, np.abs(powers).max(axis=0))
+        self._largest = max(self._largest, float(np.abs(powers).max()))
         if len(times) < 2 * NEIGHBOURS + 2:
             return
         changes, spans = (
@@ -89,10 +89,10 @@ class JumpCheck:
         """Warn about the largest jump found, if any."""
         if self._times:
             self._find()
-        jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest[jump[2]]]
+        jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest]
         if not jumps:
             return
-        start, end, power, size = max(jumps, key=lambda jump: jump[3] / self._largest[jump[2]])
+        start, end, power, size = max(jumps, key=lambda jump: jump[3])
         times = len({jump[0] for jump in jumps})
         warnings.warn(
             f"the power {self._names[power]!r} jumps by {size:.3g} W between t = {start:.9g} s and {end:.9g} s"

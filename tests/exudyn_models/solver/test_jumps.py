@@ -56,6 +56,24 @@ def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance)
     assert message.endswith("breaks=[...]; otherwise use shorter steps")
 
 
+@SOLVERS
+@pytest.mark.parametrize(("load", "warns"), [(0.1, False), (40.0, True)])
+def test_a_jump_that_is_small_compared_with_the_other_powers_is_noise(solver, load, warns):
+    """A second brake of 0.15 or 60 W, while the first one turns 1200 W into heat."""
+    mbs = new_model()
+    wheel, law = rotor(mbs, INERTIA, SPEED), {"contact_radius": 0.1, "friction_coefficient": 0.3}
+    loads = {"brake": 800.0, "other brake": lambda time: load * (time > 0.1037)}
+    losses = {
+        name: add_ring_friction(mbs, None, wheel, normal_load=load, regularisation=1e-2, **law).power
+        for name, load in loads.items()
+    }
+    add_energy_balance(mbs, gains={}, losses=losses)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        solve_dynamic(mbs, settings_of(0.15, 30), solver)
+    assert [str(one.message).split(" jumps")[0] for one in caught] == ["the power 'other brake'"] * warns
+
+
 def rise(width):
     """A load that rises in the middle of a step over about ``width`` of them."""
     return lambda time: 400.0 * (1.0 + np.tanh((time - 20.5 * STEP) / (width * STEP)))
