@@ -45,7 +45,7 @@ def support_functions(
     ``reference`` contains the reference coordinates of both, shape (n,). The first ``hidden`` of them are zero and
     not part of the model: ``ON_GROUND``, ``ON_ROTOR`` or 0.
     """
-    if kinds[0] == PLANAR:
+    if kinds[0] == PLANAR and kinds[2] is None:
         force = _force_on_flat_base(hidden, reference, offset, law)
     else:
         force = _force_on_any_base(kinds, reference, offset, law)

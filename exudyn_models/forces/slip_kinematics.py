@@ -5,6 +5,9 @@ axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M
 nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
 any orientation, and the derivatives of the forces follow from those of J.
 
+A contact may sit anywhere on its bodies. ``Mounts`` place it, and the lever from the disc's node to the contact then
+enters J. Without mounts the contact is that of the nodes themselves, which is cheaper.
+
 J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
 (Squire & Trapp, SIAM Review 40 (1998) 110).
 
@@ -42,8 +45,23 @@ SIZES = (1, 3, 6, 6, 0, 7)
 
 IMAGINARY_STEP = 1e-30
 
-Kinds = tuple[int, int]
-"""Kinds of the nodes of master and disc."""
+MOUNT_SIZE = 24
+"""Number of components of the mount on one body."""
+
+MOUNTS_SIZE = 2 * MOUNT_SIZE
+
+Mounts = Sequence[float]
+"""Where the contact sits on master and disc, ``MOUNT_SIZE`` numbers each.
+
+They are two frames, each a position in m and the x, y and z axes. The first is the fixed frame in which a rotor turns
+about its z axis, or in which the ground rests. The second is the frame of the contact in the axes of the body.
+"""
+
+Kinds = tuple[int, int, Mounts | None]
+"""Kinds of the nodes of master and disc, and the mounts of the contact; None if its frames are those of the nodes.
+
+Rotors and the ground then turn about and have the global z axis through the origin.
+"""
 
 Floats = Sequence[float]
 
@@ -60,26 +78,37 @@ Axes = tuple[Vector, Vector, Vector]
 
 @compiled
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
-    """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
+    """Return J, shape (3, n), the axes of the contact on the master, and cosine and sine of the disc's angle in them.
 
-    The angle is that of the disc's x axis, or of its y axis if its x axis lies along the master's z axis.
-    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A rotor turns
-    about the z axis through the global origin, where the ground rests, and a planar body about a parallel axis.
+    The angle is that of the x axis of the contact on the disc, or of its y axis if its x axis lies along the master's
+    z axis. ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar
+    body turns about an axis parallel to the global z axis.
     """
-    master, disc = kinds
+    master, disc, mounts = kinds
+    return _slip_jacobian(master, disc, mounts, coordinates)
+
+
+@compiled
+def _slip_jacobian(
+    master: int, disc: int, mounts: Mounts | None, coordinates: Array
+) -> tuple[Array, Axes, tuple[Any, Any]]:
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
-    place, axes, turning = frame(master, coordinates, 0)
-    disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
+    place, _, axes, turning = _contact_frame(master, mounts, 0, coordinates, 0)
+    disc_place, centre, disc_axes, disc_turning = _contact_frame(disc, mounts, MOUNT_SIZE, coordinates, size)
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[i]
-        lever = _lever(place, disc_place, axis)  # (ω×d)·e = ω·(d×e)
+        lever = _lever(place, centre, axis)  # (ω×d)·e = ω·(d×e)
         for k in range(before):
             result[i, k] = -axis[k]
         for k in range(first):
             result[i, size + k] = axis[k]
         for k in range(size - before):
             result[i, before + k] = -_product(lever, turning[k])
+        if mounts is not None:
+            lever = _lever(disc_place, centre, axis)
+            for k in range(SIZES[disc] - first):
+                result[i, size + first + k] = _product(lever, disc_turning[k])
     for k in range(size - before):
         result[2, before + k] = -_product(axes[2], turning[k])
     for k in range(SIZES[disc] - first):
@@ -92,9 +121,26 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
 
 @compiled
 def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, Any]:
-    """Return the position in m of the disc's node relative to the master, along the x and y of its ``axes``."""
-    master, disc = kinds
+    """Return the position in m of the contact on the disc relative to the master's, along the x and y of ``axes``.
+
+    These are the ``axes`` of the contact on the master, from ``slip_jacobian``.
+    """
+    master, disc, mounts = kinds
+    return _place_of_disc(master, disc, mounts, coordinates, axes)
+
+
+@compiled
+def _place_of_disc(
+    master: int, disc: int, mounts: Mounts | None, coordinates: Array, axes: Axes
+) -> tuple[Any, Any]:
     x = y = 0.0 * coordinates[0]
+    if mounts is not None:
+        _, start, _, _ = _contact_frame(master, mounts, 0, coordinates, 0)
+        _, end, _, _ = _contact_frame(disc, mounts, MOUNT_SIZE, coordinates, SIZES[master])
+        for i in range(3):
+            x += (end[i] - start[i]) * axes[0][i]
+            y += (end[i] - start[i]) * axes[1][i]
+        return x, y
     for i in range(max(TRANSLATIONS[master], TRANSLATIONS[disc])):
         apart = 0.0 * coordinates[0]
         if i < TRANSLATIONS[disc]:
@@ -108,9 +154,49 @@ def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, An
 
 @compiled
 def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
-    """Return the distance in m of the disc's node from the axis of the master with ``axes``."""
+    """Return the distance in m of the contact on the disc from the z axis of its ``axes`` on the master."""
     x, y = place_of_disc(kinds, coordinates, axes)
     return np.sqrt(x * x + y * y)
+
+
+@compiled
+def _contact_frame(
+    kind: int, mounts: Mounts | None, mount: int, q: Array, at: int
+) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
+    """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
+
+    The numbers of the body's mount begin at ``mounts[mount]``, its coordinates at ``q[at]``.
+    """
+    place, axes, turning = frame(kind, q, at)
+    if mounts is None:
+        return place, place, axes, turning
+    if TRANSLATIONS[kind] == 0:  # a rotor or the ground
+        fixed = _axes_at(mounts, mount + 3)
+        place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])
+        axes = (_turned(axes[0], fixed), _turned(axes[1], fixed), _turned(axes[2], fixed))
+        turning = (_turned(turning[0], fixed), turning[1], turning[2], turning[3])
+    x, y, z = _turned((mounts[mount + 12], mounts[mount + 13], mounts[mount + 14]), axes)
+    own = _axes_at(mounts, mount + 15)
+    centre = (place[0] + x, place[1] + y, place[2] + z)
+    return place, centre, (_turned(own[0], axes), _turned(own[1], axes), _turned(own[2], axes)), turning
+
+
+@compiled
+def _axes_at(mounts: Mounts, at: int) -> Axes:
+    """Return the axes that begin at ``mounts[at]``."""
+    return (
+        (mounts[at], mounts[at + 1], mounts[at + 2]),
+        (mounts[at + 3], mounts[at + 4], mounts[at + 5]),
+        (mounts[at + 6], mounts[at + 7], mounts[at + 8]),
+    )
+
+
+@compiled
+def _turned(vector: Vector, axes: Axes) -> Vector:
+    """Return the global components of a vector from those in ``axes``."""
+    a, b, c = vector
+    x, y, z = axes
+    return a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1], a * x[2] + b * y[2] + c * z[2]
 
 
 @compiled

@@ -121,7 +121,7 @@ class RingFriction:
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
 
-        - ``"transmitted_moment"``: M on the disc about its own node, along the master's axis, in N m.
+        - ``"transmitted_moment"``: M on the disc about the contact's centre, along the master's axis, in N m.
         - ``"radial_force"``: F on the disc in N, three components in global axes.
         - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
         - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
@@ -258,7 +258,7 @@ class RingFriction:
     @cached_property  # later nodes are added behind them
     def _places(self) -> list[Any]:
         """Slices of the nodes' coordinates among those of the assembled model."""
-        kinds = self._kinds[-len(self.nodes) :]
+        kinds = self._kinds[:2][-len(self.nodes) :]
         places: list[slice] = []
         for node, kind in zip(self.nodes, kinds, strict=True):
             start = self.mbs.GetNodeODE2Index(node)

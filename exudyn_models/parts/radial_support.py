@@ -29,6 +29,7 @@ from exudyn_models.forces.radial_springs import (
     support_functions,
 )
 from exudyn_models.forces.slip_kinematics import (
+    GROUND,
     PLANAR,
     ROTOR,
     SPATIAL,
@@ -36,7 +37,8 @@ from exudyn_models.forces.slip_kinematics import (
     place_of_disc,
     slip_jacobian,
 )
-from exudyn_models.parts.connector import add_connector, checked_kind, node_of
+from exudyn_models.parts.connector import add_connector
+from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray, finite_number
 
@@ -70,9 +72,8 @@ class RadialSupport:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, in the form that ``add_energy_balance`` expects."""
-        if (
-            len(self.nodes) == 1
-        ):  # on the ground, which is evaluated often, ẇ is the velocity of the disc's node
+        # Without mounts on the ground, which is evaluated often, ẇ is the velocity of the disc's node.
+        if len(self.nodes) == 1 and self._kinds[2] is None:
             vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
@@ -170,14 +171,13 @@ def add_radial_support(
     """
     law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
     place = _checked_offset(offset)
-    base_node = node_of("base_node", mbs, base_node, or_ground=True)
-    disc_node = node_of("disc_node", mbs, disc_node)
-    kinds, hidden = _checked_nodes(mbs, base_node, disc_node)
-    nodes = (disc_node,) if base_node is None else (base_node, disc_node)
+    sides = checked_sides(mbs, base_node, disc_node, discs=(PLANAR, *SPATIAL), master="base")
+    nodes, pair = nodes_and_kinds(*sides)
+    kinds, hidden = _kinds_and_hidden(pair)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]
     reference = np.hstack([np.zeros(hidden), *own])
-    if base_node is None and hardening == 0.0 and stop_stiffness == 0.0:
-        item = _add_springs(mbs, disc_node, place, law)
+    if hidden == ON_GROUND and hardening == 0.0 and stop_stiffness == 0.0:
+        item = _add_springs(mbs, nodes[0], place, law)
     else:
         item = add_connector(mbs, nodes, *support_functions(hidden, kinds, reference, place, law))
     return RadialSupport(mbs, item, nodes, kinds, reference, place, law)
@@ -195,18 +195,15 @@ def _checked_law(
     )
 
 
-def _checked_nodes(mbs: Any, base_node: Any, disc_node: Any) -> tuple[Kinds, int]:
-    """Return the kinds of base and disc, and how many first coordinates of the base the model does not contain.
+def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
+    """Return the kinds for compiled code, and how many first coordinates of the base the model does not contain.
 
-    The ground and a rotor count as planar bodies with three or two coordinates fixed at zero.
+    Without mounts the ground and a rotor count as planar bodies with three or two coordinates fixed at zero.
     """
-    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, *SPATIAL))
-    if base_node is None:
-        return (PLANAR, disc), ON_GROUND
-    base = checked_kind("base_node", mbs, base_node)
-    if int(base_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is also the base_node: a support needs two bodies")
-    return ((PLANAR, disc), ON_ROTOR) if base == ROTOR else ((base, disc), 0)
+    base, disc, mounts = kinds
+    if mounts is not None or base not in (GROUND, ROTOR):
+        return kinds, 0
+    return (PLANAR, disc, None), ON_GROUND if base == GROUND else ON_ROTOR
 
 
 def _checked_offset(offset: Sequence[float]) -> Offset:

@@ -130,8 +130,9 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._rows, self._others = _constraint_rows(mbs, self._start, [contact.lock for contact in contacts])
+        coordinates = mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial)
         for contact in contacts:
-            if not contact.stick.held_by(self._others, contact.places):
+            if not contact.stick.held_by(self._others, contact.places, coordinates[contact.places]):
                 raise ValueError(
                     f"object {contact.item}: this contact has no regularisation, but no joints hold its bodies on "
                     "one axis; give add_ring_friction a regularisation"
