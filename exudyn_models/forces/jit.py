@@ -31,6 +31,11 @@ def compiled(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
+def inlined(function: Function) -> Function:
+    """Compile ``function`` into its callers, which saves the copies of a large result."""
+    return cast(Function, numba.njit(error_model="numpy", forceinline=True)(function))
+
+
 class Floats(numba.types.UniTuple):
     """A list of floats, which compiled code sees as a tuple."""
 

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import compiled, inlined
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 
@@ -76,7 +76,7 @@ Axes = tuple[Vector, Vector, Vector]
 """The x, y and z axes of a body."""
 
 
-@compiled
+@inlined
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the contact on the master, and cosine and sine of the disc's angle in them.
 
@@ -93,8 +93,14 @@ def _slip_jacobian(
     master: int, disc: int, mounts: Mounts | None, coordinates: Array
 ) -> tuple[Array, Axes, tuple[Any, Any]]:
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
-    place, _, axes, turning = _contact_frame(master, mounts, 0, coordinates, 0)
-    disc_place, centre, disc_axes, disc_turning = _contact_frame(disc, mounts, MOUNT_SIZE, coordinates, size)
+    place, axes, turning = frame(master, coordinates, 0)
+    disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
+    centre = disc_place
+    if mounts is not None:
+        place, _, axes, turning = _mounted(master, mounts, 0, place, axes, turning)
+        disc_place, centre, disc_axes, disc_turning = _mounted(
+            disc, mounts, MOUNT_SIZE, disc_place, disc_axes, disc_turning
+        )
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[i]
@@ -135,8 +141,8 @@ def _place_of_disc(
 ) -> tuple[Any, Any]:
     x = y = 0.0 * coordinates[0]
     if mounts is not None:
-        _, start, _, _ = _contact_frame(master, mounts, 0, coordinates, 0)
-        _, end, _, _ = _contact_frame(disc, mounts, MOUNT_SIZE, coordinates, SIZES[master])
+        _, start, _, _ = _mounted(master, mounts, 0, *frame(master, coordinates, 0))
+        _, end, _, _ = _mounted(disc, mounts, MOUNT_SIZE, *frame(disc, coordinates, SIZES[master]))
         for i in range(3):
             x += (end[i] - start[i]) * axes[0][i]
             y += (end[i] - start[i]) * axes[1][i]
@@ -160,16 +166,18 @@ def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
 
 
 @compiled
-def _contact_frame(
-    kind: int, mounts: Mounts | None, mount: int, q: Array, at: int
+def _mounted(
+    kind: int,
+    mounts: Mounts,
+    mount: int,
+    place: Vector,
+    axes: Axes,
+    turning: tuple[Vector, Vector, Vector, Vector],
 ) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
     """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
 
-    The numbers of the body's mount begin at ``mounts[mount]``, its coordinates at ``q[at]``.
+    The numbers of the body's mount begin at ``mounts[mount]``. All others come from ``frame``.
     """
-    place, axes, turning = frame(kind, q, at)
-    if mounts is None:
-        return place, place, axes, turning
     if TRANSLATIONS[kind] == 0:  # a rotor or the ground
         fixed = _axes_at(mounts, mount + 3)
         place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])

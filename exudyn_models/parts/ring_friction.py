@@ -150,8 +150,8 @@ def add_ring_friction(
     ------
     ValueError
         If a number is out of range, a function takes other arguments, or a node is not in ``mbs`` or of an
-        unsupported kind. Also if the axis of the contact lies across that of a body, which then exerts no moment. If a function returns an invalid number in a run, Exudyn raises an ``ExudynError`` with its
-        time and arguments.
+        unsupported kind. Also if the axis of the contact lies across that of a body, which then exerts no moment. If
+        a function returns an invalid number in a run, Exudyn raises an ``ExudynError`` with its time and arguments.
 
     """
     contact = _checked_geometry(
