@@ -28,6 +28,10 @@ from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jac
 from reference_model.systems import FloatArray
 
 
+ROUNDING = 1e-12
+"""Largest lever in m that counts as a rounding error."""
+
+
 @dataclass(frozen=True, eq=False)
 class StickDampers:
     """Equivalent dampers of a contact between two nodes with ``reference`` coordinates, shape (n,)."""
@@ -50,7 +54,7 @@ class StickDampers:
         to_slip, axes, (cosine, sine) = slip_jacobian(self.kinds, place)
         friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0, 0.0)
         dampers = friction * slip_dampers(self.factors.geometry, math.atan2(sine, cosine))
-        if not to_slip[:2].any():  # two rotors: all points slip equally
+        if np.abs(to_slip[:2]).max() < ROUNDING:  # rotors on one axis: all points slip equally
             dampers = dampers[:1]
         return np.asarray(to_slip.T @ dampers @ to_slip)
 

@@ -75,12 +75,17 @@ class Side:
         """Position of the contact on a rotor at zero angle, or on the ground."""
         return np.asarray(self.start + self.axes @ self.place)
 
-    def numbers(self, along: bool) -> list[float]:
-        """Return the ``Mounts`` of this side; ``along`` keeps the position of a rotor along its axis."""
-        axis = self.axes[:, 2]
-        start = self.start if along else self.start - axis * (axis @ self.start)
-        frames = start, self.axes.T, self.place, self.rotation.T
-        return [float(number) + 0.0 for array in frames for number in array.ravel()]
+    @property
+    def numbers(self) -> list[float]:
+        """``Mounts`` of this side."""
+        frames = self.start, self.axes.T, self.place, self.rotation.T
+        return [float(number) for array in frames for number in array.ravel()]
+
+    @property
+    def is_at_node(self) -> bool:
+        """Whether the contact has place and axes of the node, and a rotor or the ground has the global z-axis."""
+        turned = (self.axes != np.eye(3)).any() or (self.rotation != np.eye(3)).any()
+        return not (turned or self.start[:2].any() or self.place.any())
 
 
 def checked_sides(
@@ -109,10 +114,10 @@ def checked_sides(
 def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
     """Return the nodes, without the ground, and the kinds and mounts for compiled code."""
     nodes = (disc.node,) if master.node is None else (master.node, disc.node)
-    # A place along the axis only matters to a master that tilts.
-    numbers = (*master.numbers(False), *disc.numbers(master.kind in SPATIAL))
-    plain = _share_an_axis(master, disc) or numbers == 4 * (*np.zeros(3), *np.eye(3).ravel())
-    return nodes, (master.kind, disc.kind, None if plain else numbers)
+    # The place of a rotor along its axis only matters to a master that tilts.
+    at_nodes = master.is_at_node and disc.is_at_node and (master.kind in FLAT or disc.start[2] == 0.0)
+    plain = at_nodes or _share_an_axis(master, disc)
+    return nodes, (master.kind, disc.kind, None if plain else (*master.numbers, *disc.numbers))
 
 
 def _share_an_axis(master: Side, disc: Side) -> bool:

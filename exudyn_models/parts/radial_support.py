@@ -72,7 +72,7 @@ class RadialSupport:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, in the form that ``add_energy_balance`` expects."""
-        # Without mounts on the ground, which is evaluated often, ẇ is the velocity of the disc's node.
+        # On the ground with the global axes, ẇ is the velocity of the disc's node, which costs less.
         if len(self.nodes) == 1 and self._kinds[2] is None:
             vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
@@ -134,20 +134,21 @@ def add_radial_support(
 ) -> RadialSupport:
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
-    On the ground they act in the global x-y plane. On a body they act across its z-axis and turn with it, like an
-    elastic shaft. They are relaxed if the disc's node is at ``offset``, and equal in all radial directions. They
-    neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False
-    unless the support is linear and on the ground, because its nodes are shared with their bodies.
+    They act across the z-axis of the base and turn with it, like an elastic shaft. The ground has the axes of the
+    ``ObjectGround``, or else the global axes. The springs are relaxed if the disc's node is at ``offset``, and equal
+    in all radial directions. They neither hold the disc along the axis nor resist tilting.
+    ``computeMassMatrixInversePerBody`` must stay False unless the support is linear and on the ground with the global
+    axes, because its nodes are shared with their bodies.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model, not yet assembled, with the nodes.
-    base_node : NodeIndex or ObjectIndex or None
-        None for the ground; an ``ObjectIndex`` for a body with one of the following nodes: a ``Node1D``, which turns
-        about the z-axis through the global origin, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
+    base_node : NodeIndex or ObjectIndex or MarkerIndex or None
+        None or an ``ObjectGround`` for the ground. Otherwise one of the following nodes, its body, or a
+        ``MarkerBodyRigid`` on it: a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
         ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``.
-    disc_node : NodeIndex or ObjectIndex
+    disc_node : NodeIndex or ObjectIndex or MarkerIndex
         One of those, except a ``Node1D``.
     stiffness : float
         C in N/m, >= 0.
@@ -160,8 +161,8 @@ def add_radial_support(
     stop_stiffness : float
         C_s in N/m, >= 0; 0 for no stop.
     offset : two floats
-        Relaxed position in m, in the axes of the base and from its node, which is the origin for a ``Node1D`` and the
-        ground.
+        Relaxed position in m, in the axes of the base and from its node or marker. For a ``Node1D`` and the ground,
+        from the reference position of the body, or else from the global origin.
 
     Raises
     ------
@@ -198,7 +199,7 @@ def _checked_law(
 def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
     """Return the kinds for compiled code, and how many first coordinates of the base the model does not contain.
 
-    Without mounts the ground and a rotor count as planar bodies with three or two coordinates fixed at zero.
+    If there are no mounts, the ground and a rotor count as planar bodies. Three or two of their coordinates are zero.
     """
     base, disc, mounts = kinds
     if mounts is not None or base not in (GROUND, ROTOR):
