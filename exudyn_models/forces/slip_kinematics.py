@@ -51,10 +51,10 @@ MOUNT_SIZE = 24
 MOUNTS_SIZE = 2 * MOUNT_SIZE
 
 Mounts = Sequence[float]
-"""Where the contact sits on master and disc, ``MOUNT_SIZE`` numbers each.
+"""Place and axes of the contact on master and disc, ``MOUNT_SIZE`` numbers each.
 
-They are two frames, each a position in m and the x, y and z axes. The first is the fixed frame in which a rotor turns
-about its z axis, or in which the ground rests. The second is the frame of the contact in the axes of the body.
+They are two frames, each a position in m and the x, y and z axes. The first is fixed: a rotor turns about its z axis,
+and the ground rests in it. The second is the frame of the contact in the axes of the body.
 """
 
 Kinds = tuple[int, int, Mounts | None]

@@ -27,7 +27,6 @@ from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jacobian
 from reference_model.systems import FloatArray
 
-
 ROUNDING = 1e-12
 """Largest lever in m that counts as a rounding error."""
 

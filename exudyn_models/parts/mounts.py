@@ -1,4 +1,4 @@
-"""Where a contact sits: the nodes of its two bodies, and its frames on them.
+"""Nodes of the two bodies of a contact, and its place and axes on them.
 
 A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. Here
 they become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so the
@@ -83,7 +83,7 @@ class Side:
 
     @property
     def is_at_node(self) -> bool:
-        """Whether the contact has place and axes of the node, and a rotor or the ground has the global z-axis."""
+        """True if the contact has place and axes of the node, and a rotor or the ground has the global z-axis."""
         turned = (self.axes != np.eye(3)).any() or (self.rotation != np.eye(3)).any()
         return not (turned or self.start[:2].any() or self.place.any())
 
@@ -97,7 +97,7 @@ def checked_sides(
     rotations: Sequence[Any] = (None, None),
     master: str = "master",
 ) -> tuple[Side, Side]:
-    """Return both sides of a contact, of which only the first, called ``master``, may be the ground.
+    """Return both sides of a contact. Only the first, called ``master``, may be the ground.
 
     Raises ``ValueError`` if a node is not allowed, both are the same, or one of the ``rotations`` is not a rotation
     matrix.
