@@ -24,7 +24,7 @@ from exudyn_models.forces.slip_kinematics import (
     Floats,
     Kinds,
     Mounts,
-    radius_of_disc,
+    slip_and_place,
     slip_jacobian,
 )
 from reference_model.systems import FloatArray
@@ -46,7 +46,7 @@ def friction_derivatives_on_nodes(
     They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
     both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     force = friction_of_slip(ux, uy, spin, angle, contact)
@@ -61,8 +61,10 @@ def friction_derivatives_on_nodes(
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_jacobian(kinds, stepped)
-        stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
+        stepped_map, _, (stepped_cosine, stepped_sine), (stepped_x, stepped_y) = slip_and_place(
+            kinds, stepped
+        )
+        stepped_radius = np.sqrt(stepped_x * stepped_x + stepped_y * stepped_y)
         motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
         turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
         turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
@@ -84,7 +86,7 @@ def friction_derivatives_on_nodes(
     for k in range(size):
         for i in range(3):
             forces[k] += force[i] * to_slip[i, k]
-    return by_nodes, motion_by_nodes, (forces, radius_of_disc(kinds, coordinates, axes), speed, spin)
+    return by_nodes, motion_by_nodes, (forces, math.sqrt(x * x + y * y), speed, spin)
 
 
 @compiled
@@ -115,12 +117,12 @@ def _forces(
     parameters: Floats, mounts: Mounts | None, law: Law | None, t: float, q: Floats, q_t: Floats
 ) -> FloatArray:
     contact, kinds, coordinates, velocities = _state(parameters, mounts, q, q_t)
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     if law is not None:
-        radius = radius_of_disc(kinds, coordinates, axes)
+        radius = math.sqrt(x * x + y * y)
         speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
         friction = friction_force_under(law, contact[3], t, radius, speed, spin)
         fx, fy, moment = friction * fx, friction * fy, friction * moment
@@ -199,7 +201,7 @@ def slip_in_step(
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
     """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, end)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = _slip(to_slip, end_rates)
     vx, vy, before = _slip(slip_jacobian(kinds, start)[0], rates)
@@ -208,5 +210,5 @@ def slip_in_step(
         slip_potential_of_contact(ux, uy, spin, angle, contact),
         slip_potential_of_contact(ux - vx, uy - vy, spin - before, angle, contact),
         spin,
-        radius_of_disc(kinds, end, axes),
+        math.sqrt(x * x + y * y),
     )

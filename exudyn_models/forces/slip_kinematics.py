@@ -84,20 +84,27 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
     z axis. ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar
     body turns about an axis parallel to the global z axis.
     """
+    to_slip, axes, turned, _ = slip_and_place(kinds, coordinates)
+    return to_slip, axes, turned
+
+
+@inlined
+def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
+    """Return the same and x and y (m) of the contact on the disc, from the contact on the master and in its axes."""
     master, disc, mounts = kinds
-    return _slip_jacobian(master, disc, mounts, coordinates)
+    return _slip_and_place(master, disc, mounts, coordinates)
 
 
 @compiled
-def _slip_jacobian(
+def _slip_and_place(
     master: int, disc: int, mounts: Mounts | None, coordinates: Array
-) -> tuple[Array, Axes, tuple[Any, Any]]:
+) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
     place, axes, turning = frame(master, coordinates, 0)
     disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
-    centre = disc_place
+    start, centre = place, disc_place
     if mounts is not None:
-        place, _, axes, turning = _mounted(master, mounts, 0, place, axes, turning)
+        place, start, axes, turning = _mounted(master, mounts, 0, place, axes, turning)
         disc_place, centre, disc_axes, disc_turning = _mounted(
             disc, mounts, MOUNT_SIZE, disc_place, disc_axes, disc_turning
         )
@@ -122,47 +129,8 @@ def _slip_jacobian(
     cosine, sine = _product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1])
     if abs(cosine * cosine + sine * sine) < 0.5:
         cosine, sine = _product(disc_axes[1], axes[0]), _product(disc_axes[1], axes[1])
-    return result, axes, (cosine, sine)
-
-
-@compiled
-def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, Any]:
-    """Return the position in m of the contact on the disc relative to the master's, along the x and y of ``axes``.
-
-    These are the ``axes`` of the contact on the master, from ``slip_jacobian``.
-    """
-    master, disc, mounts = kinds
-    return _place_of_disc(master, disc, mounts, coordinates, axes)
-
-
-@compiled
-def _place_of_disc(
-    master: int, disc: int, mounts: Mounts | None, coordinates: Array, axes: Axes
-) -> tuple[Any, Any]:
-    x = y = 0.0 * coordinates[0]
-    if mounts is not None:
-        _, start, _, _ = _mounted(master, mounts, 0, *frame(master, coordinates, 0))
-        _, end, _, _ = _mounted(disc, mounts, MOUNT_SIZE, *frame(disc, coordinates, SIZES[master]))
-        for i in range(3):
-            x += (end[i] - start[i]) * axes[0][i]
-            y += (end[i] - start[i]) * axes[1][i]
-        return x, y
-    for i in range(max(TRANSLATIONS[master], TRANSLATIONS[disc])):
-        apart = 0.0 * coordinates[0]
-        if i < TRANSLATIONS[disc]:
-            apart += coordinates[SIZES[master] + i]
-        if i < TRANSLATIONS[master]:
-            apart -= coordinates[i]
-        x += apart * axes[0][i]
-        y += apart * axes[1][i]
-    return x, y
-
-
-@compiled
-def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
-    """Return the distance in m of the contact on the disc from the z axis of its ``axes`` on the master."""
-    x, y = place_of_disc(kinds, coordinates, axes)
-    return np.sqrt(x * x + y * y)
+    d = (centre[0] - start[0], centre[1] - start[1], centre[2] - start[2])
+    return result, axes, (cosine, sine), (_product(d, axes[0]), _product(d, axes[1]))
 
 
 @compiled

@@ -20,8 +20,7 @@ from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
     Kinds,
-    radius_of_disc,
-    slip_jacobian,
+    slip_and_place,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.thermal_node import ThermalNode
@@ -240,9 +239,8 @@ class RingFriction:
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine) = slip_jacobian(self._kinds, coordinates)
-        radius = float(radius_of_disc(self._kinds, coordinates, axes))
-        return to_slip @ velocities, math.atan2(sine, cosine), radius, axes
+        to_slip, axes, (cosine, sine), (x, y) = slip_and_place(self._kinds, coordinates)
+        return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
         """Return coordinates, including reference values, and velocities of both nodes, shape (n,) each."""

@@ -34,8 +34,7 @@ from exudyn_models.forces.slip_kinematics import (
     ROTOR,
     SPATIAL,
     Kinds,
-    place_of_disc,
-    slip_jacobian,
+    slip_and_place,
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
@@ -113,8 +112,8 @@ class RadialSupport:
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
-        to_slip, axes, _ = slip_jacobian(self._kinds, coordinates)
-        w = np.array(place_of_disc(self._kinds, coordinates, axes)) - self._offset
+        to_slip, axes, _, place = slip_and_place(self._kinds, coordinates)
+        w = np.array(place) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
         force = np.array(axes[:2]).T @ (-secant_stiffness(square, self._law) * w - damping * rate)
         return w, force, elastic_energy(square, self._law), damping * float(rate @ rate)

@@ -355,7 +355,7 @@ def test_a_support_on_a_base_of_any_axis_holds_a_disc_as_on_the_global_one(kind,
         run_explicitly(mbs, 0.3, 300)
         *values, force = (mbs.GetSensorValues(sensor) for sensor in sensors)
         end = mbs.GetObjectOutputBody(disc, OUT.Position) - shift
-        ends.append(np.hstack([turned.T @ end, turned.T @ force, *values]))
+        ends.append(np.hstack([turned.T @ end, turned.T @ force, *values, support.power(mbs, 0.3)]))
     np.testing.assert_allclose(ends[1], ends[0], rtol=0.0, atol=1e-11)
 
 
