@@ -27,7 +27,7 @@ from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_jacobian
+from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, ROUNDING, Floats, Kinds, slip_jacobian
 from reference_model.systems import FloatArray
 
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
@@ -202,7 +202,8 @@ class AxialStick:
         if self._rotors is not None:
             return True
         across = np.zeros((2, others.shape[1]))
-        across[:, places] = slip_jacobian(self.kinds, self.reference + q)[0][:2]
+        slip = slip_jacobian(self.kinds, self.reference + q)[0][:2]
+        across[:, places] = np.where(np.abs(slip) < ROUNDING, 0.0, slip)
         return spanned(across, others)
 
     def sliding_moment(self, t: float, spin: float) -> float:

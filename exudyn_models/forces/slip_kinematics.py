@@ -45,6 +45,9 @@ SIZES = (1, 3, 6, 6, 0, 7)
 
 IMAGINARY_STEP = 1e-30
 
+ROUNDING = 1e-12
+"""Largest lever in m that counts as a rounding error of mounts on one axis."""
+
 MOUNT_SIZE = 24
 """Number of components of the mount on one body."""
 

@@ -24,11 +24,8 @@ from exudyn_models.forces.friction_laws import (
     point_regularisation,
 )
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import Kinds, slip_and_place
+from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place
 from reference_model.systems import FloatArray
-
-ROUNDING = 1e-12
-"""Largest lever in m that counts as a rounding error."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -196,7 +196,9 @@ def test_forces_on_200_random_mounts_are_those_of_exudyns_velocities(kinds):
 def test_the_place_of_a_rotor_along_its_axis_matters_to_a_tilted_master():
     mbs = new_model()
     master = body_of(mbs, "rotation vector", rotations.RotationMatrixX(0.3), [0.1, 0.0, 0.0])
-    bodies = master, body_of(mbs, "rotor", np.eye(3), [0.0, 0.0, 0.4])
+    node = mbs.AddNode(items.Node1D())
+    disc = items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=[0.0, 0.0, 0.4])
+    bodies = master, mbs.AddObject(disc)
     friction = add_ring_friction(mbs, *bodies, **WITH_RADIUS)
     assert_forces_are_those_of_exudyn(mbs, friction, (bodies, np.zeros((2, 3)), 2 * [np.eye(3)]))
 
@@ -312,6 +314,22 @@ def test_a_brake_on_the_ground_stops_a_rotor_about_any_axis_anywhere(axes, groun
     if regularisation is None:
         assert [(change.time, int(change.after)) for change in changes] == [
             (pytest.approx(stops, abs=1e-9), 0)
+        ]
+
+
+@pytest.mark.parametrize("regularisation", [None, 1e-4])
+@pytest.mark.parametrize("turned", [np.eye(3), BACK], ids=["same", "opposite"])
+def test_rotors_of_same_and_opposite_axes_lock_at_their_common_speed(turned, regularisation):
+    mbs = new_model()
+    first = body_of(mbs, "rotor", X, NONE, spin=X[:, 2] * 3.0, inertia=0.5)
+    second = body_of(mbs, "rotor", X @ turned, [0.2, 0.0, 0.0], inertia=0.5)
+    add_ring_friction(mbs, first, second, **WHEEL, regularisation=regularisation)
+    changes = solve_dynamic(mbs, settings_of(0.06, 60), IMPLICIT)
+    sign = turned[2, 2]
+    np.testing.assert_allclose(mbs.systemData.GetODE2Coordinates_t(), [1.5, 1.5 * sign], rtol=0.0, atol=1e-9)
+    if regularisation is None:
+        assert [(change.time, int(change.after)) for change in changes] == [
+            (pytest.approx(0.03125, abs=1e-9), 0)
         ]
 
 
