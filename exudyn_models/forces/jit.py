@@ -52,6 +52,12 @@ extending.register_model(Floats)(extending.models.UniTupleModel)
 extending.unbox(Floats)(_tuple_of_list)
 
 
+def taking(function: Callable[..., Any], *examples: Any) -> Callable[..., Any]:
+    """Return ``function`` compiled for arguments of the types of ``examples``, and kept on disk."""
+    types = tuple(map(numba.typeof, examples))
+    return cast(Callable[..., Any], compiled_for(types, cast(Any, function).py_func, SOURCES))
+
+
 @cache
 def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
     """Return a compiled function of tuples as a function of lists of floats, without numba's dispatch by type.

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, partial
-from typing import Any, cast
+from typing import Any
 
-import numba
 import numpy as np
 
 from exudyn_models.forces.any_pair import (
@@ -23,13 +22,12 @@ from exudyn_models.forces.any_pair import (
 )
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
 from exudyn_models.forces.friction_laws import CONTACT_SIZE, Contact
-from exudyn_models.forces.jit import SOURCES, taking_lists
+from exudyn_models.forces.jit import taking, taking_lists
 from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import LAWS
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
 from exudyn_models.forces.stick_dampers import StickDampers
-from reference_model.numerics.compiled_once import compiled_for
 from reference_model.systems import FloatArray
 
 ForceFunction = Callable[[Any, float, int, Floats, Floats], Floats]
@@ -92,11 +90,7 @@ def _numbers(first: Floats, contact: Contact, rest: Floats) -> list[float]:
 def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> JacobianFunction:
     @cache  # compiled when first needed
     def derive() -> Callable[..., Any]:
-        types = map(numba.typeof, (kinds, reference, reference, 1.0, 1.0, factors.geometry))
-        return cast(
-            Callable[..., Any],
-            compiled_for(tuple(types), cast(Any, friction_derivatives_on_nodes).py_func, SOURCES),
-        )
+        return taking(friction_derivatives_on_nodes, kinds, reference, reference, 1.0, 1.0, factors.geometry)
 
     def jacobian(
         mbs: Any,
