@@ -18,7 +18,15 @@ from exudyn_models.forces.friction_laws import (
 )
 from exudyn_models.forces.jit import compiled
 from exudyn_models.forces.laws.product import Law, friction_force_under
-from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, Floats, Kinds, radius_of_disc, slip_jacobian
+from exudyn_models.forces.slip_kinematics import (
+    IMAGINARY_STEP,
+    MOUNTS_SIZE,
+    Floats,
+    Kinds,
+    Mounts,
+    slip_and_place,
+    slip_jacobian,
+)
 from reference_model.systems import FloatArray
 
 to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than the given length
@@ -38,7 +46,7 @@ def friction_derivatives_on_nodes(
     They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
     both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     force = friction_of_slip(ux, uy, spin, angle, contact)
@@ -53,8 +61,10 @@ def friction_derivatives_on_nodes(
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, (stepped_cosine, stepped_sine) = slip_jacobian(kinds, stepped)
-        stepped_radius = radius_of_disc(kinds, stepped, stepped_axes)
+        stepped_map, _, (stepped_cosine, stepped_sine), (stepped_x, stepped_y) = slip_and_place(
+            kinds, stepped
+        )
+        stepped_radius = np.sqrt(stepped_x * stepped_x + stepped_y * stepped_y)
         motion_by_nodes[0, j] = position_factor * stepped_radius.imag / IMAGINARY_STEP
         turn = cosine * stepped_sine.imag - sine * stepped_cosine.imag
         turn *= position_factor / IMAGINARY_STEP / (cosine * cosine + sine * sine)
@@ -76,7 +86,7 @@ def friction_derivatives_on_nodes(
     for k in range(size):
         for i in range(3):
             forces[k] += force[i] * to_slip[i, k]
-    return by_nodes, motion_by_nodes, (forces, radius_of_disc(kinds, coordinates, axes), speed, spin)
+    return by_nodes, motion_by_nodes, (forces, math.sqrt(x * x + y * y), speed, spin)
 
 
 @compiled
@@ -85,23 +95,40 @@ def force_on_any(
 ) -> Floats:
     """Return the generalised forces on both nodes, in a user function's signature after two arguments.
 
-    ``parameters`` are the numbers of ``Contact`` and ``Kinds`` and the reference coordinates of both nodes. If the
+    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. If the
     friction force is not constant it is given by ``law``, and the contact contains 1 N in its place.
     """
-    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, coordinates)
+    result: Floats = to_tuple(_forces(parameters, None, law, t, q, q_t), len(q))
+    return result
+
+
+@compiled
+def force_on_mounted(
+    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
+) -> Floats:
+    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    forces = _forces(parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE], law, t, q, q_t)
+    result: Floats = to_tuple(forces, len(q))
+    return result
+
+
+@compiled
+def _forces(
+    parameters: Floats, mounts: Mounts | None, law: Law | None, t: float, q: Floats, q_t: Floats
+) -> FloatArray:
+    contact, kinds, coordinates, velocities = _state(parameters, mounts, q, q_t)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = _slip(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     if law is not None:
-        radius = radius_of_disc(kinds, coordinates, axes)
+        radius = math.sqrt(x * x + y * y)
         speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
         friction = friction_force_under(law, contact[3], t, radius, speed, spin)
         fx, fy, moment = friction * fx, friction * fy, friction * moment
     for k in range(len(q)):  # overwrites the velocities, which are no longer needed
         velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
-    result: Floats = to_tuple(velocities, len(q))
-    return result
+    return velocities
 
 
 @compiled
@@ -127,20 +154,41 @@ def jacobian_on_any(
     velocity_factor: float,
 ) -> FloatArray:
     """Return the derivatives of the left-hand side, where the force has a minus sign, shape (n, n)."""
-    contact, kinds, coordinates, velocities = _state(parameters, q, q_t)
+    contact, kinds, coordinates, velocities = _state(parameters, None, q, q_t)
     return friction_derivatives_on_nodes(
         kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
     )[0]
 
 
 @compiled
-def _state(parameters: Floats, q: Floats, q_t: Floats) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
+def jacobian_on_mounted(
+    parameters: Floats,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Floats,
+    q_t: Floats,
+    position_factor: float,
+    velocity_factor: float,
+) -> FloatArray:
+    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    rest, mounts = parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE]
+    contact, kinds, coordinates, velocities = _state(rest, mounts, q, q_t)
+    return friction_derivatives_on_nodes(
+        kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
+    )[0]
+
+
+@compiled
+def _state(
+    parameters: Floats, mounts: Mounts | None, q: Floats, q_t: Floats
+) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
     contact, kinds = contact_of(parameters)
     coordinates, velocities = np.empty(len(q)), np.empty(len(q))
     for i in range(len(q)):
         coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
         velocities[i] = q_t[i]
-    return contact, (int(kinds[0]), int(kinds[1])), coordinates, velocities
+    return contact, (int(kinds[0]), int(kinds[1]), mounts), coordinates, velocities
 
 
 @compiled
@@ -153,7 +201,7 @@ def slip_in_step(
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
     """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
-    to_slip, axes, (cosine, sine) = slip_jacobian(kinds, end)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = _slip(to_slip, end_rates)
     vx, vy, before = _slip(slip_jacobian(kinds, start)[0], rates)
@@ -162,5 +210,5 @@ def slip_in_step(
         slip_potential_of_contact(ux, uy, spin, angle, contact),
         slip_potential_of_contact(ux - vx, uy - vy, spin - before, angle, contact),
         spin,
-        radius_of_disc(kinds, end, axes),
+        math.sqrt(x * x + y * y),
     )

@@ -29,10 +29,13 @@ from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_jacobian
 from reference_model.systems import FloatArray
 
+ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
+"""``Kinds`` of bodies that turn about one axis in one direction."""
+
 
 def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
     """Return whether ``functions_on_axis`` apply to this contact."""
-    return kinds[0] in (ROTOR, GROUND) and kinds[1] == ROTOR and factors.geometry[4] == NONE_HELD
+    return kinds in ON_ONE_AXIS and factors.geometry[4] == NONE_HELD
 
 
 def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, Any]:
@@ -172,7 +175,7 @@ class AxialStick:
     @cached_property
     def _rotors(self) -> Sequence[float] | None:
         """Gradient of the slip between rotors, which does not depend on the coordinates; None for other bodies."""
-        if self.kinds[1] != ROTOR or self.kinds[0] not in (ROTOR, GROUND):
+        if self.kinds not in ON_ONE_AXIS:
             return None
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 

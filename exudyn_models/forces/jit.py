@@ -7,6 +7,7 @@ finding their types, and Python 60 ns on unpacking and packing lists. ``taking_l
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -31,6 +32,11 @@ def compiled(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
+def inlined(function: Function) -> Function:
+    """Compile ``function`` into its callers, which saves the copies of a large result."""
+    return cast(Function, numba.njit(error_model="numpy", forceinline=True)(function))
+
+
 class Floats(numba.types.UniTuple):
     """A list of floats, which compiled code sees as a tuple."""
 
@@ -45,6 +51,12 @@ def _tuple_of_list(kind: Floats, argument: Any, context: Any) -> Any:
 
 extending.register_model(Floats)(extending.models.UniTupleModel)
 extending.unbox(Floats)(_tuple_of_list)
+
+
+def taking(function: Callable[..., Any], *examples: Any) -> Callable[..., Any]:
+    """Return ``function`` compiled for arguments of the types of ``examples``, and kept on disk."""
+    types = tuple(map(numba.typeof, examples))
+    return cast(Callable[..., Any], compiled_for(types, cast(Any, function).py_func, SOURCES))
 
 
 @cache
@@ -65,14 +77,16 @@ def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any
 
 
 class KeptOnDisk:
-    """A ``compiled`` function for calls from Python, compiled once per machine for its first arguments' types."""
+    """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = cast(Any, function).py_func
-        self._compiled: Any = None
+        self._compiled: list[Callable[..., Any]] = []
 
     def __call__(self, *arguments: Any) -> Any:
-        """Return the result; raise ``TypeError`` if the arguments have other types than those of the first call."""
-        if self._compiled is None:
-            self._compiled = compiled_for(tuple(map(numba.typeof, arguments)), self._function, SOURCES)
-        return self._compiled(*arguments)
+        """Return the result; the first call with new types of arguments compiles the function or loads it."""
+        for compiled_function in self._compiled:
+            with suppress(TypeError):
+                return compiled_function(*arguments)
+        self._compiled.append(compiled_for(tuple(map(numba.typeof, arguments)), self._function, SOURCES))
+        return self._compiled[-1](*arguments)

@@ -104,9 +104,9 @@ def jacobian_on_planar(
 
 
 LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
-    (GROUND, PLANAR): (force_on_ground, jacobian_on_ground),
-    (ROTOR, PLANAR): (force_on_rotor, jacobian_on_rotor),
-    (PLANAR, PLANAR): (force_on_planar, jacobian_on_planar),
+    (GROUND, PLANAR, None): (force_on_ground, jacobian_on_ground),
+    (ROTOR, PLANAR, None): (force_on_rotor, jacobian_on_rotor),
+    (PLANAR, PLANAR, None): (force_on_planar, jacobian_on_planar),
 }
 """Force and Jacobian of these pairs."""
 

@@ -21,8 +21,7 @@ from exudyn_models.forces.slip_kinematics import (
     SIZES,
     TRANSLATIONS,
     Kinds,
-    place_of_disc,
-    slip_jacobian,
+    slip_and_place,
 )
 from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 from reference_model.systems import FloatArray
@@ -45,7 +44,7 @@ def support_functions(
     ``reference`` contains the reference coordinates of both, shape (n,). The first ``hidden`` of them are zero and
     not part of the model: ``ON_GROUND``, ``ON_ROTOR`` or 0.
     """
-    if kinds[0] == PLANAR:
+    if kinds[0] == PLANAR and kinds[2] is None:
         force = _force_on_flat_base(hidden, reference, offset, law)
     else:
         force = _force_on_any_base(kinds, reference, offset, law)
@@ -180,8 +179,7 @@ def support_on_nodes(
     kinds: Kinds, coordinates: FloatArray, velocities: FloatArray, offset: Offset, law: Law
 ) -> FloatArray:
     """Return the generalised forces on both nodes, shape (n,)."""
-    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
-    x, y = place_of_disc(kinds, coordinates, axes)
+    to_slip, _, _, (x, y) = slip_and_place(kinds, coordinates)
     wx, wy = x - offset[0], y - offset[1]
     rate = to_slip @ velocities
     secant = secant_stiffness(wx * wx + wy * wy, law)
@@ -201,8 +199,8 @@ def support_derivatives_on_nodes(
     law: Law,
 ) -> FloatArray:
     """Return the weighted sum of the derivatives of the generalised forces by coordinates and velocities, (n, n)."""
-    to_slip, axes, _ = slip_jacobian(kinds, coordinates)
-    w = np.array(place_of_disc(kinds, coordinates, axes)) - np.array(offset)
+    to_slip, _, _, place = slip_and_place(kinds, coordinates)
+    w = np.array(place) - np.array(offset)
     rate = to_slip @ velocities
     square, damping = w[0] * w[0] + w[1] * w[1], law[4]
     secant, slope = secant_stiffness(square, law), secant_slope(square, law)
@@ -211,8 +209,7 @@ def support_derivatives_on_nodes(
     for j in range(size):
         stepped = coordinates.astype(np.complex128)
         stepped[j] += 1j * IMAGINARY_STEP
-        stepped_map, stepped_axes, _ = slip_jacobian(kinds, stepped)
-        shifts = place_of_disc(kinds, stepped, stepped_axes)
+        stepped_map, _, _, shifts = slip_and_place(kinds, stepped)
         map_change = position_factor * stepped_map.imag / IMAGINARY_STEP
         rate_change = map_change @ velocities + velocity_factor * to_slip[:, j]
         shift = position_factor / IMAGINARY_STEP * np.array([shifts[0].imag, shifts[1].imag])

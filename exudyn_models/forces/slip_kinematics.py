@@ -5,6 +5,9 @@ axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M
 nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
 any orientation, and the derivatives of the forces follow from those of J.
 
+A contact may sit anywhere on its bodies. ``Mounts`` place it, and the lever from the disc's node to the contact then
+enters J. Without mounts the contact is that of the nodes themselves, which is cheaper.
+
 J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
 (Squire & Trapp, SIAM Review 40 (1998) 110).
 
@@ -19,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import compiled, inlined
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 
@@ -42,8 +45,26 @@ SIZES = (1, 3, 6, 6, 0, 7)
 
 IMAGINARY_STEP = 1e-30
 
-Kinds = tuple[int, int]
-"""Kinds of the nodes of master and disc."""
+ROUNDING = 1e-12
+"""Largest lever in m that counts as a rounding error of mounts on one axis."""
+
+MOUNT_SIZE = 24
+"""Number of components of the mount on one body."""
+
+MOUNTS_SIZE = 2 * MOUNT_SIZE
+
+Mounts = Sequence[float]
+"""Place and axes of the contact on master and disc, ``MOUNT_SIZE`` numbers each.
+
+They are two frames, each a position in m and the x, y and z axes. The first is fixed: a rotor turns about its z axis,
+and the ground rests in it. The second is the frame of the contact in the axes of the body.
+"""
+
+Kinds = tuple[int, int, Mounts | None]
+"""Kinds of the nodes of master and disc, and the mounts of the contact; None if its frames are those of the nodes.
+
+Rotors and the ground then turn about and have the global z axis through the origin.
+"""
 
 Floats = Sequence[float]
 
@@ -58,28 +79,52 @@ Axes = tuple[Vector, Vector, Vector]
 """The x, y and z axes of a body."""
 
 
-@compiled
+@inlined
 def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
-    """Return J, shape (3, n), the axes of the master, and cosine and sine of the disc's angle in them.
+    """Return J, shape (3, n), the axes of the contact on the master, and cosine and sine of the disc's angle in them.
 
-    The angle is that of the disc's x axis, or of its y axis if its x axis lies along the master's z axis.
-    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A rotor turns
-    about the z axis through the global origin, where the ground rests, and a planar body about a parallel axis.
+    The angle is that of the x axis of the contact on the disc, or of its y axis if its x axis lies along the master's
+    z axis. ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar
+    body turns about an axis parallel to the global z axis.
     """
-    master, disc = kinds
+    to_slip, axes, turned, _ = slip_and_place(kinds, coordinates)
+    return to_slip, axes, turned
+
+
+@inlined
+def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
+    """Return the same and x and y (m) of the contact on the disc, from the contact on the master and in its axes."""
+    master, disc, mounts = kinds
+    return _slip_and_place(master, disc, mounts, coordinates)
+
+
+@compiled
+def _slip_and_place(
+    master: int, disc: int, mounts: Mounts | None, coordinates: Array
+) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
     place, axes, turning = frame(master, coordinates, 0)
     disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
+    start, centre = place, disc_place
+    if mounts is not None:
+        place, start, axes, turning = _mounted(master, mounts, 0, place, axes, turning)
+        disc_place, centre, disc_axes, disc_turning = _mounted(
+            disc, mounts, MOUNT_SIZE, disc_place, disc_axes, disc_turning
+        )
     result = np.zeros((3, len(coordinates)), coordinates.dtype)
     for i in range(2):
         axis = axes[i]
-        lever = _lever(place, disc_place, axis)  # (ω×d)·e = ω·(d×e)
+        lever = _lever(place, centre, axis)  # (ω×d)·e = ω·(d×e)
         for k in range(before):
             result[i, k] = -axis[k]
         for k in range(first):
             result[i, size + k] = axis[k]
         for k in range(size - before):
             result[i, before + k] = -_product(lever, turning[k])
+        if mounts is not None:
+            lever = _lever(disc_place, centre, axis)
+            for k in range(SIZES[disc] - first):
+                result[i, size + first + k] = _product(lever, disc_turning[k])
     for k in range(size - before):
         result[2, before + k] = -_product(axes[2], turning[k])
     for k in range(SIZES[disc] - first):
@@ -87,30 +132,50 @@ def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[
     cosine, sine = _product(disc_axes[0], axes[0]), _product(disc_axes[0], axes[1])
     if abs(cosine * cosine + sine * sine) < 0.5:
         cosine, sine = _product(disc_axes[1], axes[0]), _product(disc_axes[1], axes[1])
-    return result, axes, (cosine, sine)
+    d = (centre[0] - start[0], centre[1] - start[1], centre[2] - start[2])
+    return result, axes, (cosine, sine), (_product(d, axes[0]), _product(d, axes[1]))
 
 
 @compiled
-def place_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> tuple[Any, Any]:
-    """Return the position in m of the disc's node relative to the master, along the x and y of its ``axes``."""
-    master, disc = kinds
-    x = y = 0.0 * coordinates[0]
-    for i in range(max(TRANSLATIONS[master], TRANSLATIONS[disc])):
-        apart = 0.0 * coordinates[0]
-        if i < TRANSLATIONS[disc]:
-            apart += coordinates[SIZES[master] + i]
-        if i < TRANSLATIONS[master]:
-            apart -= coordinates[i]
-        x += apart * axes[0][i]
-        y += apart * axes[1][i]
-    return x, y
+def _mounted(
+    kind: int,
+    mounts: Mounts,
+    mount: int,
+    place: Vector,
+    axes: Axes,
+    turning: tuple[Vector, Vector, Vector, Vector],
+) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
+    """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
+
+    The numbers of the body's mount begin at ``mounts[mount]``. All others come from ``frame``.
+    """
+    if TRANSLATIONS[kind] == 0:  # a rotor or the ground
+        fixed = _axes_at(mounts, mount + 3)
+        place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])
+        axes = (_turned(axes[0], fixed), _turned(axes[1], fixed), _turned(axes[2], fixed))
+        turning = (_turned(turning[0], fixed), turning[1], turning[2], turning[3])
+    x, y, z = _turned((mounts[mount + 12], mounts[mount + 13], mounts[mount + 14]), axes)
+    own = _axes_at(mounts, mount + 15)
+    centre = (place[0] + x, place[1] + y, place[2] + z)
+    return place, centre, (_turned(own[0], axes), _turned(own[1], axes), _turned(own[2], axes)), turning
 
 
 @compiled
-def radius_of_disc(kinds: Kinds, coordinates: Array, axes: Axes) -> Any:
-    """Return the distance in m of the disc's node from the axis of the master with ``axes``."""
-    x, y = place_of_disc(kinds, coordinates, axes)
-    return np.sqrt(x * x + y * y)
+def _axes_at(mounts: Mounts, at: int) -> Axes:
+    """Return the axes that begin at ``mounts[at]``."""
+    return (
+        (mounts[at], mounts[at + 1], mounts[at + 2]),
+        (mounts[at + 3], mounts[at + 4], mounts[at + 5]),
+        (mounts[at + 6], mounts[at + 7], mounts[at + 8]),
+    )
+
+
+@compiled
+def _turned(vector: Vector, axes: Axes) -> Vector:
+    """Return the global components of a vector from those in ``axes``."""
+    a, b, c = vector
+    x, y, z = axes
+    return a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1], a * x[2] + b * y[2] + c * z[2]
 
 
 @compiled

@@ -24,7 +24,7 @@ from exudyn_models.forces.friction_laws import (
     point_regularisation,
 )
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import Kinds, radius_of_disc, slip_jacobian
+from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place
 from reference_model.systems import FloatArray
 
 
@@ -47,10 +47,10 @@ class StickDampers:
         They hold at the time t (s) and the nodes' ``coordinates`` relative to the reference, shape (n,).
         """
         place = self.reference + coordinates
-        to_slip, axes, (cosine, sine) = slip_jacobian(self.kinds, place)
-        friction = self.factors.friction_force(t, float(radius_of_disc(self.kinds, place, axes)), 0.0, 0.0)
+        to_slip, _, (cosine, sine), (x, y) = slip_and_place(self.kinds, place)
+        friction = self.factors.friction_force(t, math.hypot(x, y), 0.0, 0.0)
         dampers = friction * slip_dampers(self.factors.geometry, math.atan2(sine, cosine))
-        if not to_slip[:2].any():  # two rotors: all points slip equally
+        if np.abs(to_slip[:2]).max() < ROUNDING:  # rotors on one axis: all points slip equally
             dampers = dampers[:1]
         return np.asarray(to_slip.T @ dampers @ to_slip)
 

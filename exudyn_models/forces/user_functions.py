@@ -15,12 +15,14 @@ import numpy as np
 
 from exudyn_models.forces.any_pair import (
     force_on_any,
+    force_on_mounted,
     friction_derivatives_on_nodes,
     jacobian_on_any,
+    jacobian_on_mounted,
 )
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
 from exudyn_models.forces.friction_laws import CONTACT_SIZE, Contact
-from exudyn_models.forces.jit import taking_lists
+from exudyn_models.forces.jit import taking, taking_lists
 from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import LAWS
@@ -58,12 +60,14 @@ def stick_dampers_of(force: Any) -> StickDampers | None:
 def _compiled_functions(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    force, jacobian = LAWS.get(kinds, (force_on_any, jacobian_on_any))
-    rest, size = [*kinds, *reference.tolist()], len(reference)
-    numbers = CONTACT_SIZE + len(rest)
+    master, disc, mounts = kinds
+    any_pair = (force_on_mounted, jacobian_on_mounted) if mounts else (force_on_any, jacobian_on_any)
+    force, jacobian = LAWS.get(kinds, any_pair)
+    first, rest, size = mounts or (), [master, disc, *reference.tolist()], len(reference)
+    numbers = len(first) + CONTACT_SIZE + len(rest)
     law_and_time = (None, None, None) if factors.law is None else (LAW, None, float)
     evaluate = taking_lists(force, numbers, *law_and_time, None, size, size)
-    bound = partial(evaluate, _numbers(factors.contact or factors.geometry, rest), factors.law)
+    bound = partial(evaluate, _numbers(first, factors.contact or factors.geometry, rest), factors.law)
     if factors.depends_on_motion:
         return bound, _jacobian_by_motion(kinds, reference, factors)
 
@@ -71,19 +75,23 @@ def _compiled_functions(
     def derive() -> Callable[..., Any]:
         return taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
 
-    constant = None if factors.contact is None else _numbers(factors.contact, rest)
+    constant = None if factors.contact is None else _numbers(first, factors.contact, rest)
 
     def jacobian_by_time(mbs: Any, t: float, *motion: Any) -> Any:
-        return derive()(constant or _numbers(factors.contact_at(t), rest), mbs, t, *motion)
+        return derive()(constant or _numbers(first, factors.contact_at(t), rest), mbs, t, *motion)
 
     return bound, jacobian_by_time
 
 
-def _numbers(contact: Contact, rest: Floats) -> list[float]:
-    return [float(number) for number in (*contact, *rest)]
+def _numbers(first: Floats, contact: Contact, rest: Floats) -> list[float]:
+    return [float(number) for number in (*first, *contact, *rest)]
 
 
 def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> JacobianFunction:
+    @cache  # compiled when first needed
+    def derive() -> Callable[..., Any]:
+        return taking(friction_derivatives_on_nodes, kinds, reference, reference, 1.0, 1.0, factors.geometry)
+
     def jacobian(
         mbs: Any,
         t: float,
@@ -93,11 +101,11 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        derivatives, motion_derivatives, (forces, *motion) = friction_derivatives_on_nodes(
+        derivatives, motion_derivatives, (forces, *motion) = derive()(
             kinds, reference + q, np.array(q_t), position_factor, velocity_factor, factors.geometry
         )
         derivatives *= factors.friction_force(t, *motion)
         derivatives += np.outer(forces, factors.friction_force_slopes(t, *motion) @ motion_derivatives)
-        return -derivatives  # Exudyn expects derivatives of the left-hand side
+        return np.asarray(-derivatives)  # Exudyn expects derivatives of the left-hand side
 
     return jacobian

@@ -32,12 +32,14 @@ def MainSystemCreateRingFriction(
     plates: int = 1,
     pressure: Pressure = "uniform",
     thermalNode: ThermalNode | None = None,
+    masterRotation: Any = None,
+    discRotation: Any = None,
 ) -> RingFriction:
     """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
-    ``bodyNumbers`` contains master and disc, each an ObjectIndex or a NodeIndex. An Exudyn ground at the global
-    origin, or None, is a master at rest. All other arguments are those of ``add_ring_friction``: radii in m, N in N,
-    ε in m/s. Raises ``ValueError`` as that function, or if there are not two bodies.
+    ``bodyNumbers`` contains master and disc, each an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or
+    None, is a master at rest. All other arguments are those of ``add_ring_friction``: radii in m, N in N, ε in m/s.
+    Raises ``ValueError`` as that function, or if there are not two bodies.
     """
     master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
@@ -55,6 +57,8 @@ def MainSystemCreateRingFriction(
         plates=plates,
         pressure=pressure,
         thermal_node=thermalNode,
+        master_rotation=masterRotation,
+        disc_rotation=discRotation,
     )
 
 
@@ -74,8 +78,8 @@ def MainSystemCreateRadialSupport(
 
     Return the handle, which contains the connector's ``item``.
 
-    ``bodyNumbers`` contains base and disc, each an ObjectIndex or a NodeIndex. The base may be an Exudyn ground at
-    the global origin, or None. All other arguments are those of ``add_radial_support``: N/m, N s/m, N/m³, m. Raises
+    ``bodyNumbers`` contains base and disc, each an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an
+    Exudyn ground, or None. All other arguments are those of ``add_radial_support``: N/m, N s/m, N/m³, m. Raises
     ``ValueError`` as that function, or if there are not two bodies.
     """
     base, disc = _two_bodies(bodyNumbers)

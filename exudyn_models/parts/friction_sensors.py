@@ -20,8 +20,7 @@ from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
     Kinds,
-    radius_of_disc,
-    slip_jacobian,
+    slip_and_place,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.thermal_node import ThermalNode
@@ -124,7 +123,7 @@ class RingFriction:
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
 
-        - ``"transmitted_moment"``: M on the disc about its own node, along the master's axis, in N m.
+        - ``"transmitted_moment"``: M on the disc about the contact's centre, along the master's axis, in N m.
         - ``"radial_force"``: F on the disc in N, three components in global axes.
         - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
         - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
@@ -236,9 +235,8 @@ class RingFriction:
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine) = slip_jacobian(self._kinds, coordinates)
-        radius = float(radius_of_disc(self._kinds, coordinates, axes))
-        return to_slip @ velocities, math.atan2(sine, cosine), radius, axes
+        to_slip, axes, (cosine, sine), (x, y) = slip_and_place(self._kinds, coordinates)
+        return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
         """Return coordinates, including reference values, and velocities of both nodes, shape (n,) each."""
@@ -254,7 +252,7 @@ class RingFriction:
     @cached_property  # later nodes are added behind them
     def _places(self) -> list[Any]:
         """Slices of the nodes' coordinates among those of the assembled model."""
-        kinds = self._kinds[-len(self.nodes) :]
+        kinds = self._kinds[:2][-len(self.nodes) :]
         places: list[slice] = []
         for node, kind in zip(self.nodes, kinds, strict=True):
             start = self.mbs.GetNodeODE2Index(node)

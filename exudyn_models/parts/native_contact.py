@@ -18,7 +18,8 @@ import exudyn.itemInterface
 from exudyn_models.forces.friction_laws import CONTINUOUS
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
-from exudyn_models.parts.ring_friction import checked_contact, checked_pair
+from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
+from exudyn_models.parts.ring_friction import checked_contact
 from reference_model.systems import finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -78,8 +79,13 @@ def add_native_friction(
     coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
     friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
     reach = _checked_extent(reach, points)
-    (*masters, disc), _ = checked_pair(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
-    master = masters[0] if masters else None
+    sides = checked_sides(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
+    if nodes_and_kinds(*sides)[1][2] is not None:
+        raise ValueError(
+            f"master_node {master_node!r}, disc_node {disc_node!r}: Exudyn's built-in contact sits at the nodes, and "
+            "a rotor or a ground must have the global z-axis; use add_ring_friction for markers and other axes"
+        )
+    master, disc = (side.node for side in sides)
     size = 2.0 * reach  # from the triangle's centre to a corner; the inscribed circle has half of it
     master_marker = _marker(mbs, master, 0j)
     contacts = []

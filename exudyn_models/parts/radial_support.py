@@ -29,14 +29,15 @@ from exudyn_models.forces.radial_springs import (
     support_functions,
 )
 from exudyn_models.forces.slip_kinematics import (
+    GROUND,
     PLANAR,
     ROTOR,
     SPATIAL,
     Kinds,
-    place_of_disc,
-    slip_jacobian,
+    slip_and_place,
 )
-from exudyn_models.parts.connector import add_connector, checked_kind, node_of
+from exudyn_models.parts.connector import add_connector
+from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.solver.model import IN_MEMORY
 from reference_model.systems import FloatArray, finite_number
 
@@ -70,9 +71,8 @@ class RadialSupport:
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, in the form that ``add_energy_balance`` expects."""
-        if (
-            len(self.nodes) == 1
-        ):  # on the ground, which is evaluated often, ẇ is the velocity of the disc's node
+        # On the ground with the global axes, ẇ is the velocity of the disc's node, which costs less.
+        if len(self.nodes) == 1 and self._kinds[2] is None:
             vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
@@ -112,8 +112,8 @@ class RadialSupport:
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
-        to_slip, axes, _ = slip_jacobian(self._kinds, coordinates)
-        w = np.array(place_of_disc(self._kinds, coordinates, axes)) - self._offset
+        to_slip, axes, _, place = slip_and_place(self._kinds, coordinates)
+        w = np.array(place) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
         force = np.array(axes[:2]).T @ (-secant_stiffness(square, self._law) * w - damping * rate)
         return w, force, elastic_energy(square, self._law), damping * float(rate @ rate)
@@ -133,20 +133,21 @@ def add_radial_support(
 ) -> RadialSupport:
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
-    On the ground they act in the global x-y plane. On a body they act across its z-axis and turn with it, like an
-    elastic shaft. They are relaxed if the disc's node is at ``offset``, and equal in all radial directions. They
-    neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False
-    unless the support is linear and on the ground, because its nodes are shared with their bodies.
+    They act across the z-axis of the base and turn with it, like an elastic shaft. The ground has the axes of the
+    ``ObjectGround``, or else the global axes. The springs are relaxed if the disc's node is at ``offset``, and equal
+    in all radial directions. They neither hold the disc along the axis nor resist tilting.
+    ``computeMassMatrixInversePerBody`` must stay False unless the support is linear and on the ground with the global
+    axes, because its nodes are shared with their bodies.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model, not yet assembled, with the nodes.
-    base_node : NodeIndex or ObjectIndex or None
-        None for the ground; an ``ObjectIndex`` for a body with one of the following nodes: a ``Node1D``, which turns
-        about the z-axis through the global origin, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
+    base_node : NodeIndex or ObjectIndex or MarkerIndex or None
+        None or an ``ObjectGround`` for the ground. Otherwise one of the following nodes, its body, or a
+        ``MarkerBodyRigid`` on it: a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
         ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``.
-    disc_node : NodeIndex or ObjectIndex
+    disc_node : NodeIndex or ObjectIndex or MarkerIndex
         One of those, except a ``Node1D``.
     stiffness : float
         C in N/m, >= 0.
@@ -159,8 +160,8 @@ def add_radial_support(
     stop_stiffness : float
         C_s in N/m, >= 0; 0 for no stop.
     offset : two floats
-        Relaxed position in m, in the axes of the base and from its node, which is the origin for a ``Node1D`` and the
-        ground.
+        Relaxed position in m, in the axes of the base and from its node or marker. For a ``Node1D`` and the ground,
+        from the reference position of the body, or else from the global origin.
 
     Raises
     ------
@@ -170,14 +171,13 @@ def add_radial_support(
     """
     law = _checked_law(stiffness, hardening, stop_gap, stop_stiffness, damping)
     place = _checked_offset(offset)
-    base_node = node_of("base_node", mbs, base_node, or_ground=True)
-    disc_node = node_of("disc_node", mbs, disc_node)
-    kinds, hidden = _checked_nodes(mbs, base_node, disc_node)
-    nodes = (disc_node,) if base_node is None else (base_node, disc_node)
+    sides = checked_sides(mbs, base_node, disc_node, discs=(PLANAR, *SPATIAL), master="base")
+    nodes, pair = nodes_and_kinds(*sides)
+    kinds, hidden = _kinds_and_hidden(pair)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]
     reference = np.hstack([np.zeros(hidden), *own])
-    if base_node is None and hardening == 0.0 and stop_stiffness == 0.0:
-        item = _add_springs(mbs, disc_node, place, law)
+    if hidden == ON_GROUND and hardening == 0.0 and stop_stiffness == 0.0:
+        item = _add_springs(mbs, nodes[0], place, law)
     else:
         item = add_connector(mbs, nodes, *support_functions(hidden, kinds, reference, place, law))
     return RadialSupport(mbs, item, nodes, kinds, reference, place, law)
@@ -195,18 +195,15 @@ def _checked_law(
     )
 
 
-def _checked_nodes(mbs: Any, base_node: Any, disc_node: Any) -> tuple[Kinds, int]:
-    """Return the kinds of base and disc, and how many first coordinates of the base the model does not contain.
+def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
+    """Return the kinds for compiled code, and how many first coordinates of the base the model does not contain.
 
-    The ground and a rotor count as planar bodies with three or two coordinates fixed at zero.
+    If there are no mounts, the ground and a rotor count as planar bodies. Three or two of their coordinates are zero.
     """
-    disc = checked_kind("disc_node", mbs, disc_node, (PLANAR, *SPATIAL))
-    if base_node is None:
-        return (PLANAR, disc), ON_GROUND
-    base = checked_kind("base_node", mbs, base_node)
-    if int(base_node) == int(disc_node):
-        raise ValueError(f"disc_node {int(disc_node)} is also the base_node: a support needs two bodies")
-    return ((PLANAR, disc), ON_ROTOR) if base == ROTOR else ((base, disc), 0)
+    base, disc, mounts = kinds
+    if mounts is not None or base not in (GROUND, ROTOR):
+        return kinds, 0
+    return (PLANAR, disc, None), ON_GROUND if base == GROUND else ON_ROTOR
 
 
 def _checked_offset(offset: Sequence[float]) -> Offset:

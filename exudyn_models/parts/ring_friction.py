@@ -13,21 +13,20 @@ from typing import Any, Protocol
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import AxialStick
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import GROUND, KINDS, ROTOR, SPATIAL, TRANSLATIONS, Kinds, frame
+from exudyn_models.forces.slip_kinematics import Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
-from exudyn_models.parts.connector import add_connector, checked_kind, node_of
+from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.friction_sensors import RingFriction
+from exudyn_models.parts.mounts import check_axes, checked_sides, nodes_and_kinds
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
-
-ALL = tuple(KINDS.values())
 
 UNREGULARISED = 1e-200
 """Value of ε in m/s for exact stick, far below any slip of a sliding contact."""
@@ -69,26 +68,31 @@ def add_ring_friction(
     pressure: Pressure = "uniform",
     thermal_node: ThermalNode | None = None,
     held: int | None = None,
+    master_rotation: Any = None,
+    disc_rotation: Any = None,
 ) -> RingFriction:
     """Add friction between a disc and a master disc to ``mbs``; return a handle with the connector and its sensors.
 
-    The contact is a circle of ``contact_radius`` about the origin of the disc's node, or ``contact_points`` points on
-    it that turn with the disc: point i at the angle φ + 2πi/n, each with an equal share of the normal load N. Or it
-    is the annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure``. The law is that of
+    The contact is a circle of ``contact_radius`` about the disc's node or marker, or ``contact_points`` points on it
+    that turn with the disc: point i at the angle φ + 2πi/n, each with an equal share of the normal load N. Or it is
+    the annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure``. The law is that of
     ``friction_laws``: Coulomb friction above the slip speed ε, viscous below.
 
-    Either node is a ``Node1D``, which turns about the z-axis through the global origin, a ``NodeRigidBody2D``, a
-    ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``, the default of
-    Exudyn's ``CreateRigidBody``. The ground is a master at rest whose axis is the z-axis through the global origin,
-    for example for a brake or bearing friction. The plane of contact passes through the disc's node across the z-axis
-    of the master's body; a small tilt of the disc is neglected. The load acts only through friction and presses
-    nothing together. ``computeMassMatrixInversePerBody`` must stay False, because the nodes are shared with their
-    bodies; otherwise Exudyn raises an error.
+    Either node is a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or, for
+    implicit solvers, a ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. A ``Node1D`` turns about the
+    z-axis of its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground
+    is a master at rest, for example for a brake or bearing friction.
+
+    The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
+    ``MarkerBodyRigid`` moves the contact on its body to the marker, and ``master_rotation`` turns the axis. The plane
+    of contact passes through the disc's node or marker, across this axis. A small tilt of the disc is neglected. The
+    load acts only through friction and presses nothing together. ``computeMassMatrixInversePerBody`` must stay False,
+    because the nodes are shared with their bodies; otherwise Exudyn raises an error.
 
     Coefficient and load are numbers, or functions of any of these arguments, by name and in any order:
 
     - ``time`` in s,
-    - ``radius`` in m, the distance of the disc's node from the master's axis,
+    - ``radius`` in m, the distance of the contact's centre from the master's axis,
     - ``slip_speed`` in m/s, the mean slip speed P of the contact,
     - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster,
 
@@ -108,11 +112,11 @@ def add_ring_friction(
     ----------
     mbs : exudyn MainSystem
         The model, not yet assembled, with both nodes.
-    master_node : NodeIndex or ObjectIndex or None
-        Node or body of the master; None for the ground. The index of a node in another model counts as an index in
-        this one.
-    disc_node : NodeIndex or ObjectIndex
-        Node or body of the disc.
+    master_node : NodeIndex or ObjectIndex or MarkerIndex or None
+        Node or body of the master, a ``MarkerBodyRigid`` or ``MarkerNodeRigid`` on it, or an ``ObjectGround``; None
+        for the ground with the global axes. An index of another model counts as an index in this one.
+    disc_node : NodeIndex or ObjectIndex or MarkerIndex
+        Node, body or marker of the disc.
     contact_radius : float
         R in m, >= 0; 0 for a pin.
     inner_radius, outer_radius : float
@@ -139,13 +143,18 @@ def add_ring_friction(
         ``temperature``, which is evaluated in Python.
     held : int, optional
         i + 1 for a point i whose friction is viscous at any slip, to model one about which the disc pivots.
+    master_rotation, disc_rotation : array of shape (3, 3), optional
+        Axes of the contact on either body as columns, in the axes of the body, like ``rotationMarker0`` and
+        ``rotationMarker1`` of Exudyn's joints. The third one is the axis of the contact, and the x-axis on the disc
+        points to the first contact point. Default: the axes of the bodies.
 
     Raises
     ------
     ValueError
         If a number is out of range, a function takes other arguments, a node is not in ``mbs`` or of an unsupported
-        kind, or points between bodies that can slide sideways have no regularisation. If a function returns an
-        invalid number in a run, Exudyn raises an ``ExudynError`` with its time and arguments.
+        kind, or points between bodies that can slide sideways have no regularisation. Also if the axis of the contact
+        lies across that of a body, which then exerts no moment. If a function returns an invalid number in a run,
+        Exudyn raises an ``ExudynError`` with its time and arguments.
 
     """
     contact = _checked_geometry(
@@ -157,9 +166,10 @@ def add_ring_friction(
             raise ValueError(f"thermal_node = {thermal_node!r}: it must be a result of add_thermal_node")
         coefficient = thermal_node.with_temperature(coefficient)
     factors = LoadAndCoefficient(contact, coefficient, normal_load, static_ratio, plates)
-    nodes, kinds = checked_pair(mbs, master_node, disc_node)
+    sides = checked_sides(mbs, master_node, disc_node, rotations=(master_rotation, disc_rotation))
     if contact[0] > 0.0:  # a pin exerts no moment
-        _check_spins(mbs, nodes, kinds)
+        check_axes(mbs, *sides)
+    nodes, kinds = nodes_and_kinds(*sides)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     stick = None
     if regularisation is None:
@@ -181,7 +191,7 @@ def add_ring_friction(
 def _exact_stick(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient, static_ratio: float
 ) -> AxialStick:
-    if kinds[1] == ROTOR and kinds[0] in (ROTOR, GROUND):
+    if kinds in ON_ONE_AXIS:
         return AxialStick(kinds, reference, factors, static_ratio)
     if factors.geometry[1] > 1:
         raise ValueError(
@@ -215,44 +225,6 @@ def _add_locks(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> tuple[int, 
         for i in range(3)
     )
     return tuple(int(mbs.AddObject(lock)) for lock in locks)
-
-
-def checked_pair(
-    mbs: Any, master_node: Any, disc_node: Any, masters: Sequence[int] = ALL, discs: Sequence[int] = ALL
-) -> tuple[tuple[Any, ...], Kinds]:
-    """Return the nodes, without the ground, and the kinds of both.
-
-    Raises ``ValueError`` if a node is not allowed, or both are the same.
-    """
-    disc = node_of("disc_node", mbs, disc_node)
-    disc_kind = checked_kind("disc_node", mbs, disc, discs)
-    master = node_of("master_node", mbs, master_node, or_ground=True)
-    if master is None:
-        return (disc,), (GROUND, disc_kind)
-    master_kind = checked_kind("master_node", mbs, master, masters)
-    if int(master) == int(disc):
-        raise ValueError(f"disc_node {int(disc)} is also the master_node: friction needs two bodies")
-    return (master, disc), (master_kind, disc_kind)
-
-
-def _check_spins(mbs: Any, nodes: Sequence[Any], kinds: Kinds) -> None:
-    """Raise ``ValueError`` if a body starts with a spin across the contact's axis, which friction does not resist."""
-    z = axis = np.array([0.0, 0.0, 1.0])
-    for name, node, kind in zip(
-        ("master_node", "disc_node")[-len(nodes) :], nodes, kinds[-len(nodes) :], strict=True
-    ):
-        spin = z  # of rotors and planar bodies, whatever its size
-        if kind in SPATIAL:
-            entry = mbs.GetNode(node)
-            rates = entry["initialVelocities"][TRANSLATIONS[kind] :]
-            _, axes, turning = frame(kind, entry["referenceCoordinates"] + entry["initialCoordinates"], 0)
-            spin = np.array(turning[: len(rates)]).T @ rates
-            axis = np.array(axes[2]) if name == "master_node" else axis
-        if np.linalg.norm(np.cross(axis, spin)) > abs(axis @ spin):
-            raise ValueError(
-                f"{name} {int(node)} initially spins about {spin.round(6).tolist()}: it must spin about the axis "
-                f"of the contact, {axis.round(6).tolist()}, which is the z-axis of the master's body or of the ground"
-            )
 
 
 def _checked_geometry(

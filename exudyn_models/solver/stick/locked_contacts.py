@@ -86,7 +86,7 @@ class LockedContacts:
         """
         locked = [contact for contact in self._contacts if contact.mode == Mode.LOCKED]
         bias = np.concatenate([contact.bias(self._mbs) for contact in locked] or [np.zeros(1)])
-        if True:
+        if not bias.any():
             return
         data, scale = self._mbs.systemData, self._mobilities()
         rows = self._held_rows(locked) * scale

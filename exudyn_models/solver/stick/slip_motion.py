@@ -15,7 +15,7 @@ from exudyn_models.forces.slip_kinematics import (
     SIZES,
     TRANSLATIONS,
     Kinds,
-    radius_of_disc,
+    slip_and_place,
     slip_jacobian,
 )
 from reference_model.systems import FloatArray
@@ -84,7 +84,7 @@ def _slip_motion(
     kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float]:
     """Return the components of a ``SlipMotion``."""
-    to_slip, axes, _ = slip_jacobian(kinds, q)
+    to_slip, _, _, (x, y) = slip_and_place(kinds, q)
     stepped = q.astype(np.complex128)
     rates = _coordinate_rates(kinds, q, q_t)
     for k in range(len(q)):
@@ -103,7 +103,7 @@ def _slip_motion(
     friction = _unit_friction(slip, contact)
     for i in range(3):
         gradient[i] = -friction[i]
-    return slip, rate, bias, gradient, radius_of_disc(kinds, q, axes), _potential(rate, contact), largest
+    return slip, rate, bias, gradient, math.sqrt(x * x + y * y), _potential(rate, contact), largest
 
 
 @compiled
@@ -160,7 +160,7 @@ def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArra
     """
     rates = q_t.copy()
     start = 0
-    for kind in kinds:
+    for kind in kinds[:2]:
         if kind == ROTATION_VECTOR:
             at = start + TRANSLATIONS[kind]
             vector, spin = q[at : at + 3].copy(), q_t[at : at + 3].copy()

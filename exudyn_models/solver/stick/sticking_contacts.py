@@ -294,7 +294,9 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
     if not isinstance(stick, PlanarStick):
         return contact
     planar = PlanarContact(contact.item, stick, contact.places)
-    stick.on_axis = stick.mean_radius > 0.0 and spanned(planar.slip_rows(mbs)[:2], joints)
+    across = planar.slip_rows(mbs)[:2]
+    across[np.abs(across) < NEGLIGIBLE] = 0.0
+    stick.on_axis = stick.mean_radius > 0.0 and spanned(across, joints)
     stick.set_basis(SPIN)
     return contact if stick.on_axis else planar
 

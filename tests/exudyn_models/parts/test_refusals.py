@@ -146,9 +146,9 @@ def test_nodes(part, is_disc):
         exu.NodeIndex(7): "7 does not exist: this model has 3 nodes",
         exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
         exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
-        exu.MarkerIndex(1): "= 1 is of type MarkerIndex: it must be a NodeIndex",
+        exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
         1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
-        "disc": "= 'disc' is of type str: it must be a NodeIndex or the ObjectIndex of a body",
+        "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
         mass: "",
     }
     if not is_disc:

@@ -313,7 +313,7 @@ def test_the_load_share_is_one_on_the_limit_surface():
         (0.1, 0, 1.0, 1e-200, -1, 0.03),
         (0.0, 1, 1.0, 1e-200, -1, 0.0),
     ):
-        stick = PlanarStick((4, 1), np.zeros(3), Geometry(contact), 1.0)
+        stick = PlanarStick((4, 1, None), np.zeros(3), Geometry(contact), 1.0)
         stick.allow(np.eye(3))
         for _ in range(100):
             slip = rng.normal(size=3) * 10.0 ** rng.uniform(-3.0, 3.0, 3)

@@ -1,0 +1,434 @@
+"""Contacts anywhere on their bodies: by markers, by rotations of their axes, on rotors and grounds of any axis."""
+
+from itertools import product
+
+import exudyn as exu
+import numpy as np
+import pytest
+from exudyn.utilities import RigidBodyInertia
+from free_bodies import (
+    all_states,
+    items,
+    new_model,
+    planar_body,
+    rotations,
+    run_explicitly,
+    settings_of,
+)
+from pairs_of_bodies import assert_jacobian_is_that_of_exudyn
+from test_orientations import AXES
+
+from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models.forces.friction_laws import NONE_HELD, friction_of_slip
+
+OUT = exu.OutputVariableType
+NONE = [0.0, 0.0, 0.0]
+NODES = exu.NodeType
+SPATIAL = {
+    "rotation vector": NODES.RotationRotationVector,
+    "Tait-Bryan": NODES.RotationRxyz,
+    "Euler parameters": NODES.RotationEulerParameters,
+}
+IMPLICIT = exu.DynamicSolverType.TrapezoidalIndex2
+RING = {"contact_radius": 0.12, "friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
+THREE = RING | {"contact_points": 3}
+WITH_RADIUS = THREE | {"friction_coefficient": 1.0, "normal_load": lambda radius: 1.0 + radius}
+RANDOM = np.random.default_rng(7)
+
+
+def random_rotation():
+    return rotations.EulerParameters2RotationMatrix((e := RANDOM.normal(size=4)) / np.linalg.norm(e))
+
+
+RANDOM_AXES = [random_rotation() for _ in range(200)]
+
+
+def body_of(mbs, kind, axes, place, velocity=NONE, spin=NONE, mass=1.0, inertia=0.02):
+    """Add a body with ``axes`` and motion in global coordinates; a rotor takes its spin about its z-axis."""
+    if kind == "ground":
+        return mbs.AddObject(items.ObjectGround(referencePosition=place, referenceRotation=axes))
+    if kind == "rotor":
+        node = mbs.AddNode(items.Node1D(referenceCoordinates=[0.3], initialVelocities=[axes[:, 2] @ spin]))
+        frame = {"referencePosition": place, "referenceRotation": axes @ rotations.RotationMatrixZ(-0.3)}
+        return mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia, **frame))
+    return mbs.CreateRigidBody(
+        inertia=RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3)),
+        nodeType=SPATIAL[kind],
+        referencePosition=place,
+        referenceRotationMatrix=axes,
+        initialVelocity=velocity,
+        initialAngularVelocity=spin,
+    )
+
+
+def marker_on(mbs, body, place):
+    return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
+
+
+def is_singular(kind, axes):
+    """Return whether the second Tait-Bryan angle is close to ±90°, where the angles are singular."""
+    return kind == "Tait-Bryan" and abs(axes[0, 2]) > 0.98
+
+
+PAIRS = [
+    *product(SPATIAL, repeat=2),
+    *product(("ground", "rotor"), (*SPATIAL, "rotor")),
+    *product(SPATIAL, ("rotor",)),
+]
+FREE = {"ground": False, "rotor": False} | dict.fromkeys(SPATIAL, True)
+
+
+def motion(kinds, turned, own):
+    """Return the motion of both bodies at 0.05 s in the axes ``turned``, which are those of the contact.
+
+    Spatial bodies have other axes, ``own`` in those of the contact.
+    """
+    mbs, bodies, rotation = new_model(), [], []
+    starts = (
+        ([0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0], 2.0, 0.7),
+        ([0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0], 1.0, 0.02),
+    )
+    for kind, axes, (place, velocity, spin, *numbers) in zip(kinds, own, starts, strict=True):
+        axes = axes if FREE[kind] else np.eye(3)
+        vectors = [turned @ vector for vector in (place, velocity, spin)]
+        bodies.append(body_of(mbs, kind, turned @ axes, *vectors, *numbers))
+        rotation.append(axes.T)
+    add_ring_friction(mbs, *bodies, **THREE, master_rotation=rotation[0], disc_rotation=rotation[1])
+    if "Tait-Bryan" in kinds:  # the trapezoidal rule would err differently in every orientation
+        mbs.Assemble()
+        run_explicitly(mbs, 0.05, 40)
+    else:
+        solve_dynamic(mbs, settings_of(0.05, 5, newton=1e-12), IMPLICIT)
+    return np.hstack(
+        [
+            turned.T @ mbs.GetObjectOutputBody(body, quantity)
+            for kind, body in zip(kinds, bodies, strict=True)
+            if kind != "ground"
+            for quantity in (OUT.Position, OUT.Velocity, OUT.AngularVelocity)
+        ]
+    )
+
+
+@pytest.mark.parametrize(
+    "kinds", [kinds for kinds in PAIRS if {*kinds} != {"Tait-Bryan", "Euler parameters"}], ids=" on ".join
+)
+def test_contacts_move_alike_in_all_24_orientations_and_200_random_ones(kinds):
+    expected = motion(kinds, np.eye(3), (np.eye(3), np.eye(3)))
+    cases = [(turned, (AXES[i - 5], AXES[i - 11])) for i, turned in enumerate(AXES)]
+    cases += [(turned, (RANDOM_AXES[i - 5], RANDOM_AXES[i - 11])) for i, turned in enumerate(RANDOM_AXES)]
+    found = [
+        motion(kinds, turned, own)
+        for turned, own in cases
+        if not any(is_singular(kind, turned @ axes) for kind, axes in zip(kinds, own, strict=True))
+    ]
+    assert len(found) > 20
+    np.testing.assert_allclose(found, np.broadcast_to(expected, np.shape(found)), rtol=0.0, atol=1e-11)
+
+
+def forces_by_exudyn(mbs, bodies, places, mounts, velocities):
+    """Return the generalised forces by Exudyn's velocities of points, for one coordinate at a time.
+
+    ``places`` and ``mounts`` are position and axes of the contact in the axes of both bodies.
+    """
+    data = mbs.systemData
+    axes = [mbs.GetObjectOutputBody(body, OUT.RotationMatrix).reshape(3, 3) for body in bodies]
+    origin, centre = (
+        mbs.GetObjectOutputBody(*of) for of in zip(bodies, 2 * [OUT.Position], places, strict=True)
+    )
+    below = axes[0].T @ (
+        centre - mbs.GetObjectOutputBody(bodies[0], OUT.Position)
+    )  # the master's point there
+    (x, y, z), turned = (axes[0] @ mounts[0]).T, axes[1] @ mounts[1]
+    slips = []
+    for rates in np.eye(len(velocities)):
+        data.SetODE2Coordinates_t(rates)
+        velocity = mbs.GetObjectOutputBody(bodies[1], OUT.Velocity, places[1])
+        spin = mbs.GetObjectOutputBody(bodies[1], OUT.AngularVelocity)
+        if mbs.GetObject(bodies[0])["objectType"] != "Ground":
+            velocity = velocity - mbs.GetObjectOutputBody(bodies[0], OUT.Velocity, below)
+            spin = spin - mbs.GetObjectOutputBody(bodies[0], OUT.AngularVelocity)
+        slips.append([x @ velocity, y @ velocity, z @ spin])
+    data.SetODE2Coordinates_t(velocities)
+    angle = np.arctan2(turned[:, 0] @ y, turned[:, 0] @ x)
+    contact = (0.12, 3, 1.0, 0.01, NONE_HELD, 0.12)
+    load = 1.0 + np.hypot(x @ (centre - origin), y @ (centre - origin))
+    return load * np.array(slips) @ friction_of_slip(*(velocities @ slips), angle, contact)
+
+
+def mounted_at_random(kinds, i):
+    """Return a model with a contact of random place and axes on bodies of random place and axes."""
+    mbs, contact = new_model(), RANDOM_AXES[i]
+    tilted = contact @ rotations.RotationMatrixX(0.3) @ rotations.RotationMatrixZ(i)
+    frames = contact, tilted
+    axes = [
+        contact @ rotations.RotationMatrixZ(i + 1) if kind == "rotor" else RANDOM_AXES[i - 7 * k]
+        for k, kind in enumerate(kinds, 1)
+    ]
+    if any(is_singular(kind, own) for kind, own in zip(kinds, axes, strict=True)):
+        axes = frames
+    bodies = [body_of(mbs, kind, own, RANDOM.normal(size=3)) for kind, own in zip(kinds, axes, strict=True)]
+    places = RANDOM.uniform(-0.3, 0.3, (2, 3))
+    mounts = [own.T @ frame for own, frame in zip(axes, frames, strict=True)]
+    friction = add_ring_friction(
+        mbs,
+        *[marker_on(mbs, *of) for of in zip(bodies, places, strict=True)],
+        **WITH_RADIUS,
+        master_rotation=mounts[0],
+        disc_rotation=mounts[1],
+    )
+    return mbs, friction, (bodies, places, mounts)
+
+
+def assert_forces_are_those_of_exudyn(mbs, friction, contact):
+    mbs.Assemble()
+    velocities = RANDOM.normal(size=mbs.systemData.ODE2Size())
+    expected = forces_by_exudyn(mbs, *contact, velocities)
+    found = -np.array(mbs.ComputeItem(friction.item, exu.ComputeItemType.ODE2LHS))
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
+def test_forces_on_200_random_mounts_are_those_of_exudyns_velocities(kinds):
+    for i in range(200):
+        assert_forces_are_those_of_exudyn(*mounted_at_random(kinds, i))
+
+
+def test_the_place_of_a_rotor_along_its_axis_matters_to_a_tilted_master():
+    mbs = new_model()
+    master = body_of(mbs, "rotation vector", rotations.RotationMatrixX(0.3), [0.1, 0.0, 0.0])
+    node = mbs.AddNode(items.Node1D())
+    disc = items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=[0.0, 0.0, 0.4])
+    bodies = master, mbs.AddObject(disc)
+    friction = add_ring_friction(mbs, *bodies, **WITH_RADIUS)
+    assert_forces_are_those_of_exudyn(mbs, friction, (bodies, np.zeros((2, 3)), 2 * [np.eye(3)]))
+
+
+@pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
+def test_a_mounted_contact_has_the_jacobian_that_exudyn_finds_by_differences(kinds):
+    mbs, friction, _ = mounted_at_random(kinds, 3)
+    for node in friction.nodes:
+        rates = RANDOM.normal(size=len(mbs.GetNodeParameter(node, "initialVelocities")))
+        mbs.SetNodeParameter(node, "initialVelocities", rates)
+    assert_jacobian_is_that_of_exudyn(mbs, friction.item)
+
+
+def test_a_marker_away_from_the_node_is_the_same_contact_as_a_node_there():
+    """The body's centre of mass is 50 mm from the contact; its node is there, or at the contact."""
+    ends, arm = [], np.array([0.05, -0.02, 0.0])
+    turned = rotations.RotationMatrixZ(0.4)
+    for node_at_contact in (False, True):
+        mbs = new_model()
+        master = body_of(mbs, "rotor", np.eye(3), [0.0, 0.0, 0.0], spin=[0.0, 0.0, 30.0])
+        inertia = RigidBodyInertia(mass=1.0, inertiaTensor=0.02 * np.eye(3))
+        node_place = np.array([0.3, 0.1, 0.0])
+        if node_at_contact:
+            inertia, node_place = inertia.Translated(-arm), node_place + turned @ arm
+        disc = mbs.CreateRigidBody(
+            inertia=inertia,
+            nodeType=SPATIAL["rotation vector"],
+            referencePosition=node_place,
+            referenceRotationMatrix=turned,
+        )
+        at = disc if node_at_contact else marker_on(mbs, disc, arm)
+        friction = add_ring_friction(mbs, master, at, **THREE)
+        assert (friction.compiled, len(friction.nodes)) == (True, 2)
+        mbs.Assemble()
+        run_explicitly(mbs, 0.2, 200)
+        ends.append(
+            [
+                mbs.GetObjectOutputBody(disc, OUT.Position, -arm * node_at_contact),
+                all_states(mbs)[[0, 4, 5, 6]],
+            ]
+        )
+    np.testing.assert_allclose(*map(np.hstack, ends), rtol=0.0, atol=1e-9)
+
+
+PIVOT = {"contact_radius": 0.01, "friction_coefficient": 0.2, "normal_load": 500.0}
+"""A bearing with a friction moment of 1 N m."""
+
+
+@pytest.mark.parametrize("kind", ["planar", *SPATIAL])
+@pytest.mark.parametrize("regularisation", [None, 1e-4])
+def test_a_rod_in_a_bearing_at_its_end_stops_at_the_exact_time(kind, regularisation):
+    """A rod of 2 kg and 0.1 kg m² turns at 3 rad/s about a bearing 0.4 m from its centre, far from the origin."""
+    mbs, pivot, arm, tilt = new_model(), np.array([1.0, 2.0, 0.0]), np.array([-0.4, 0.0, 0.0]), 0.7
+    turned = rotations.RotationMatrixZ(tilt)
+    centre, velocity = pivot - turned @ arm, np.cross([0.0, 0.0, 3.0], -turned @ arm)
+    if kind == "planar":
+        planar_body(mbs, 2.0, 0.1, [*centre[:2], tilt], [*velocity[:2], 3.0])
+        rod = exu.ObjectIndex(0)
+    else:
+        rod = body_of(mbs, kind, turned, centre, velocity, [0.0, 0.0, 3.0], mass=2.0, inertia=0.1)
+    ground = mbs.AddObject(items.ObjectGround(referencePosition=pivot))
+    markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)), marker_on(mbs, rod, arm)]
+    held = [1, 1, 0, 0, 0, 0] if kind == "planar" else [1, 1, 1, 1, 1, 0]
+    mbs.AddObject(items.GenericJoint(markerNumbers=markers, constrainedAxes=held))
+    bearing = add_ring_friction(mbs, *markers, **PIVOT, regularisation=regularisation)
+    spin = bearing.add_sensor("relative_spin")
+    mbs.Assemble()
+    stops = 3.0 * (0.1 + 2.0 * 0.4**2)  # s at 1 N m
+    changes = solve_dynamic(mbs, settings_of(1.5, 300, newton=1e-10), IMPLICIT)
+    assert abs(mbs.GetSensorValues(spin)) < 1e-6
+    turns = 3.0 * stops / 2.0
+    place = mbs.GetObjectOutputBody(rod, OUT.Position)
+    expected = pivot - rotations.RotationMatrixZ(turns) @ turned @ arm
+    np.testing.assert_allclose(place, expected, rtol=0.0, atol=1e-3 if regularisation else 1e-4)
+    if regularisation is None:
+        assert [(change.time, int(change.after)) for change in changes] == [
+            (pytest.approx(stops, abs=1e-4), 0)
+        ]
+
+
+WHEEL = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 800.0}
+"""A brake of 24 N m."""
+X = rotations.RotationMatrixY(np.pi / 2.0)
+"""A frame with its z-axis along x."""
+BACK = rotations.RotationMatrixX(np.pi)
+"""A frame with its z-axis reversed."""
+
+
+@pytest.mark.parametrize("axes", [X, X @ BACK, RANDOM_AXES[0]], ids=["x", "against x", "any axis"])
+@pytest.mark.parametrize("ground", ["same", "reversed"])
+@pytest.mark.parametrize("regularisation", [None, 1e-4])
+def test_a_brake_on_the_ground_stops_a_rotor_about_any_axis_anywhere(axes, ground, regularisation):
+    place = np.array([1.0, 2.0, 3.0])
+    mbs = new_model()
+    wheel = body_of(mbs, "rotor", axes, place, spin=axes[:, 2] * 2.0, inertia=0.5)
+    frame = axes @ BACK if ground == "reversed" else axes @ rotations.RotationMatrixZ(0.4)
+    fixed = mbs.AddObject(
+        items.ObjectGround(referencePosition=place + 0.2 * axes[:, 2], referenceRotation=frame)
+    )
+    brake = add_ring_friction(mbs, fixed, wheel, **WHEEL, regularisation=regularisation)
+    moment, slip = (brake.add_sensor(quantity) for quantity in ("transmitted_moment", "relative_spin"))
+    sign = -1.0 if ground == "reversed" else 1.0
+    mbs.Assemble()
+    if regularisation:
+        assert mbs.GetSensorValues(slip) == pytest.approx(2.0 * sign, abs=1e-12)
+        assert mbs.GetSensorValues(moment) == pytest.approx(-24.0 * sign, abs=1e-12)
+    changes = solve_dynamic(mbs, settings_of(0.06, 60), IMPLICIT)
+    stops = 2.0 * 0.5 / 24.0
+    assert mbs.systemData.GetODE2Coordinates()[0] == pytest.approx(
+        stops, abs=1e-4 if regularisation else 1e-9
+    )
+    assert abs(mbs.systemData.GetODE2Coordinates_t()[0]) < 1e-9
+    if regularisation is None:
+        assert [(change.time, int(change.after)) for change in changes] == [
+            (pytest.approx(stops, abs=1e-9), 0)
+        ]
+
+
+@pytest.mark.parametrize("regularisation", [None, 1e-4])
+@pytest.mark.parametrize("turned", [np.eye(3), BACK], ids=["same", "opposite"])
+def test_rotors_of_same_and_opposite_axes_lock_at_their_common_speed(turned, regularisation):
+    mbs = new_model()
+    first = body_of(mbs, "rotor", X, NONE, spin=X[:, 2] * 3.0, inertia=0.5)
+    second = body_of(mbs, "rotor", X @ turned, [0.2, 0.0, 0.0], inertia=0.5)
+    add_ring_friction(mbs, first, second, **WHEEL, regularisation=regularisation)
+    changes = solve_dynamic(mbs, settings_of(0.06, 60), IMPLICIT)
+    sign = turned[2, 2]
+    np.testing.assert_allclose(mbs.systemData.GetODE2Coordinates_t(), [1.5, 1.5 * sign], rtol=0.0, atol=1e-9)
+    if regularisation is None:
+        assert [(change.time, int(change.after)) for change in changes] == [
+            (pytest.approx(0.03125, abs=1e-9), 0)
+        ]
+
+
+def test_rotors_about_parallel_axes_rub_like_a_rotor_and_a_disc_beside_it():
+    """Their bearings take up the forces; the moments are those of a disc in the plane at the same place."""
+    moments = []
+    for kind in ("rotor", "planar"):
+        mbs = new_model()
+        master = body_of(mbs, "rotor", np.eye(3), NONE, spin=[0.0, 0.0, 3.0])
+        if kind == "rotor":
+            disc = body_of(mbs, "rotor", np.eye(3), [0.1, 0.05, 0.4], spin=[0.0, 0.0, -2.0])
+        else:
+            disc = planar_body(mbs, 1.0, 0.02, [0.1, 0.05, 0.0], [0.0, 0.0, -2.0])
+        friction = add_ring_friction(mbs, master, disc, **THREE)
+        mbs.Assemble()
+        data = mbs.systemData
+        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t(exu.ConfigurationType.Initial))
+        data.SetODE2Coordinates(data.GetODE2Coordinates(exu.ConfigurationType.Initial))
+        forces = np.array(mbs.ComputeItem(friction.item, exu.ComputeItemType.ODE2LHS))
+        moments.append(forces[[0, -1]])
+    assert min(abs(moments[0])) > 1e-3
+    np.testing.assert_allclose(*moments, rtol=1e-13)
+
+
+@pytest.mark.parametrize("hardening", [0.0, 50.0])
+@pytest.mark.parametrize("kind", ["ground", "rotor"])
+def test_a_support_on_a_base_of_any_axis_holds_a_disc_as_on_the_global_one(kind, hardening):
+    ends, starts = [], ([0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0])
+    for turned, shift in ((np.eye(3), np.zeros(3)), (RANDOM_AXES[0], np.array([1.0, -2.0, 0.5]))):
+        mbs = new_model()
+        base = body_of(mbs, kind, turned, shift, spin=turned[:, 2] * 2.0)
+        place, *velocities = (turned @ vector for vector in starts)
+        disc = body_of(mbs, "rotation vector", turned, place + shift, *velocities)
+        support = add_radial_support(
+            mbs, base, disc, stiffness=40.0, damping=0.5, hardening=hardening, offset=(0.02, -0.01)
+        )
+        sensors = [
+            support.add_sensor(quantity) for quantity in ("deflection", "stored_energy", "power", "force")
+        ]
+        mbs.Assemble()
+        run_explicitly(mbs, 0.3, 300)
+        *values, force = (mbs.GetSensorValues(sensor) for sensor in sensors)
+        end = mbs.GetObjectOutputBody(disc, OUT.Position) - shift
+        ends.append(np.hstack([turned.T @ end, turned.T @ force, *values, support.power(mbs, 0.3)]))
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0.0, atol=1e-11)
+
+
+def test_axes_across_each_other_are_refused_where_a_contact_is_added():
+    mbs = new_model()
+    about_z = body_of(mbs, "rotor", np.eye(3), NONE)
+    about_x = body_of(mbs, "rotor", X, NONE)
+    tilted = body_of(mbs, "rotor", rotations.RotationMatrixX(0.1), NONE)
+    planar = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    for pair, options, words in (
+        ((None, about_x), {}, r"disc_node 1 turns about \[1.0, 0.0, 0.0\]: .* \[0.0, 0.0, 1.0\]"),
+        ((about_z, about_x), {}, "disc_node 1 turns about"),
+        ((about_x, planar), {}, "disc_node 3 turns about"),
+        ((about_z, tilted), {}, "disc_node 2 turns about"),
+        ((about_z, about_x), {"master_rotation": X}, "master_node 0 turns about"),
+        ((planar, about_z), {"master_rotation": X}, "master_node 3 turns about"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            add_ring_friction(mbs, *pair, **RING, **options)
+        add_ring_friction(mbs, *pair, **RING | {"contact_radius": 0.0}, **options)  # a pin exerts no moment
+    add_ring_friction(mbs, None, about_x, **RING, master_rotation=X)
+
+
+@pytest.mark.parametrize(
+    "rotation", [2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", [[1.0, 0.0], [0.0]], np.full((3, 3), np.nan)]
+)
+@pytest.mark.parametrize("name", ["master_rotation", "disc_rotation"])
+def test_what_is_no_rotation_is_refused(name, rotation):
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):
+        add_ring_friction(mbs, None, disc, **RING, **{name: rotation})
+
+
+def test_unsuitable_markers_and_rotors_without_one_axis_are_refused():
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    first = body_of(mbs, "rotor", np.eye(3), NONE)
+    node = mbs.GetObject(first)["nodeNumber"]
+    apart = mbs.AddObject(
+        items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=[0.1, 0.0, 0.0])
+    )
+    slide = mbs.AddNode(items.Node1D())
+    mbs.AddObject(items.ObjectMass1D(nodeNumber=slide, mass=1.0))
+    wrong = mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=first))
+    for master, words in (
+        (wrong, "master_node 0 is a MarkerBodyPosition: it must be a MarkerBodyRigid or a MarkerNodeRigid"),
+        (exu.MarkerIndex(7), "master_node 7 does not exist: this model has 1 markers"),
+        (
+            exu.NodeIndex(int(node)),
+            "master_node 1 is the Node1D of bodies on different axes: pass the ObjectIndex",
+        ),
+        (slide, "master_node 2 is the Node1D of an ObjectMass1D, which translates"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            add_ring_friction(mbs, master, disc, **RING)
+    for body in (first, apart):
+        add_ring_friction(mbs, body, disc, **RING)
