@@ -1,9 +1,8 @@
-"""``files:DIR``: motions that somebody computed beforehand as an engine, from a folder that ``plan`` has laid out.
+"""``files:DIR``: motions computed beforehand as an engine, in a folder created by ``plan``.
 
-``plan.json`` says which motions there are. Each is a file as ``0f3a.json`` with a question, of the form in which
-programs are asked (``json_lines`` beside this), and waits for ``0f3a.csv`` with the answer: a line for each time,
-with the time and the state, below a line of names if there is one. The names come from the questions: no answer is
-taken for that to another one when there is another plan.
+``plan.json`` lists the motions. For each there is a file such as ``0f3a.json`` with a question in the form of
+``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
+header. The file names are hashes of the questions, so an answer cannot be confused with one to another plan.
 """
 
 from __future__ import annotations
@@ -30,31 +29,31 @@ FORMAT = 1
 
 
 class BadFileError(RuntimeError):
-    """A file has something else in it than a motion; the message says in which line."""
+    """A file does not contain a valid motion; the message names the line."""
 
 
 @dataclass(frozen=True)
 class MotionFiles:
-    """The ``simulate`` that reads what stands in the folder ``folder``."""
+    """A ``simulate`` that reads its motions from ``folder``."""
 
     folder: str
 
     @property
     def files(self) -> set[Path]:
-        """The plan and the motions."""
+        """Paths of the plan and the motions."""
         return {Path(self.folder, INDEX), *Path(self.folder).glob("*.csv")}
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Return what the file of this motion says.
+        """Return this motion from its file.
 
         Raises
         ------
         UnsupportedSystemError
-            If it is not among those of the plan, is missing, or ends too early.
+            If the motion is not in the plan, or its file is missing or ends too early.
         BadFileError
-            If the file holds anything else.
+            If the file is otherwise invalid.
 
         """
         name = name_of(question(system, initial_state, times, accuracy))
@@ -67,12 +66,12 @@ class MotionFiles:
 
 
 def name_of(line: bytes) -> str:
-    """Return what the files of the motion of a question are called, without their endings."""
+    """Return the name, without extension, of the files for a question."""
     return hashlib.sha256(line).hexdigest()[:12]
 
 
 def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
-    """Return the motion of ``system`` at ``times`` (n,) in s that a file holds."""
+    """Return the motion of ``system`` at ``times`` (n,) in s from a file."""
     place = f"{path.parent.name}/{path.name}"
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -110,7 +109,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
 
 
 def files_engine(text: str) -> Engine:
-    """Return the engine "files:TEXT"; raise ``ValueError`` if the folder was laid out by no plan."""
+    """Return the engine "files:TEXT"; raise ``ValueError`` if the folder does not contain a valid plan."""
     folder = str(Path(text or ".").resolve())
     content = _index(folder)
     return Engine(Path(folder).name, MotionFiles(folder), tuple(content["kinds"]), phases=False)
