@@ -1,6 +1,6 @@
-"""The variables of the units: one table for each model, of which description files and the C header are made.
+"""Tables of the units' variables, the source of the description files and the C headers.
 
-Parameters and states of pin and disc have the names, units and bounds that ``reference_model.systems`` gives them.
+Parameters and states of pin and disc have the names, units and bounds of ``reference_model.systems``.
 """
 
 from __future__ import annotations
@@ -30,24 +30,24 @@ class Variable:
     Parameters
     ----------
     name : str
-        By which importers know it; its place in the table is its value reference.
+        Name for importers; the value reference is the index in the table.
     unit : str
-        One of ``description.UNITS``, or "" for none.
+        One of ``description.UNITS``, or "" if dimensionless.
     about : str
-        What it is.
+        Description.
     role : str
         "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
-        at events alone.
+        only at events.
     start : float, optional
-        Value before initialisation; None where it follows from others.
+        Value before initialisation; None if it follows from others.
     least, most : float
-        Range of values that may be set.
+        Allowed range.
     type : str
         "real", "whole" or "boolean".
     derivative_of : str
-        The state of which it is the derivative, "" if of none.
+        Name of the state for a derivative, otherwise "".
     scale : str
-        What a state is measured by: "x" as lengths, "v" as speeds, or "1".
+        Scale of a state: "x" for lengths, "v" for speeds, or "1".
 
     """
 
@@ -64,16 +64,16 @@ class Variable:
 
     @property
     def settable(self) -> bool:
-        """Whether it has a start value that an importer may change."""
+        """True if an importer may change its start value."""
         return self.role in ("parameter", "state", "input")
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model: name, description, its own C source, variables in the order of value references, and rules.
+    """A model: name, description, C source, variables in the order of value references, and rules.
 
-    A rule is a condition on parameters, as an expression that means the same in Python and C, and the message if it
-    does not hold, in which "{name:g}" stands for a value. The export checks it, and the unit at initialisation.
+    A rule is a condition on parameters, an expression valid in both Python and C, and the message if it is violated,
+    with "{name:g}" for values. The export checks it, and so does the unit at initialisation.
     """
 
     name: str
@@ -84,21 +84,21 @@ class Model:
 
     @property
     def states(self) -> tuple[Variable, ...]:
-        """The continuous states."""
+        """Continuous states."""
         return self.having("state")
 
     @property
     def derivatives(self) -> tuple[Variable, ...]:
-        """Their derivatives, in the same order."""
+        """Derivatives of the states, in the same order."""
         by_state = {one.derivative_of: one for one in self.having("derivative")}
         return tuple(by_state[one.name] for one in self.states)
 
     def having(self, *roles: str) -> tuple[Variable, ...]:
-        """Return the variables of some roles, in their order."""
+        """Return the variables with these roles, in table order."""
         return tuple(one for one in self.variables if one.role in roles)
 
     def starting(self, **values: float) -> Model:
-        """Return the model with other start values; raise ``ValueError`` if it cannot start with them."""
+        """Return the model with other start values; raise ``ValueError`` if one is unknown or invalid."""
         known = {one.name: one for one in self.variables if one.settable}
         for name, value in values.items():
             if name not in known:
@@ -149,7 +149,7 @@ MEASURED_BY = {"x": "x", "y": "x", "angle": "1", "vx": "v", "vy": "v", "spin": "
 DERIVED_UNITS = {"m": "m/s", "m/s": "m/s2", "rad": "rad/s", "rad/s": "rad/s2", "J": "W"}
 
 REFERENCE_UNITS = {"N s/m": "N.s/m", "N/m³": "N/m3", "kg m²": "kg.m2", "N m s/rad": "N.m.s/rad"}
-"""Units of the reference in the spelling that the standard recommends."""
+"""Units of the reference in the spelling recommended by the standard."""
 
 TIME = Variable("time", "s", "time", "time")
 TOLERANCE = Variable(
@@ -222,7 +222,7 @@ def _supported(kind: type[System], values: Sequence[float], start: Sequence[floa
 
 
 def _stick_events(columns: Sequence[tuple[str, str]]) -> tuple[Variable, ...]:
-    """Return what an exact contact tells of when it stuck last: from there on it turned with the disc below."""
+    """Return the outputs of an exact contact for its last stick and release."""
     places = [(name, unit) for name, unit in columns if unit in ("m", "rad")]
     return (
         Variable("stick_count", "", "how often the contact began to stick", "event", type="whole"),
@@ -353,7 +353,7 @@ CLUTCH = Model(
             "pressure_inner + pressure_mean + pressure_outer > 0.0",
             "pressure_mean = {pressure_mean:g}: one of pressure_inner, pressure_mean and pressure_outer must be > 0",
         ),
-        # a parabola with the values a, b and c at 0, 1/2 and 1 is negative in between if 4 b < (sqrt(a) - sqrt(c))^2
+        # a parabola with values a, b, c at 0, 1/2 and 1 becomes negative in between if 4 b < (sqrt(a) - sqrt(c))^2
         (
             "2.0 * sqrt(pressure_mean) >= fabs(sqrt(pressure_inner) - sqrt(pressure_outer))",
             "pressure_mean = {pressure_mean:g}: it is too small, the parabola to pressure_inner = {pressure_inner:g} "
