@@ -29,7 +29,7 @@ OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
 
 Fmi = Literal[2, 3]
 
-NO_COMPILER = "there is no C compiler here: the unit has its sources alone, which an importer may compile"
+NO_COMPILER = "no C compiler found: the unit contains only its sources, which an importer may compile"
 
 
 class HeadersMissingError(ValueError):
@@ -81,7 +81,7 @@ def standard_headers() -> Path:
     found = importlib.util.find_spec("fmpy")
     if found is None or found.origin is None:
         raise HeadersMissingError(
-            "a unit needs the headers of FMI, which FMPy brings: pip install 'friction-discs[fmu]'"
+            "FMPy is not installed, which provides the headers of FMI: pip install 'friction-discs[fmu]'"
         )
     return Path(found.origin).parent / "c-code"
 

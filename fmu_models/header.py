@@ -29,7 +29,7 @@ def header(model: Model, token: str) -> str:
     """Return the text of ``variables.h``; ``token`` must be that of the description."""
     return "\n".join(
         [
-            "/* Made from the table of variables: the value reference of each. */",
+            "/* Generated from the table of variables: the value reference of each. */",
             "#ifndef VARIABLES_H",
             "#define VARIABLES_H",
             "#include <stddef.h>",
@@ -44,7 +44,7 @@ def header(model: Model, token: str) -> str:
             "    double start, least, most;",
             "} Variable;",
             *(f"extern const {array};" for array in _arrays(model)),
-            "/* Whether parameters break a rule, which the sentence then says. */",
+            "/* Returns whether parameters violate a rule, and its message in sentence. */",
             f"{BROKEN};",
             "#endif",
             "",

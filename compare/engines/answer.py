@@ -34,20 +34,18 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
     for name, array in (("times", got), ("states", states)):
         if array.dtype.kind not in REAL:
             raise BadTrajectoryError(
-                f"the trajectory's {name} are of the type {array.dtype}: they must be real numbers"
+                f"the trajectory's {name} have the type {array.dtype}: they must be real numbers"
             )
     if got.shape != asked.shape:
-        raise BadTrajectoryError(
-            f"the trajectory's times have shape {got.shape}: {asked.shape} were asked for"
-        )
+        raise BadTrajectoryError(f"the trajectory's times have shape {got.shape}: expected {asked.shape}")
     strange = ~(np.abs(got - asked) <= TIME_ROUNDING * np.max(np.abs(asked)))  # also true for NaN
     if np.any(strange):
         i = int(np.argmax(strange))
         raise BadTrajectoryError(
-            f"the trajectory's times[{i}] = {float(got[i])!r} s: {float(asked[i])!r} s was asked for"
+            f"the trajectory's times[{i}] = {float(got[i])!r} s: expected {float(asked[i])!r} s"
         )
     if states.shape != shape:
-        raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: they must have {shape}")
+        raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: expected {shape}")
     broken = ~np.all(np.isfinite(states), axis=1)
     if np.any(broken):
         i = int(np.argmax(broken))
@@ -90,7 +88,5 @@ def as_many_as(answers: object, asked: int) -> list[object]:
         )
     found = list(answers)
     if len(found) != asked:
-        raise BadTrajectoryError(
-            f"simulate_many() returned {len(found)} trajectories: {asked} were asked for"
-        )
+        raise BadTrajectoryError(f"simulate_many() returned {len(found)} trajectories: expected {asked}")
     return found

@@ -189,9 +189,11 @@ def imported(name: str, place: str) -> Engine:
         simulate = function.imported
     except (Exception, SystemExit) as error:  # importing a user's module may raise anything
         kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
-        raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
+        raise ValueError(f"engine {name!r} cannot be imported: {kind}{error}") from None
     if not callable(simulate):
-        raise ValueError(f"engine {name!r} is no function")
+        raise ValueError(
+            f"engine {name!r} is not callable: expected simulate(system, initial_state, times, *, tolerance)"
+        )
     declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
     if "version" in declared:
         declared["version"] = str(declared["version"])
@@ -215,10 +217,10 @@ exudyn_native = register(
         ("pin", "points"),
         kin="exudyn",
         contact_only=True,
-        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. "
-        "Integrator, support and the smoothing of friction are the same, so it is asked only where the contact's own "
-        "code decides: the contact by itself, a motion of each kind, a whirl, and free bodies. With --engine "
-        "exudyn-native it is measured in all that it simulates.",
+        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. The "
+        "integrator, the support and the regularisation of friction are the same, so it is measured only in studies "
+        "that depend on the contact's own code: the contact alone, a motion of each kind, a whirl, and free bodies. "
+        "With --engine exudyn-native it is measured in every study that it can simulate.",
     )
 )
 compiled = register(
@@ -237,9 +239,9 @@ plain = register(
         ByName("reference_model.plain", "simulate"),
         EVERY_KIND,
         sticks=False,
-        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
-        "at slow slip: what sticks creeps, and it tells no stick from slip. It takes only the parameters from the "
-        "reference.",
+        about="plain integrates the equations of the paper by SciPy, with friction that is viscous at slow slip. "
+        "A sticking body therefore creeps, and plain does not distinguish stick from slip. It takes only the "
+        "parameters from the reference.",
     ),
     on_request=True,
 )

@@ -206,7 +206,7 @@ int unit_advance(Unit *unit, double until) {
         last = one.h >= 0.999999 * left;
         if (last) one.h = left;
         if (tried++ == MOST_STEPS) {
-            snprintf(sentence, sizeof sentence, "at t = %.9g s there were %ld steps already, the last one of %.3g s",
+            snprintf(sentence, sizeof sentence, "at t = %.9g s the limit of %ld steps was reached, the last of them %.3g s long",
                      one.t, tried - 1, one.h);
             unit->say(unit, 1, sentence);
             return 1;

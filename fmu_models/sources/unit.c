@@ -59,7 +59,7 @@ void unit_refresh(Unit *unit) {
 int unit_has(Unit *unit, size_t variable, char type) {
     char sentence[INTERNAL_DIGITS];
     if (variable < N_VARIABLES && VARIABLES[variable].type == type) return 1;
-    snprintf(sentence, sizeof sentence, "value reference %lu: there is no variable of this type with it",
+    snprintf(sentence, sizeof sentence, "value reference %lu: no variable of this type has it",
              (unsigned long)variable);
     unit->say(unit, 1, sentence);
     return 0;

@@ -75,7 +75,7 @@ class _World(TopDown):
 
 simulate_with_friction_joints = Setting(
     "friction joint",
-    "by friction joints, in single precision: steps of order 1, until rounding grows with their number.",
+    "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
     linear=False,
     finest=2e-3,

@@ -158,19 +158,19 @@ class _World(Model):
 
 
 simulate_with_cone = Setting(
-    "cone", "with Bullet's contact, by steps of order 1.", _World, {"friction": "cone"}, linear=False
+    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, linear=False
 )
 simulate_with_box = Setting(
     "box",
-    "with enableConeFriction off; it converges to the motion with friction for each axis.",
+    "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
     _World,
     {"friction": "box"},
     linear=False,
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, set before each step: of order 1. ε is what friction changes of "
-    "the slip in a step.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, set before each step, of order 1. ε is the change of slip "
+    "by friction in a step.",
     _World,
     {"friction": "our force"},
     linear=False,

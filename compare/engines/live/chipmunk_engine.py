@@ -66,8 +66,7 @@ class _Space(TopDown):
 
 simulate_with_pivots = Setting(
     "pivot joint",
-    "by pivot joints with a greatest force, as in its demonstration of a tank that is looked at from above: steps of "
-    "order 1.",
+    "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
     linear=False,
 )

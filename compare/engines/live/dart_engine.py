@@ -160,8 +160,8 @@ simulate_pgs = Setting(
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, at the start of each step. ε is what friction changes of the slip "
-    "in a step: with half of it the steps would not be stable.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, set at the start of each step. ε is the change of slip by "
+    "friction in a step; steps would be unstable with half of it.",
     _Model,
 )
 SETTINGS = (simulate_nsgs, simulate_fbf, simulate_dantzig, simulate_pgs, simulate_with_our_force)

@@ -201,7 +201,7 @@ class _Motion(Model):
         try:
             self.state = self.plant.advance(h * number, number)
         except RuntimeError as error:
-            raise SimulationError(f"Drake gave up: {error}") from error
+            raise SimulationError(f"Drake failed: {error}") from error
         self.steps, self.evaluations = self.steps + number, self.evaluations + number
         if self.scheme.integrator:
             integrator = self.plant.simulator.get_integrator()
@@ -212,42 +212,42 @@ class _Motion(Model):
 
 simulate_tamsi = Setting(
     "TAMSI",
-    "with TAMSI, by steps of order 1. Drake is about to give it up.",
+    "with TAMSI and steps of order 1. Drake plans to remove it.",
     _Motion,
     {"scheme": _Scheme("tamsi")},
 )
 simulate_sap = Setting(
     "SAP",
-    "with SAP, by steps of order 1; no better below a tolerance of 1e-5.",
+    "with SAP and steps of order 1. It does not improve below a tolerance of 1e-5.",
     _Motion,
     {"scheme": _Scheme("sap", driven=True)},
     finest=2e-3,
 )
 simulate_lagged = Setting(
     "lagged",
-    'with Drake\'s default, by steps of order 1; no better below a tolerance of 1e-5. "similar" differs from it by '
-    "how normal forces change, which ours do not, and gives the same.",
+    'with Drake\'s default and steps of order 1. It does not improve below a tolerance of 1e-5. "similar" differs from '
+    "it only if normal forces change, so its results are the same here.",
     _Motion,
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,
 )
 simulate_cenic = Setting(
     "cenic",
-    "with the convex solver under error control: its error falls like √tolerance, unevenly.",
+    "with the convex solver under error control. Its error falls unevenly, roughly like √tolerance.",
     _Motion,
     {"scheme": _Scheme(integrator="cenic", driven=True)},
     step=None,
 )
 simulate_runge_kutta = Setting(
     "Runge–Kutta 5",
-    "with contact as a force, by explicit steps of order 5, in stick of the length ε·m/μN.",
+    "with contact as a force and explicit steps of order 5, which shorten to ε·m/μN in stick.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5")},
     step=None,
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5", our_force=True)},
     step=None,

@@ -104,7 +104,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     except ImportError as error:
         raise ValueError(
             f"engine {name!r}: {known.title} is not installed ({error}): pip install {known.package}; "
-            f"wheels are for {known.wheels}"
+            f"wheels exist for {known.wheels}"
         ) from None
     simulate = getattr(adapter, known.settings[setting])
     return Engine(

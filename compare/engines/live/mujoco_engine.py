@@ -145,28 +145,27 @@ def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
 
 simulate_elliptic = Setting(
     "elliptic cone",
-    "with the elliptic cone, by semi-implicit Euler steps: of order 1 where contact slides, of order 2 where it "
-    "sticks.",
+    "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
     {"cone": "elliptic", "friction_rate": 2.0, "iterations": 10},
 )
 simulate_elliptic_rk4 = Setting(
     "elliptic cone, RK4",
-    "with the elliptic cone, by Runge–Kutta steps with b = 1e4/h, Coulomb's law but in stick. There the friction "
-    "force jumps from side to side between steps, and the error is of order 1.",
+    "with the elliptic cone and Runge–Kutta steps with b = 1e4/h, which is Coulomb's law except in stick. In stick, "
+    "the friction force alternates between steps, and the error is of order 1.",
     _Model,
     {"integrator": "RK4", "cone": "elliptic", "friction_rate": 1e4, "iterations": 10},
 )
 simulate_pyramidal = Setting(
     "pyramidal cone",
-    "with the pyramidal cone, MuJoCo's default; it converges to that of friction along an axis.",
+    "with the pyramidal cone, MuJoCo's default. It converges to the motion with friction along an axis.",
     _Model,
     {"cone": "pyramidal", "friction_rate": 1.0, "iterations": 100},
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half of what friction changes of the "
-    "slip in a step: they would be unstable in stick with 0.7 times that.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half the change of slip by "
+    "friction in a step; steps would be unstable in stick with 0.7 times this ε.",
     _Model,
     {"integrator": "RK4"},
 )

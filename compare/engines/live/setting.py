@@ -140,7 +140,7 @@ def contact_arms(engine: str, system: System, most: float = math.inf) -> list[co
         raise UnsupportedSystemError(f"{engine} does not simulate a disc on a continuous ring")
     if n > most:
         raise UnsupportedSystemError(
-            f"contact_points = {n}: {engine} does not simulate a disc on more than {most:g}"
+            f"contact_points = {n}: {engine} does not simulate a disc on more than {most:g} points"
         )
     return [cmath.rect(system.contact_radius, 2.0 * math.pi * i / n) for i in range(n)]
 

@@ -100,7 +100,7 @@ def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
     try:
         return conversation_with(command, folder).greeting
     except OSError as error:
-        raise ValueError(f"{command[0]} can't be started: {error.strerror}") from None
+        raise ValueError(f"{command[0]} cannot be started: {error.strerror}") from None
     except ProgramError as error:
         raise ValueError(str(error)) from None
 
@@ -111,19 +111,15 @@ def check_command(command: tuple[str, ...], folder: str) -> None:
     if os.path.dirname(program):
         found = Path(folder, program)
         reason = (
-            ""
-            if os.access(found, os.X_OK)
-            else "it is not executable"
-            if found.exists()
-            else "it is not there"
+            "" if os.access(found, os.X_OK) else "not executable" if found.exists() else "command not found"
         )
-        reason = "it is a folder" if found.is_dir() else reason
+        reason = "this is a folder, not a program" if found.is_dir() else reason
     else:
-        reason = "" if shutil.which(program) else "no folder of PATH has it"
+        reason = "" if shutil.which(program) else "command not found in PATH"
         if reason and Path(folder, program).is_file():
-            reason += f", write ./{program} for the one in this folder"
+            reason += f"; use ./{program} for the program in this folder"
     if reason:
-        raise ValueError(f"{program} can't be started: {reason}")
+        raise ValueError(f"{program}: {reason}")
 
 
 _OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}
@@ -243,7 +239,7 @@ class Conversation:
         if not in_time:
             why = f"gave no {what} within {limit:g} s"
         elif len(answer) > most:
-            why = f"wrote {len(answer)} bytes as its {what} and no end of it"
+            why = f"wrote {len(answer)} bytes as its {what} without a newline"
         elif b"\n" in answer:
             why = f"wrote more than one line as its {what}"
         else:

@@ -92,7 +92,7 @@ class Fmu:
         try:
             instance = model.instance()
         except Exception as error:  # from the library, e.g. for another platform or with missing functions
-            raise FmuError(f"{name} can't be started: {_reason(error, model.folder)}") from None
+            raise FmuError(f"{name} cannot be started: {_reason(error, model.folder)}") from None
         try:
             return _motion(instance, model, values, system, at, **accuracy)
         except Exception as error:  # FMPy has a separate class for each version of the standard
@@ -153,7 +153,7 @@ def _model(file: str) -> _Model:
             raise ValueError(f"it would unpack to {size:.3g} bytes, the limit is {MOST_BYTES:.3g}")
         description = fmpy.read_model_description(file)
         if description.coSimulation is None or not str(description.fmiVersion).startswith(("2", "3")):
-            raise ValueError(f"FMI {description.fmiVersion}, but it must be for co-simulation by FMI 2 or 3")
+            raise ValueError(f"FMI {description.fmiVersion}, but co-simulation by FMI 2 or 3 is required")
         fmpy.extract(file, folder.name)
     except Exception as error:  # from the archive, its XML or the contents
         folder.cleanup()
@@ -171,7 +171,7 @@ def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> 
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
     if lacking:
-        raise UnsupportedSystemError(f"the model has no {', '.join(lacking)}")
+        raise UnsupportedSystemError(f"the model lacks {', '.join(lacking)}")
     starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
     known = {name: value for name, value in parameters.items() if name in variables}
     if isinstance(system, DiscOnDisc) and POINTS in variables:
@@ -244,7 +244,7 @@ def fmu_engine(text: str) -> Engine:
     """Return the engine "fmu:TEXT"; raise ``ValueError`` if the file is not a model of a system."""
     file = Path(text).resolve()
     if not file.is_file():
-        raise ValueError(f"fmu:{text}: there is no such file")
+        raise ValueError(f"fmu:{text}: file not found")
     model = _model(str(file))
     kinds = _kinds(file.name, model.variables)
     experiment = model.description.defaultExperiment
@@ -261,7 +261,7 @@ def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
     lacking = [one for one in needed if one not in variables and one not in (*OPTIONAL, POINTS)]
     if lacking:
         raise ValueError(
-            f"{name} is no model of a {'disc' if disc else 'pin'}: it has no {', '.join(lacking)}"
+            f"{name} is not a model of a {'disc' if disc else 'pin'}: it lacks {', '.join(lacking)}"
         )
     if not disc:
         return ("pin",)

@@ -70,9 +70,9 @@ def greeting(line: bytes) -> Greeting:
     except BadLineError as error:
         raise ValueError(str(error)) from None
     for key in content:
-        one_of("word in its greeting", key, ("protocol", "name", "version", "limit", *DECLARED))
+        one_of("field in its greeting", key, ("protocol", "name", "version", "limit", *DECLARED))
     if content.get("protocol", PROTOCOL) != PROTOCOL:
-        raise ValueError(f"speaks protocol {content['protocol']!r}: known is {PROTOCOL}")
+        raise ValueError(f"uses protocol {content['protocol']!r}: it must be {PROTOCOL}")
     if not isinstance(content.get("kinds", []), list):
         raise ValueError(f'greets with "kinds": {json.dumps(content["kinds"])}: it must be a list')
     limit = finite_number("limit", content.get("limit", ANSWER_LIMIT))
@@ -136,9 +136,9 @@ def _object(line: bytes) -> dict[str, Any]:
     try:
         content = json.loads(line)
     except (ValueError, RecursionError):
-        raise BadLineError(f"wrote a line that is no JSON: {_short(line)}") from None
+        raise BadLineError(f"wrote a line that is not JSON: {_short(line)}") from None
     if not isinstance(content, dict):
-        raise BadLineError(f"wrote a line that is no JSON object: {_short(line)}")
+        raise BadLineError(f"wrote a line that is not a JSON object: {_short(line)}")
     return content
 
 
@@ -150,7 +150,7 @@ def _array(name: str, rows: object) -> Any:
         return array
     except (TypeError, ValueError, OverflowError):
         raise BadLineError(
-            f'answered with "{name}" that are no rows of numbers, all as long: {reprlib.repr(rows)}'
+            f'answered with "{name}" that are not rows of numbers of equal length: {reprlib.repr(rows)}'
         ) from None
 
 

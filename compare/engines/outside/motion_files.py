@@ -59,8 +59,8 @@ class MotionFiles:
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):
             raise UnsupportedSystemError(
-                f"{Path(self.folder).name} has no such motion: {INDEX} is of another version, "
-                "or what is asked for depends on the answers"
+                f"{Path(self.folder).name} does not contain this motion: {INDEX} has another version, "
+                "or the motion depends on answers to others"
             )
         return read_motion(Path(self.folder, f"{name}.csv"), system, np.array(times, dtype=float))
 
@@ -78,7 +78,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
     except FileNotFoundError:
         raise UnsupportedSystemError(f"{place} is missing") from None
     except OSError as error:
-        raise BadFileError(f"{place} can't be read: {error.strerror}") from None
+        raise BadFileError(f"{place} cannot be read: {error.strerror}") from None
     columns = ("t", *(name for name, _ in COLUMNS[type(system)]))
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
     if rows and not any(map(_is_number, rows[0][1])):
@@ -90,7 +90,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             f"{place} ends after {whole} of {len(times)} times, before t = {times[whole]:g} s"
         )
     if found > len(times):
-        raise BadFileError(f"{place} has {found} rows: {len(times)} times were asked for")
+        raise BadFileError(f"{place} has {found} rows: expected {len(times)}, one per time")
     numbers = np.empty((found, len(columns)))
     for i, (number, row) in enumerate(rows):
         if len(row) != len(columns):
@@ -101,7 +101,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             numbers[i] = row
         except ValueError:
             raise BadFileError(
-                f"{place}, line {number}, is not made of numbers: {','.join(row)[:60]!r}"
+                f"{place}, line {number}, does not consist of numbers: {','.join(row)[:60]!r}"
             ) from None
         if not np.isfinite(numbers[i]).all():
             raise BadFileError(f"{place}, line {number}, has a number that is not finite")
@@ -122,12 +122,12 @@ def _index(folder: str) -> dict[str, Any]:
             raise ValueError
         frozenset(content["motions"])
     except OSError as error:
-        reason = f"{error.strerror}; friction-discs plan writes it"
+        reason = f"{error.strerror}; create it with friction-discs plan"
     except (ValueError, KeyError, TypeError):
-        reason = "it is no plan of this version"
+        reason = "it is not a plan of this version"
     else:
         return content
-    raise ValueError(f"{Path(folder).name}/{INDEX} can't be read: {reason}")
+    raise ValueError(f"{Path(folder).name}/{INDEX} cannot be read: {reason}")
 
 
 @functools.cache

@@ -81,11 +81,11 @@ def program_engine(text: str) -> Engine:
     program = _program(text)
     greeting = _conversation().greeting_of(program.command, program.folder)
     name = name_of(program.command)
-    about = f"{name} is a program that calls itself {greeting.who}." if greeting.who else ""
+    about = f"{name} runs the program {greeting.who}." if greeting.who else ""
     try:
         return Engine(name, program, about=about, **{"phases": False, **greeting.promises})
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} greets with {greeting.promises}: {error}") from None
+        raise ValueError(f"{name} has an invalid greeting, {greeting.promises}: {error}") from None
 
 
 def check_program(text: str) -> None:
@@ -100,7 +100,7 @@ def _program(text: str) -> Program:
     except ValueError as error:
         raise ValueError(f"exec:{text}: {str(error).lower()}") from None
     if not command or not command[0]:
-        raise ValueError(f"exec:{text}: a command has to follow, as in exec:./my_engine")
+        raise ValueError(f"exec:{text}: give a command, for example exec:./my_engine")
     return Program(command, os.getcwd())
 
 
